@@ -1,0 +1,33 @@
+// A scanned cloud: what the scan readers write and the cleaners and skeletonizers read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/scan_frame.h"
+#include "geometry/vec.h"
+
+namespace treerec {
+
+using Color8 = std::array<uint8_t, 3>;
+
+// positions: relative to frame.origin, in the axes and units that the frame says (fresh from a file: the
+// scan's own; after orient_cloud(): tree space, metres and Y up). float is exact to 2 micrometres at 30 m.
+// colors, normals: empty, or one per point.
+struct PointCloud {
+    ScanFrame frame;
+    std::vector<Vec3> positions;
+    std::vector<Color8> colors;
+    std::vector<Vec3> normals;
+
+    size_t size() const { return positions.size(); }
+    bool empty() const { return positions.empty(); }
+    bool has_colors() const { return !colors.empty(); }
+    bool has_normals() const { return !normals.empty(); }
+
+    // Keeps the points whose keep[i] is not 0, in order. keep: one entry per point.
+    void keep_only(const std::vector<uint8_t>& keep);
+};
+
+}  // namespace treerec

@@ -1,0 +1,38 @@
+// Reads and writes point-cloud files: PLY, text (.xyz .txt .asc .pts .csv), LAS 1.0-1.4.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress.h"
+#include "scan/point_cloud.h"
+
+namespace treerec {
+
+struct ReadCloudOptions {
+    // Text files only: the columns' names in order, such as {"x","y","z","r","g","b"}; "-" skips one. Empty:
+    // detect.
+    std::vector<std::string> columns;
+};
+
+// What the reader had to decide or leave out, as sentences for the user ("3 of 4000 points had no finite
+// position.").
+struct ReadCloudReport {
+    std::string
+        format;  // "PLY binary little endian", "text, 6 columns: x y z r g b", "LAS 1.2, point format 3"
+    std::vector<std::string> warnings;
+};
+
+// Reads the cloud at `path` (UTF-8). The format is sniffed from the contents first, the extension second. The
+// frame's origin is a whole number of units near the median point and independent of the points' order; scale
+// 1, axes as in the file. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no
+// finite point, …).
+PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options = {},
+                      ReadCloudReport* report = nullptr, Progress* progress = nullptr);
+
+// Writes by extension: .ply (binary little endian; doubles in scan coordinates, colours and normals where
+// present), .xyz/.txt/.asc (text), .las (1.2). Scan coordinates and units. Writes beside and renames. Throws
+// Error.
+void write_cloud(const std::string& path, const PointCloud& cloud);
+
+}  // namespace treerec

@@ -1,0 +1,41 @@
+// From a clean cloud to a Tree: the Delaunay skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress.h"
+#include "scan/point_cloud.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+// Lengths in metres; 0 where a length is "automatic" (from the cloud's own spacing and size).
+struct SkeletonOptions {
+    double spacing = 0.0;            // thinning: at most one point per cell of this size; 0 automatic
+    double minimum_branch = 0.0;     // shorter end branches are noise; 0 automatic
+    double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
+    bool fit_radii = true;           // measure radii where the points allow it
+    uint64_t seed = 1;               // of the robust fits
+};
+
+struct SkeletonStage {
+    std::string name;
+    double milliseconds = 0.0;
+    size_t count = 0;  // points or nodes after the stage
+};
+
+struct SkeletonResult {
+    Tree raw;   // the shortest-path tree before pruning and simplification, for pictures; thin constant radii
+    Tree tree;  // the skeleton: trunk marked, radii measured or inferred, root at (0,0,0), frame set
+    double spacing = 0.0;  // that was used
+    std::vector<SkeletonStage> stages;
+    std::vector<std::string> warnings;
+};
+
+// cloud: oriented (metres, Y up) and clean. Throws Error if it cannot be a tree (fewer than 10 distinct
+// points, all on a plane or a line, …), Cancelled on request.
+SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options,
+                           Progress* progress = nullptr);
+
+}  // namespace treerec
