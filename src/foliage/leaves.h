@@ -1,0 +1,53 @@
+// Where leaves sit: leaf rules turned into placements (papers/000, 3.2.5).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+enum class LeafArrangement { kAlternate, kOpposite };
+
+// Lengths in metres, angles in degrees.
+struct LeafRules {
+    bool enabled = true;
+    LeafArrangement arrangement = LeafArrangement::kAlternate;
+    double internode = 0.05;       // distance between leaf nodes along a twig
+    double twig_length = 0.6;      // how far from its tip a branch bears leaves
+    double maximum_radius = 0.02;  // thicker wood bears none
+    double leaf_size = 0.10;       // length of a leaf card
+    double size_variation = 0.3;   // share
+    double angle = 55.0;           // between the twig and the leaf
+    double droop = 20.0;           // towards the ground
+    double angle_variation = 20.0;
+    int maximum_leaves = 60000;  // beyond it fewer, larger leaves cover the same area
+};
+
+// "generic", "maple", "cherry", "oak", "birch", "none". Throws Error for another name, listing these.
+LeafRules leaf_preset(const std::string& name);
+std::vector<std::string> leaf_preset_names();
+
+// One leaf card. x,y,z: the card's axes (unit, right-handed): x across, y from the base to the tip, z out of
+// its upper face. position: where the petiole leaves the bark. outward: unit, from the crown's centre (for
+// rounded normals).
+struct LeafPlacement {
+    Vec3 position;
+    Vec3 x, y, z;
+    Vec3 outward;
+    float size = 0.1f;       // metres
+    float phase = 0.0f;      // 0..1 (INSTANCE_CUSTOM.x)
+    float hue = 0.0f;        // 0..1 (INSTANCE_CUSTOM.z)
+    float stiffness = 0.0f;  // 0..1 of its branch (INSTANCE_CUSTOM.w)
+    float sway = 0.0f;       // 0..1, the bark's COLOR.r at its place
+    float occlusion = 1.0f;  // 1 open to the sky .. 0 deep in the crown
+};
+
+// seed: the same seed gives the same leaves. Each leaf's random numbers belong to its place (hash_seed), so
+// pruning one branch leaves the leaves of others alone.
+std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed);
+
+}  // namespace treerec

@@ -1,0 +1,23 @@
+// Bark: one tube per branch by parallel-transport frames (papers/000, algorithm 9, as meant: once per
+// branch).
+#pragma once
+
+#include "mesh/mesh.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+struct TubeOptions {
+    int level = 0;  // level of detail: 0 the finest; each level halves sides and drops rings and thin twigs
+    double side_length = 0.02;  // metres of circumference per side aimed at, at level 0
+    int minimum_sides = 5;
+    int maximum_sides = 24;
+    double bark_width =
+        1.0;  // metres of circumference per texture repeat, rounded per branch to whole repeats
+};
+
+// Vertices carry normals, tangents, UVs (u around in whole repeats, v along in metres), wind channels.
+// An empty tree or a lone root gives an empty mesh. Deterministic.
+Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {});
+
+}  // namespace treerec
