@@ -33,6 +33,7 @@ NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags) {
     node.position = position;
     node.radius = radius;
     node.flags = flags;
+    node.depth = 1;
     nodes_.push_back(node);
     count_++;
     return id_end() - 1;
@@ -78,7 +79,6 @@ void Tree::update_depths(NodeId from) {
 NodeId Tree::add_root(const DVec3& position, double radius, uint8_t flags) {
     if (!empty()) throw Error("The tree has a root already.");
     root_ = new_node(position, radius, flags);
-    nodes_[root_].depth = 1;
     return root_;
 }
 
