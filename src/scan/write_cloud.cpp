@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "error.h"
+#include "geometry/bounds.h"
+#include "scan/file_bytes.h"
+#include "scan/read_cloud.h"
+
+namespace treerec {
+
+namespace {
+
+// A buffer of known size, filled front to back with little-endian values.
+class ByteWriter {
+  public:
+    explicit ByteWriter(size_t size) : bytes_(size, '\0') {}
+
+    template <typename T>
+    void put(T value) {
+        char raw[sizeof(T)];
+        std::memcpy(raw, &value, sizeof(T));
+        if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
+        std::memcpy(bytes_.data() + at_, raw, sizeof(T));
+        at_ += sizeof(T);
+    }
+    void put_text(std::string_view text) {
+        std::memcpy(bytes_.data() + at_, text.data(), text.size());
+        at_ += text.size();
+    }
+    void skip(size_t count) { at_ += count; }
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    std::string bytes_;
+    size_t at_ = 0;
+};
+
+DVec3 scan_position(const PointCloud& cloud, size_t i) {
+    return cloud.frame.to_scan(DVec3(cloud.positions[i]));
+}
+
+Bounds scan_bounds(const PointCloud& cloud) {
+    Bounds bounds;
+    for (size_t i = 0; i < cloud.size(); i++)
+        bounds.add(scan_position(cloud, i));
+    return bounds;
+}
+
+// The decimals that keep what the cloud's floats resolve: about 1e-8 of its extent.
+int decimals_for(const Bounds& bounds) {
+    const DVec3 size = bounds.size();
+    const double extent = std::max({size.x, size.y, size.z});
+    if (!(extent > 0.0)) return 6;
+    return std::clamp(static_cast<int>(std::ceil(8.0 - std::log10(extent))), 0, 15);
+}
+
+std::string to_ply(const PointCloud& cloud) {
+    std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                         std::to_string(cloud.size()) +
+                         "\nproperty double x\nproperty double y\nproperty double z\n";
+    if (cloud.has_normals()) header += "property float nx\nproperty float ny\nproperty float nz\n";
+    if (cloud.has_colors()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    header += "end_header\n";
+    const size_t stride = 24U + (cloud.has_normals() ? 12U : 0U) + (cloud.has_colors() ? 3U : 0U);
+    ByteWriter writer(header.size() + stride * cloud.size());
+    writer.put_text(header);
+    for (size_t i = 0; i < cloud.size(); i++) {
+        const DVec3 p = scan_position(cloud, i);
+        for (int k = 0; k < 3; k++)
+            writer.put(p[k]);
+        if (cloud.has_normals()) {
+            const DVec3 n = cloud.frame.turn_to_scan(DVec3(cloud.normals[i]));
+            for (int k = 0; k < 3; k++)
+                writer.put(static_cast<float>(n[k]));
+        }
+        if (cloud.has_colors())
+            for (const uint8_t channel : cloud.colors[i])
+                writer.put(channel);
+    }
+    return writer.bytes();
+}
+
+std::string to_text(const PointCloud& cloud) {
+    std::string text;
+    // Bare x y z needs no header, and many programs trip over one.
+    if (cloud.has_colors() || cloud.has_normals()) {
+        text = "//X Y Z";
+        if (cloud.has_colors()) text += " R G B";
+        if (cloud.has_normals()) text += " Nx Ny Nz";
+        text += '\n';
+    }
+    const int decimals = decimals_for(scan_bounds(cloud));
+    char number[400];
+    auto put = [&](double value, int places, char after) {
+        const std::to_chars_result result =
+            std::to_chars(number, number + sizeof(number), value, std::chars_format::fixed, places);
+        text.append(number, static_cast<size_t>(result.ptr - number));
+        text += after;
+    };
+    text.reserve(text.size() + cloud.size() * 48);
+    for (size_t i = 0; i < cloud.size(); i++) {
+        const DVec3 p = scan_position(cloud, i);
+        for (int k = 0; k < 3; k++)
+            put(p[k], decimals, ' ');
+        if (cloud.has_colors())
+            for (const uint8_t channel : cloud.colors[i])
+                put(channel, 0, ' ');
+        if (cloud.has_normals()) {
+            const DVec3 n = cloud.frame.turn_to_scan(DVec3(cloud.normals[i]));
+            for (int k = 0; k < 3; k++)
+                put(n[k], 7, ' ');
+        }
+        text.back() = '\n';
+    }
+    return text;
+}
+
+// LAS 1.2, point format 0 or 2: ASPRS, "LAS Specification, version 1.2", 2008.
+std::string to_las(const PointCloud& cloud) {
+    constexpr size_t kHeader = 227;
+    if (cloud.size() > 0xFFFFFFFFU) throw Error("LAS 1.2 holds no more than 4294967295 points; write PLY.");
+    const size_t stride = cloud.has_colors() ? 26 : 20;
+    const Bounds bounds = scan_bounds(cloud);
+    const DVec3 offset = glm::round(bounds.centre());
+    const DVec3 reach = glm::max(bounds.max - offset, offset - bounds.min);
+    const double largest = std::max({reach.x, reach.y, reach.z, 1e-3});
+    const double scale = std::pow(10.0, std::ceil(std::log10(largest / 2147483647.0)));
+
+    ByteWriter writer(kHeader + stride * cloud.size());
+    writer.put_text("LASF");
+    writer.skip(20);
+    writer.put(uint8_t{1});
+    writer.put(uint8_t{2});
+    writer.skip(32);
+    writer.put_text("Godot tree reconstruction");
+    writer.skip(32 - 25 + 4);
+    writer.put(static_cast<uint16_t>(kHeader));
+    writer.put(static_cast<uint32_t>(kHeader));
+    writer.skip(4);
+    writer.put(static_cast<uint8_t>(cloud.has_colors() ? 2 : 0));
+    writer.put(static_cast<uint16_t>(stride));
+    writer.put(static_cast<uint32_t>(cloud.size()));
+    writer.put(static_cast<uint32_t>(cloud.size()));  // all are first returns
+    writer.skip(16);
+    for (int k = 0; k < 3; k++)
+        writer.put(scale);
+    for (int k = 0; k < 3; k++)
+        writer.put(offset[k]);
+    for (int k = 0; k < 3; k++) {
+        writer.put(bounds.max[k]);
+        writer.put(bounds.min[k]);
+    }
+    for (size_t i = 0; i < cloud.size(); i++) {
+        const DVec3 steps = glm::round((scan_position(cloud, i) - offset) / scale);
+        for (int k = 0; k < 3; k++)
+            writer.put(static_cast<int32_t>(std::clamp(steps[k], -2147483647.0, 2147483647.0)));
+        writer.skip(2);
+        writer.put(uint8_t{0x09});  // return 1 of 1
+        writer.skip(5);
+        if (cloud.has_colors())
+            for (const uint8_t channel : cloud.colors[i])
+                writer.put(static_cast<uint16_t>(channel * 257));
+    }
+    return writer.bytes();
+}
+
+bool ends_with(const std::string& path, std::string_view extension) {
+    if (path.size() < extension.size()) return false;
+    return std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
+                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
+}  // namespace
+
+void write_cloud(const std::string& path, const PointCloud& cloud) {
+    if (cloud.empty()) throw Error("'" + path + "' was not written: the cloud has no points.");
+    if (ends_with(path, ".ply")) {
+        write_file(path, to_ply(cloud));
+    } else if (ends_with(path, ".las")) {
+        write_file(path, to_las(cloud));
+    } else if (ends_with(path, ".xyz") || ends_with(path, ".txt") || ends_with(path, ".asc")) {
+        write_file(path, to_text(cloud));
+    } else {
+        throw Error("'" + path + "' was not written: use the extension .ply, .las, .xyz, .txt or .asc.");
+    }
+}
+
+}  // namespace treerec
