@@ -1,28 +1,43 @@
-// Skeleton files, in the scan's own coordinates, axes and units: treefile, QSM csv, skeleton PLY.
+// Skeleton files, in the scan's own coordinates, axes and units: treefile, QSM csv, skeleton PLY, node csv.
+//
+// Positions and radii are written as the shortest decimal (or the double itself) that reads back the same, at
+// UTM coordinates too. Files that we wrote name their up axis and unit and read back into the same place;
+// for others `up` tells the axis, and a unit is a metre. A file of a newer format version is refused.
+// All readers give a tree whose frame's origin is its root, and throw Error with a sentence for anything that
+// is no such file.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tree/tree.h"
 
 namespace treerec {
 
-// The text format of csiro-robotics/treetools: a comment line, "x,y,z,radius,parent_id" (after optional
-// per-tree attributes), then one line per tree with one tuple per node, parents before children, the root's
-// parent -1.
+// The text format of csiro-robotics/treetools and raycloudtools: comment lines, the line of field names
+// "x,y,z,radius,parent_id,flags" and a line per tree with one tuple per node, parents before children, the
+// root's parent -1. A node's radius is that of the segment to its parent.
 void write_treefile(const std::string& path, const Tree& tree);
-// The largest tree of the file, turned to metres and Y up: up tells the file's up axis. Columns beside the
-// five are skipped, but "flags" is read where we wrote it. Throws Error with a sentence for anything that is
-// no treefile.
+// The largest tree of the file. Reads per-tree attributes before the fields, more fields (skipped, but for
+// "flags"), and the second list of fields by which newer files tell branch fields from root fields.
 Tree read_treefile(const std::string& path, UpAxis up = UpAxis::kZ);
 
-// One cylinder per segment, with TreeQSM's column names (start, axis, length, radius, parent, branch, order,
-// measured).
+// One cylinder per segment, parents first, with TreeQSM's columns: radius, length, start_x.., axis_x..,
+// parent_1based (0: none), branch (from 1), order (trunk 0), and measured (1: the radius was fitted).
 void write_qsm_csv(const std::string& path, const Tree& tree);
 
-// Vertices (x y z double, radius, flags), edges (vertex1 vertex2); binary little endian.
+// Vertices (x y z radius: double, flags: uchar), edges (vertex1 the parent, vertex2 the child: int); binary
+// little endian. Read in any of PLY's three encodings, with more properties or elements.
 void write_skeleton_ply(const std::string& path, const Tree& tree);
 Tree read_skeleton_ply(const std::string& path, UpAxis up = UpAxis::kZ);
+
+// A table of nodes with a header naming x, y, z, radius, parent (or parent_id) and perhaps id (or node): the
+// form in which hand-corrected skeletons are exchanged. A parent that is no node marks the root.
+Tree read_node_csv(const std::string& path, UpAxis up = UpAxis::kZ);
+
+// Whether the file's first lines say that it is one of the skeleton files read here (and not a point cloud).
+// Throws Error only if the file cannot be read.
+bool is_skeleton_file(const std::string& path);
+// Any of them, told apart by their contents.
+Tree read_skeleton(const std::string& path, UpAxis up = UpAxis::kZ);
 
 }  // namespace treerec

@@ -15,21 +15,27 @@ struct OrderMeasure {
     double length = 0.0;  // metres
 };
 
-// Metres, litres excepted by name. Zero where it cannot be measured (no trunk at breast height).
+// Metres and cubic metres. Zero where it cannot be measured (no wood at breast height).
 struct Measurements {
     size_t nodes = 0;
     size_t tips = 0;
-    double height = 0.0;                 // from the lowest node to the top of the highest
-    double dbh = 0.0;                    // diameter of the thickest stem at breast height
-    int stems = 0;                       // stems that pass breast height
-    double crown_radius = 0.0;           // mean over 36 directions of the farthest node from the crown's axis
-    double crown_base = 0.0;             // height above the base of the first fork
-    double total_length = 0.0;           // of all segments
-    double volume = 0.0;                 // cubic metres of wood: truncated cones
+    double height = 0.0;  // from the lowest node to the highest
+    // Diameter of the thickest stem, 1.3 m from the root along the wood, between two nodes interpolated.
+    double dbh = 0.0;
+    int stems = 0;  // wood there at least half as thick as the thickest
+    // Mean over 36 directions of the crown's reach from its axis: the vertical through the middle of the wood
+    // above the first fork.
+    double crown_radius = 0.0;
+    double crown_base = 0.0;    // height above the root of the first fork of the trunk
+    double total_length = 0.0;  // of all segments
+    // Wood: one truncated cone per segment; a side branch's first segment is a cylinder of its own radius,
+    // not a cone from its parent's.
+    double volume = 0.0;
     double measured_share = 0.0;         // share of the length whose radius was measured
-    std::vector<OrderMeasure> by_order;  // 0: trunk
+    std::vector<OrderMeasure> by_order;  // 0: trunk; branches and orders as list_branches() counts them
 };
 
+// Linear in the nodes. An empty tree measures zero.
 Measurements measure(const Tree& tree);
 
 }  // namespace treerec

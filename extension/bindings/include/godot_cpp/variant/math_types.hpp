@@ -9,24 +9,21 @@
 // geometry belongs to the C++ core.
 namespace godot {
 
-#define GODOT_VECTOR_OPERATORS(m_type, m_scalar)                  \
-	constexpr m_scalar &operator[](int p_axis) { return (&x)[p_axis]; }    \
-	constexpr const m_scalar &operator[](int p_axis) const { return (&x)[p_axis]; } \
+#define GODOT_VECTOR_OPERATORS(m_type, m_scalar, m_member) \
+	constexpr m_scalar &operator[](int p_axis) { return m_member; } \
+	constexpr const m_scalar &operator[](int p_axis) const { return m_member; } \
 	constexpr m_type &operator+=(const m_type &p_b) { return *this = *this + p_b; } \
 	constexpr m_type &operator-=(const m_type &p_b) { return *this = *this - p_b; } \
-	constexpr m_type &operator*=(m_scalar p_b) { return *this = *this * p_b; }      \
-	constexpr m_type &operator/=(m_scalar p_b) { return *this = *this / p_b; }      \
+	constexpr m_type &operator*=(m_scalar p_b) { return *this = *this * p_b; } \
+	constexpr m_type &operator/=(m_scalar p_b) { return *this = *this / p_b; } \
 	constexpr bool operator==(const m_type &) const = default;
-
-struct Vector2i;
-struct Vector3i;
 
 struct Vector2 {
 	real_t x = 0, y = 0;
 
 	constexpr Vector2() = default;
 	constexpr Vector2(real_t p_x, real_t p_y) : x(p_x), y(p_y) {}
-	GODOT_VECTOR_OPERATORS(Vector2, real_t)
+	GODOT_VECTOR_OPERATORS(Vector2, real_t, p_axis == 0 ? x : y)
 	constexpr Vector2 operator+(const Vector2 &p_b) const { return {x + p_b.x, y + p_b.y}; }
 	constexpr Vector2 operator-(const Vector2 &p_b) const { return {x - p_b.x, y - p_b.y}; }
 	constexpr Vector2 operator*(const Vector2 &p_b) const { return {x * p_b.x, y * p_b.y}; }
@@ -43,7 +40,7 @@ struct Vector2i {
 
 	constexpr Vector2i() = default;
 	constexpr Vector2i(int32_t p_x, int32_t p_y) : x(p_x), y(p_y) {}
-	GODOT_VECTOR_OPERATORS(Vector2i, int32_t)
+	GODOT_VECTOR_OPERATORS(Vector2i, int32_t, p_axis == 0 ? x : y)
 	constexpr Vector2i operator+(const Vector2i &p_b) const { return {x + p_b.x, y + p_b.y}; }
 	constexpr Vector2i operator-(const Vector2i &p_b) const { return {x - p_b.x, y - p_b.y}; }
 	constexpr Vector2i operator*(int32_t p_b) const { return {x * p_b, y * p_b}; }
@@ -55,7 +52,7 @@ struct Vector3 {
 
 	constexpr Vector3() = default;
 	constexpr Vector3(real_t p_x, real_t p_y, real_t p_z) : x(p_x), y(p_y), z(p_z) {}
-	GODOT_VECTOR_OPERATORS(Vector3, real_t)
+	GODOT_VECTOR_OPERATORS(Vector3, real_t, p_axis == 0 ? x : p_axis == 1 ? y : z)
 	constexpr Vector3 operator+(const Vector3 &p_b) const { return {x + p_b.x, y + p_b.y, z + p_b.z}; }
 	constexpr Vector3 operator-(const Vector3 &p_b) const { return {x - p_b.x, y - p_b.y, z - p_b.z}; }
 	constexpr Vector3 operator*(const Vector3 &p_b) const { return {x * p_b.x, y * p_b.y, z * p_b.z}; }
@@ -82,7 +79,7 @@ struct Vector3i {
 
 	constexpr Vector3i() = default;
 	constexpr Vector3i(int32_t p_x, int32_t p_y, int32_t p_z) : x(p_x), y(p_y), z(p_z) {}
-	GODOT_VECTOR_OPERATORS(Vector3i, int32_t)
+	GODOT_VECTOR_OPERATORS(Vector3i, int32_t, p_axis == 0 ? x : p_axis == 1 ? y : z)
 	constexpr Vector3i operator+(const Vector3i &p_b) const { return {x + p_b.x, y + p_b.y, z + p_b.z}; }
 	constexpr Vector3i operator-(const Vector3i &p_b) const { return {x - p_b.x, y - p_b.y, z - p_b.z}; }
 	constexpr Vector3i operator*(int32_t p_b) const { return {x * p_b, y * p_b, z * p_b}; }
@@ -94,7 +91,7 @@ struct Vector4 {
 
 	constexpr Vector4() = default;
 	constexpr Vector4(real_t p_x, real_t p_y, real_t p_z, real_t p_w) : x(p_x), y(p_y), z(p_z), w(p_w) {}
-	GODOT_VECTOR_OPERATORS(Vector4, real_t)
+	GODOT_VECTOR_OPERATORS(Vector4, real_t, p_axis == 0 ? x : p_axis == 1 ? y : p_axis == 2 ? z : w)
 	constexpr Vector4 operator+(const Vector4 &p_b) const {
 		return {x + p_b.x, y + p_b.y, z + p_b.z, w + p_b.w};
 	}
@@ -213,8 +210,8 @@ struct Color {
 
 	constexpr Color() = default;
 	constexpr Color(float p_r, float p_g, float p_b, float p_a = 1) : r(p_r), g(p_g), b(p_b), a(p_a) {}
-	constexpr float &operator[](int p_channel) { return (&r)[p_channel]; }
-	constexpr const float &operator[](int p_channel) const { return (&r)[p_channel]; }
+	constexpr float &operator[](int p_channel) { return p_channel == 0 ? r : p_channel == 1 ? g : p_channel == 2 ? b : a; }
+	constexpr const float &operator[](int p_channel) const { return p_channel == 0 ? r : p_channel == 1 ? g : p_channel == 2 ? b : a; }
 	constexpr Color operator*(float p_b) const { return {r * p_b, g * p_b, b * p_b, a * p_b}; }
 	constexpr Color lerp(const Color &p_to, float p_weight) const {
 		const float keep = 1 - p_weight;
