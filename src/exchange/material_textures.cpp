@@ -1,0 +1,89 @@
+#include "exchange/material_textures.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "error.h"
+#include "geometry/parallel.h"
+#include "mesh/textures.h"
+
+#define STBI_WRITE_NO_STDIO
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#endif
+#include <stb/stb_image_write.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace treerec {
+
+std::vector<uint8_t> encode_png(const Image& image) {
+    std::vector<uint8_t> png;
+    const auto append = [](void* out, void* data, int size) {
+        auto* bytes = static_cast<uint8_t*>(data);
+        static_cast<std::vector<uint8_t>*>(out)->insert(static_cast<std::vector<uint8_t>*>(out)->end(), bytes,
+                                                        bytes + size);
+    };
+    if (!stbi_write_png_to_func(append, &png, image.width, image.height, image.channels, image.pixels.data(),
+                                image.width * image.channels))
+        throw Error("A texture could not be turned into a PNG picture: out of memory.");
+    return png;
+}
+
+std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uint64_t seed) {
+    const BarkTextures bark = make_bark_textures(preset, size, seed);
+    const LeafTextures leaf = make_leaf_textures(preset, size, seed);
+    std::vector<NamedPicture> pictures{{"bark_albedo", {}},
+                                       {"bark_normal", {}},
+                                       {"bark_roughness", {}},
+                                       {"leaf_albedo", {}},
+                                       {"leaf_normal", {}}};
+    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &leaf.albedo, &leaf.normal};
+    parallel_for(pictures.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++)
+            pictures[i].png = encode_png(*images[i]);
+    });
+    return pictures;
+}
+
+std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset, int size,
+                                        uint64_t seed) {
+    std::error_code failure;
+    std::filesystem::create_directories(directory, failure);
+    if (failure) throw Error("Cannot make the folder '" + directory + "': " + failure.message() + ".");
+    std::vector<std::string> paths;
+    for (const NamedPicture& picture : make_pictures(preset, size, seed)) {
+        paths.push_back((std::filesystem::path(directory) / (preset + "_" + picture.name + ".png")).string());
+        write_file(paths.back(), picture.png.data(), picture.png.size());
+    }
+    return paths;
+}
+
+void write_file(const std::string& path, const void* data, size_t size) {
+    const std::string beside = path + ".tmp";
+    std::error_code failure;
+    {
+        std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+        if (!file) throw Error("Cannot write '" + path + "'. Check that its folder exists and is writable.");
+        file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+        file.close();
+        if (!file) {
+            std::filesystem::remove(beside, failure);
+            throw Error("Cannot finish writing '" + path + "'. Is the disk full?");
+        }
+    }
+    std::filesystem::rename(beside, path, failure);
+    if (failure) {
+        const std::string reason = failure.message();
+        std::filesystem::remove(beside, failure);
+        throw Error("Cannot write '" + path + "': " + reason + ".");
+    }
+}
+
+}  // namespace treerec

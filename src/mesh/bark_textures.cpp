@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <vector>
+
+#include "error.h"
+#include "foliage/leaves.h"
+#include "geometry/parallel.h"
+#include "mesh/texture_noise.h"
+#include "mesh/textures.h"
+
+namespace treerec {
+
+namespace {
+
+using namespace texture;
+
+// What the bark is like at one point: height 0..1, colour (sRGB), roughness.
+struct BarkPoint {
+    double height;
+    DVec3 colour;
+    double roughness;
+};
+
+struct BarkColours {
+    DVec3 crack;
+    DVec3 plate;
+    DVec3 crest;
+};
+
+BarkColours colours_of(const std::string& preset) {
+    if (preset == "oak") return {{0.13, 0.11, 0.09}, {0.40, 0.36, 0.31}, {0.55, 0.51, 0.45}};
+    if (preset == "maple") return {{0.16, 0.14, 0.12}, {0.46, 0.42, 0.37}, {0.60, 0.56, 0.50}};
+    if (preset == "cherry") return {{0.14, 0.08, 0.06}, {0.38, 0.25, 0.20}, {0.52, 0.37, 0.30}};
+    if (preset == "pine") return {{0.16, 0.09, 0.06}, {0.50, 0.33, 0.23}, {0.66, 0.47, 0.35}};
+    return {{0.14, 0.11, 0.085}, {0.42, 0.35, 0.285}, {0.57, 0.49, 0.405}};
+}
+
+// Long interlaced ridges between ragged fissures, with a finer net of cracks and fibres on them.
+BarkPoint fissured(DVec2 p, const BarkColours& colours, uint64_t seed) {
+    const DVec2 warped =
+        p + DVec2(0.060 * fractal(p, 5, 3, 5, seed + 10) + 0.012 * fractal(p, 30, 10, 3, seed + 15),
+                  0.09 * fractal(p, 6, 4, 4, seed + 20));
+    const Cell plate = cells(warped, 13, 3, seed + 30);
+    const Cell flake = cells(warped + DVec2(0.02 * fractal(p, 24, 12, 3, seed + 40), 0.0), 31, 10, seed + 50);
+    // Fissures run up the stem; what crosses them is shallow, and both come and go.
+    const double presence = smoothstep(-0.30, 0.25, fractal(p, 7, 5, 3, seed + 60) + 0.12);
+    const double deep = mix(0.30, 1.0, smoothstep(0.45, 0.9, plate.across)) * mix(0.45, 1.0, presence);
+    const double width = 0.10 + 0.26 * deep * (0.8 + 0.5 * noise(p, 9, 6, seed + 65));
+    const double fissure = 1.0 - deep * (1.0 - smoothstep(0.0, width, plate.border));
+    const double dome = smoothstep(0.0, 0.5, plate.border);
+    const double crack = 1.0 - mix(0.3, 1.0, flake.across) * (1.0 - smoothstep(0.0, 0.16, flake.border));
+    const double fibre = 1.0 - std::abs(2.0 * fractal(warped, 44, 6, 3, seed + 70));
+    const double grain = fractal(p, 80, 40, 3, seed + 80);
+    BarkPoint point;
+    point.height = clamp01(0.44 * fissure + 0.18 * dome + fissure * (0.17 * crack + 0.14 * fibre) +
+                           0.10 * (plate.number - 0.5) * fissure + 0.10 * grain);
+    const double tone = 1.0 + 0.14 * (plate.number - 0.5) + 0.16 * (flake.number - 0.5) + 0.45 * grain +
+                        0.25 * fractal(p, 3, 2, 4, seed + 90);
+    const double body = smoothstep(0.06, 0.70, point.height);
+    const double crest = smoothstep(0.62, 0.98, point.height);
+    DVec3 colour = glm::mix(colours.crack, colours.plate, body);
+    colour = glm::mix(colour, colours.crest, 0.85 * crest);
+    // A breath of algae in some places, a warm cast in others.
+    const double patch = smoothstep(0.05, 0.45, fractal(p, 3, 4, 4, seed + 110));
+    colour = glm::mix(colour, DVec3(0.36, 0.39, 0.25) * (0.5 + body), 0.25 * patch * body);
+    const double warm = fractal(p, 4, 3, 3, seed + 130);
+    colour *= tone * DVec3(1.0 + 0.05 * warm, 1.0, 1.0 - 0.06 * warm);
+    point.colour = colour;
+    point.roughness = clamp01(0.94 - 0.16 * crest + 0.08 * grain);
+    return point;
+}
+
+// White, papery bark with dark lenticels lying across and rough black scars.
+BarkPoint birch(DVec2 p, uint64_t seed) {
+    const DVec2 warped = p + DVec2(0.02 * fractal(p, 4, 8, 3, seed + 10), 0.012 * fractal(p, 3, 5, 4, seed));
+    const double bands = fractal(warped, 3, 22, 4, seed + 20);
+    const double grain = fractal(p, 60, 100, 3, seed + 30);
+    const Cell slit = cells(warped, 7, 46, seed + 40);
+    // A lenticel is the core of some cells, thin because its cell is wide and low.
+    const double lenticel = slit.number > 0.55 ? smoothstep(0.24, 0.34, slit.border + 0.1 * grain) : 0.0;
+    const double scar_field = fractal(warped, 5, 6, 6, seed + 60);
+    const double scar = smoothstep(0.36, 0.45, scar_field);
+    const double ridge = scar * (0.5 + 0.5 * fractal(p, 18, 40, 3, seed + 70));
+    const double peel = smoothstep(0.0, 0.05, std::abs(bands - 0.18));
+    BarkPoint point;
+    point.height = clamp01(0.55 + 0.08 * bands + 0.05 * grain - 0.16 * lenticel - 0.12 * scar + 0.45 * ridge -
+                           0.10 * (1.0 - peel));
+    DVec3 colour = glm::mix(DVec3(0.80, 0.775, 0.735), DVec3(0.885, 0.875, 0.85), 0.5 + bands);
+    colour = glm::mix(colour, DVec3(0.74, 0.62, 0.52),
+                      0.45 * smoothstep(0.05, 0.35, fractal(p, 2, 6, 4, seed + 80)));
+    colour *= 1.0 + 0.12 * grain;
+    colour = glm::mix(DVec3(0.58, 0.50, 0.44), colour, 0.45 + 0.55 * peel);
+    colour = glm::mix(colour, DVec3(0.25, 0.21, 0.18), 0.85 * lenticel);
+    colour = glm::mix(colour, DVec3(0.115, 0.10, 0.09) * (0.8 + ridge), 0.92 * scar);
+    point.colour = colour;
+    point.roughness = clamp01(0.66 + 0.24 * scar + 0.10 * lenticel + 0.10 * grain);
+    return point;
+}
+
+}  // namespace
+
+BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t seed) {
+    leaf_preset(preset);  // throws for an unknown name
+    if (size < 16 || size > 4096) throw Error("A texture's size must be between 16 and 4096 pixels.");
+    const BarkColours colours = colours_of(preset);
+    const bool white = preset == "birch";
+    BarkTextures textures{Image(size, size, 3), Image(size, size, 3), Image(size, size, 3)};
+    std::vector<float> height(static_cast<size_t>(size) * size);
+    parallel_for(static_cast<size_t>(size), 16, [&](size_t begin, size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++) {
+            for (int x = 0; x < size; x++) {
+                const DVec2 p((x + 0.5) / size, (y + 0.5) / size);
+                const BarkPoint point = white ? birch(p, seed) : fissured(p, colours, seed);
+                height[static_cast<size_t>(y) * size + x] = static_cast<float>(point.height);
+                for (int c = 0; c < 3; c++)
+                    textures.albedo.at(x, y)[c] = to_byte(point.colour[c]);
+                textures.roughness.at(x, y)[0] = to_byte(mix(0.35, 1.0, smoothstep(0.05, 0.7, point.height)));
+                textures.roughness.at(x, y)[1] = to_byte(point.roughness);
+            }
+        }
+    });
+    const auto at = [&](int x, int y) {
+        return height[static_cast<size_t>(wrap(y, size)) * size + wrap(x, size)];
+    };
+    const double steepness = (white ? 0.010 : 0.028) * size;  // metres of relief over metres of pixel
+    parallel_for(static_cast<size_t>(size), 32, [&](size_t begin, size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++) {
+            for (int x = 0; x < size; x++) {
+                const double dx = 0.5 * (at(x + 1, y) - at(x - 1, y));
+                const double dy = 0.5 * (at(x, y - 1) - at(x, y + 1));  // upwards in the picture
+                const DVec3 normal = glm::normalize(DVec3(-dx * steepness, -dy * steepness, 1.0));
+                for (int c = 0; c < 3; c++)
+                    textures.normal.at(x, y)[c] = to_byte(0.5 + 0.5 * normal[c]);
+            }
+        }
+    });
+    return textures;
+}
+
+}  // namespace treerec
