@@ -1,0 +1,279 @@
+#include "skeleton/axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/parallel.h"
+#include "skeleton/circle_fit.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr int kRounds = 2;            // fit, then fit again across the better axis
+constexpr size_t kWantedPoints = 16;  // per circle; the window grows until it has them
+constexpr size_t kLeastPoints = 8;
+constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
+constexpr double kMostSpread = 0.2;     // median residual over radius
+constexpr double kMostInside = 0.15;    // share of points well inside: a crown, not a stem
+constexpr int kSmoothings = 3;
+
+// One limb while its axis is fitted.
+class LimbFitter {
+  public:
+    LimbFitter(const Limb& limb, const Slices& slices, const std::vector<Vec3>& points,
+               const LocalScale& scale, const AxisOptions& options, uint64_t stream)
+        : slices_(slices), points_(points), options_(options), stream_(stream), count_(limb.slices.size()) {
+        collect(limb);
+        start_.resize(count_);
+        spacing_.assign(count_, 0.0);
+        stations_.resize(count_);
+        for (size_t i = 0; i < count_; i++) {
+            const int32_t slice = limb.slices[i];
+            start_[i] = slices.centre[slice];
+            stations_[i].bridged = slices.bridged[slice] != 0;
+            for (const uint32_t v : slices.points_of(slice))
+                spacing_[i] += scale.spacing[v];
+            if (!slices.points_of(slice).empty())
+                spacing_[i] /= static_cast<double>(slices.points_of(slice).size());
+        }
+        smooth(start_);
+        for (size_t i = 0; i < count_; i++)
+            stations_[i].position = start_[i];
+        measure_arc();
+        soft_radii();
+    }
+
+    std::vector<Station> run() {
+        if (options_.fit_radii)
+            for (int round = 0; round < kRounds; round++) {
+                fit_all();
+                move_axis();
+                measure_arc();
+            }
+        soft_radii();
+        return std::move(stations_);
+    }
+
+  private:
+    // The points of each station, those of absorbed side chains included.
+    void collect(const Limb& limb) {
+        begin_.assign(count_ + 1, 0);
+        for (size_t i = 0; i < count_; i++)
+            begin_[i + 1] += slices_.points_of(limb.slices[i]).size();
+        for (size_t a = 0; a < limb.absorbed.size(); a++)
+            begin_[limb.absorbed_at[a] + 1] += slices_.points_of(limb.absorbed[a]).size();
+        for (size_t i = 0; i < count_; i++)
+            begin_[i + 1] += begin_[i];
+        members_.resize(begin_[count_]);
+        std::vector<size_t> fill(begin_.begin(), begin_.end() - 1);
+        own_.resize(count_);
+        for (size_t i = 0; i < count_; i++) {
+            for (const uint32_t v : slices_.points_of(limb.slices[i]))
+                members_[fill[i]++] = v;
+            own_[i] = fill[i];
+        }
+        for (size_t a = 0; a < limb.absorbed.size(); a++)
+            for (const uint32_t v : slices_.points_of(limb.absorbed[a]))
+                members_[fill[limb.absorbed_at[a]]++] = v;
+    }
+
+    void measure_arc() {
+        arc_.assign(count_, 0.0);
+        for (size_t i = 1; i < count_; i++)
+            arc_[i] = arc_[i - 1] + glm::distance(stations_[i].position, stations_[i - 1].position);
+    }
+
+    // The stations within `reach` of station i along the limb, as [first, last].
+    std::pair<size_t, size_t> window(size_t i, double reach) const {
+        size_t first = i;
+        size_t last = i;
+        while (first > 0 && arc_[i] - arc_[first - 1] <= reach)
+            first--;
+        while (last + 1 < count_ && arc_[last + 1] - arc_[i] <= reach)
+            last++;
+        return {first, last};
+    }
+
+    DVec3 direction(size_t i, double reach) const {
+        auto [first, last] = window(i, reach);
+        if (first == i && i > 0) first = i - 1;
+        if (last == i && i + 1 < count_) last = i + 1;
+        return normalized_or(stations_[last].position - stations_[first].position, DVec3(0, 1, 0));
+    }
+
+    std::optional<CircleFit> fit(size_t i, DVec3& u, DVec3& v) const {
+        const double radius = std::max(stations_[i].radius, 0.5 * spacing_[i]);
+        double reach = std::max(radius, 1.5 * spacing_[i]);
+        auto [first, last] = window(i, reach);
+        for (int grow = 0; grow < 3 && begin_[last + 1] - begin_[first] < kWantedPoints; grow++) {
+            reach *= 1.6;
+            std::tie(first, last) = window(i, reach);
+        }
+        if (begin_[last + 1] - begin_[first] < kLeastPoints) return std::nullopt;
+        const DVec3 along = direction(i, std::max(2.0 * radius, 4.0 * spacing_[i]));
+        u = any_perpendicular(along);
+        v = glm::cross(along, u);
+        std::vector<DVec2> flat;
+        flat.reserve(begin_[last + 1] - begin_[first]);
+        double extent = 0.0;
+        for (size_t m = begin_[first]; m < begin_[last + 1]; m++) {
+            const DVec3 offset = DVec3(points_[members_[m]]) - stations_[i].position;
+            if (std::abs(glm::dot(offset, along)) > 2.0 * reach) continue;
+            flat.emplace_back(glm::dot(offset, u), glm::dot(offset, v));
+            extent += glm::length(flat.back());
+        }
+        if (flat.size() < kLeastPoints) return std::nullopt;
+        extent /= static_cast<double>(flat.size());
+        std::optional<CircleFit> circle =
+            fit_circle(flat, 3.0 * extent, Random(options_.seed, hash_seed(stream_, i)));
+        if (!circle || circle->coverage < kLeastCoverage || circle->inside > kMostInside ||
+            circle->spread > kMostSpread * circle->radius ||
+            glm::length(circle->centre) > 2.0 * circle->radius)
+            return std::nullopt;
+        return circle;
+    }
+
+    void fit_all() {
+        centres_.assign(count_, std::nullopt);
+        for (size_t i = 0; i < count_; i++) {
+            DVec3 u, v;
+            const std::optional<CircleFit> circle = fit(i, u, v);
+            if (!circle) continue;
+            centres_[i] = stations_[i].position + circle->centre.x * u + circle->centre.y * v;
+            stations_[i].radius = circle->radius;
+        }
+        // A circle that none of its neighbours confirms is an accident.
+        for (size_t i = 0; i < count_; i++) {
+            stations_[i].measured = false;
+            if (!centres_[i]) continue;
+            size_t alike = 0;
+            size_t fitted = 0;
+            for (size_t j = i >= 3 ? i - 3 : 0; j <= std::min(i + 3, count_ - 1); j++) {
+                if (j == i || !centres_[j]) continue;
+                fitted++;
+                if (std::abs(stations_[j].radius - stations_[i].radius) < 0.25 * stations_[i].radius) alike++;
+            }
+            stations_[i].measured = fitted >= 1 && 2 * alike >= fitted;
+        }
+        for (size_t i = 0; i < count_; i++)
+            if (!stations_[i].measured) centres_[i].reset();
+    }
+
+    // Puts the measured stations on their centres and takes the others along.
+    void move_axis() {
+        std::vector<DVec3> position(count_);
+        size_t before = count_;
+        size_t after = 0;
+        for (size_t i = 0; i < count_; i++) {
+            if (centres_[i]) before = i;
+            after = std::max(after, i);
+            while (after < count_ && !centres_[after])
+                after++;
+            DVec3 shift(0.0);
+            auto shift_of = [&](size_t j) {
+                // Fades over a few radii beyond the measured stretch.
+                const double fade = 1.0 - std::abs(arc_[i] - arc_[j]) / (8.0 * stations_[j].radius + 1e-9);
+                return std::max(0.0, fade) * (*centres_[j] - start_[j]);
+            };
+            if (before < count_ && after < count_ && before != after) {
+                const double span = arc_[after] - arc_[before];
+                const double t = span > 0.0 ? (arc_[i] - arc_[before]) / span : 0.0;
+                shift = (1.0 - t) * shift_of(before) + t * shift_of(after);
+            } else if (before < count_) {
+                shift = shift_of(before);
+            } else if (after < count_) {
+                shift = shift_of(after);
+            }
+            position[i] = start_[i] + shift;
+        }
+        smooth(position);
+        for (size_t i = 0; i < count_; i++)
+            stations_[i].position = position[i];
+    }
+
+    static void smooth(std::vector<DVec3>& line) {
+        std::vector<DVec3> next = line;
+        for (int round = 0; round < kSmoothings; round++) {
+            for (size_t i = 1; i + 1 < line.size(); i++)
+                next[i] = 0.25 * line[i - 1] + 0.5 * line[i] + 0.25 * line[i + 1];
+            line.swap(next);
+            next = line;
+        }
+    }
+
+    // What the points say where no circle was found: their median distance to the axis.
+    void soft_radii() {
+        std::vector<double> distances;
+        for (size_t i = 0; i < count_; i++) {
+            if (stations_[i].measured) continue;
+            const DVec3 along = direction(i, 3.0 * spacing_[i]);
+            distances.clear();
+            for (size_t m = begin_[i]; m < own_[i]; m++) {
+                const DVec3 offset = DVec3(points_[members_[m]]) - stations_[i].position;
+                distances.push_back(glm::length(offset - glm::dot(offset, along) * along));
+            }
+            stations_[i].radius = 0.0;
+            if (distances.empty()) continue;
+            const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
+            std::nth_element(distances.begin(), middle, distances.end());
+            stations_[i].radius = *middle;
+        }
+    }
+
+    const Slices& slices_;
+    const std::vector<Vec3>& points_;
+    const AxisOptions& options_;
+    uint64_t stream_;
+    size_t count_;
+    std::vector<size_t> begin_;  // members_ of station i: begin_[i] .. begin_[i + 1]
+    std::vector<size_t> own_;    // the part before own_[i] is the station's own slice
+    std::vector<uint32_t> members_;
+    std::vector<DVec3> start_;  // smoothed slice centres
+    std::vector<double> spacing_;
+    std::vector<double> arc_;
+    std::vector<Station> stations_;
+    std::vector<std::optional<DVec3>> centres_;
+};
+
+// Where the limb, continued backwards, comes nearest to leaving the parent's axis straight.
+void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<Station>& parent) {
+    const double radius = parent[limb.attach].radius;
+    size_t ahead = 0;
+    while (ahead + 1 < own.size() && glm::distance(own[ahead].position, own[0].position) < 2.0 * radius)
+        ahead++;
+    if (ahead == 0 || own[0].bridged) return;
+    const DVec3 direction = normalized_or(own[ahead].position - own[0].position, DVec3(0.0));
+    const DVec3 from = parent[limb.attach].position;
+    double best = -2.0;
+    int32_t best_station = limb.attach;
+    for (int32_t j = limb.attach; j >= 0 && glm::distance(parent[j].position, from) <= 3.0 * radius; j--) {
+        const double straight =
+            glm::dot(normalized_or(own[0].position - parent[j].position, DVec3(0.0)), direction);
+        if (straight > best + 1e-6) {
+            best = straight;
+            best_station = j;
+        }
+    }
+    limb.attach = best_station;
+}
+
+}  // namespace
+
+std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slices& slices,
+                                           const std::vector<Vec3>& points, const LocalScale& scale,
+                                           const AxisOptions& options, Progress& progress) {
+    std::vector<std::vector<Station>> axes(limbs.size());
+    parallel_for(limbs.size(), 4, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            progress.check();
+            axes[i] = LimbFitter(limbs[i], slices, points, scale, options, i).run();
+        }
+    });
+    for (Limb& limb : limbs)
+        if (limb.parent >= 0) move_attach(limb, axes[&limb - limbs.data()], axes[limb.parent]);
+    return axes;
+}
+
+}  // namespace treerec

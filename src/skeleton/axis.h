@@ -1,0 +1,33 @@
+// Moves the limbs from the bark into the wood and measures how thick it is.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "progress.h"
+#include "skeleton/limbs.h"
+
+namespace treerec {
+
+// A station of a limb: where the axis passes a slice.
+struct Station {
+    DVec3 position{0.0};
+    double radius = 0.0;    // metres; 0 where no points told anything
+    bool measured = false;  // by a circle fit; otherwise `radius` is the points' median distance to the axis
+    bool bridged = false;   // the way from the station before crosses a gap
+};
+
+struct AxisOptions {
+    bool fit_radii = true;
+    uint64_t seed = 1;
+};
+
+// One list of stations per limb. The axis runs through the centres of circles fitted to the cross-sections
+// wherever the points surround it well enough (AdTree, Du et al. 2019, 2.4, fits cylinders to the trunk
+// alone), in between through the slices' centres moved by as much as their fitted neighbours, smoothed.
+// Also moves each limb's `attach` along its parent to where the limb, continued backwards, meets the axis.
+std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slices& slices,
+                                           const std::vector<Vec3>& points, const LocalScale& scale,
+                                           const AxisOptions& options, Progress& progress);
+
+}  // namespace treerec

@@ -1,0 +1,26 @@
+// A circle through noisy points of a branch's cross-section.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "geometry/random.h"
+#include "geometry/vec.h"
+
+namespace treerec {
+
+struct CircleFit {
+    DVec2 centre{0.0};
+    double radius = 0.0;
+    double spread = 0.0;    // median distance of the points from the circle
+    double coverage = 0.0;  // share of the circle's 16 sectors that hold points on the circle, 0..1
+    double inside = 0.0;    // share of the points that lie well inside the circle
+};
+
+// Robust fit: three-point circles by random sampling, the one with the smallest median residual, refined by
+// Gauss-Newton steps on the geometric residuals with Tukey's biweights (Holland and Welsch 1977). points: 2D,
+// metres. Nothing where there are fewer than 5 points or they lie on a line. Radii above max_radius are not
+// considered.
+std::optional<CircleFit> fit_circle(std::span<const DVec2> points, double max_radius, Random random);
+
+}  // namespace treerec

@@ -1,0 +1,40 @@
+// The Delaunay triangulation of the points as a graph: the only place that knows CGAL.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "progress.h"
+
+namespace treerec {
+
+// An undirected graph in compressed rows: the neighbours of v are neighbour[begin[v]] ..
+// neighbour[begin[v+1]), in ascending order, with the edges' lengths in metres beside them.
+struct PointGraph {
+    std::vector<uint32_t> begin;
+    std::vector<uint32_t> neighbour;
+    std::vector<float> length;
+
+    size_t size() const { return begin.empty() ? 0 : begin.size() - 1; }
+};
+
+// points: distinct, metres. The edges of their 3D Delaunay triangulation (AdTree, Du et al. 2019, 2.2). It
+// connects all points. Throws Error if the points lie on a plane or a line.
+PointGraph delaunay_graph(const std::vector<Vec3>& points, Progress& progress);
+
+// How densely the scan samples the surface around each point.
+struct LocalScale {
+    std::vector<float> spacing;  // metres between neighbouring samples, smoothed over the neighbours
+    std::vector<float> reach;    // metres; an edge longer than this crosses a gap
+};
+
+LocalScale local_scale(const PointGraph& graph, double thinning_spacing);
+
+// The gap length of an edge between a and b.
+inline float edge_reach(const LocalScale& scale, uint32_t a, uint32_t b) {
+    return 0.5f * (scale.reach[a] + scale.reach[b]);
+}
+
+}  // namespace treerec

@@ -1,0 +1,189 @@
+#include "skeleton/limbs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace treerec {
+
+namespace {
+
+constexpr double kSurfaceFactor = 1.3;  // times the radius: still the parent's own surface
+constexpr double kSparseBranch = 3.0;   // point spacings that a branch must at least reach out
+constexpr int kSmoothWindow = 2;        // stations to each side
+
+// First figures for each slice, before any fit.
+struct SliceShape {
+    std::vector<double> radius;   // mean distance of the points from their centre
+    std::vector<double> spacing;  // mean local spacing of the points
+    std::vector<double> longest;  // metres to the farthest tip above
+    std::vector<int32_t> first_child;
+    std::vector<int32_t> next_sibling;
+};
+
+SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale) {
+    const size_t count = slices.size();
+    SliceShape shape;
+    shape.radius.assign(count, 0.0);
+    shape.spacing.assign(count, 0.0);
+    shape.longest.assign(count, 0.0);
+    shape.first_child.assign(count, -1);
+    shape.next_sibling.assign(count, -1);
+    for (size_t s = count; s-- > 1;) {
+        double sum = 0.0;
+        double spacing = 0.0;
+        for (const uint32_t v : slices.points_of(s)) {
+            sum += glm::distance(DVec3(points[v]), slices.centre[s]);
+            spacing += scale.spacing[v];
+        }
+        const double members = static_cast<double>(slices.points_of(s).size());
+        shape.radius[s] = sum / members;
+        shape.spacing[s] = spacing / members;
+        const size_t p = static_cast<size_t>(slices.parent[s]);
+        shape.longest[p] =
+            std::max(shape.longest[p], shape.longest[s] + glm::distance(slices.centre[s], slices.centre[p]));
+        shape.next_sibling[s] = shape.first_child[p];
+        shape.first_child[p] = static_cast<int32_t>(s);
+    }
+    if (shape.first_child[0] >= 0) shape.spacing[0] = shape.spacing[shape.first_child[0]];
+    return shape;
+}
+
+// The axis of a limb, smoothed, with smoothed radii: what side chains are compared with.
+struct LimbAxis {
+    std::vector<DVec3> position;
+    std::vector<double> radius;
+};
+
+LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& shape) {
+    const int count = static_cast<int>(limb.slices.size());
+    LimbAxis axis;
+    axis.position.resize(limb.slices.size());
+    axis.radius.resize(limb.slices.size());
+    for (int i = 0; i < count; i++) {
+        DVec3 sum(0.0);
+        double radius = 0.0;
+        double weight = 0.0;
+        const int reach = std::min({kSmoothWindow, i, count - 1 - i});
+        for (int j = i - reach; j <= i + reach; j++) {
+            sum += slices.centre[limb.slices[j]];
+            weight += 1.0;
+        }
+        double members = 0.0;
+        for (int j = std::max(0, i - kSmoothWindow); j <= std::min(count - 1, i + kSmoothWindow); j++) {
+            const double n = static_cast<double>(slices.points_of(limb.slices[j]).size());
+            radius += n * shape.radius[limb.slices[j]];
+            members += n;
+        }
+        axis.position[i] = sum / weight;
+        axis.radius[i] = members > 0.0 ? radius / members : 0.0;
+    }
+    return axis;
+}
+
+// Follows the axis from `station` to the one nearest to p. The distance has one valley near the start.
+int nearest_station(const LimbAxis& axis, int station, const DVec3& p) {
+    const int last = static_cast<int>(axis.position.size()) - 1;
+    auto distance = [&](int i) { return glm::distance(axis.position[i], p); };
+    double best = distance(station);
+    for (int direction : {1, -1}) {
+        for (int i = station + direction, worse = 0; i >= 0 && i <= last && worse < 3; i += direction) {
+            const double d = distance(i);
+            worse = d < best ? 0 : worse + 1;
+            if (d < best) {
+                best = d;
+                station = i;
+            }
+        }
+    }
+    return station;
+}
+
+struct Candidate {
+    int32_t slice;
+    int32_t limb;
+    int32_t station;
+};
+
+}  // namespace
+
+std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
+                             const LimbOptions& options) {
+    const SliceShape shape = measure_slices(slices, points, scale);
+    auto main_child = [&](int32_t slice) {
+        int32_t best = -1;
+        double best_length = -1.0;
+        for (int32_t c = shape.first_child[slice]; c >= 0; c = shape.next_sibling[c]) {
+            const double length = shape.longest[c] + glm::distance(slices.centre[c], slices.centre[slice]);
+            if (length > best_length) {
+                best_length = length;
+                best = c;
+            }
+        }
+        return best;
+    };
+    auto chain_from = [&](int32_t slice) {
+        std::vector<int32_t> chain;
+        for (; slice >= 0; slice = main_child(slice))
+            chain.push_back(slice);
+        return chain;
+    };
+
+    std::vector<Limb> limbs;
+    std::deque<Candidate> waiting;
+    auto side_chains = [&](const std::vector<int32_t>& chain, int32_t limb,
+                           const std::vector<int32_t>& stations) {
+        for (size_t i = 0; i < chain.size(); i++) {
+            const int32_t next = i + 1 < chain.size() ? chain[i + 1] : -1;
+            for (int32_t c = shape.first_child[chain[i]]; c >= 0; c = shape.next_sibling[c])
+                if (c != next) waiting.push_back({c, limb, stations[i]});
+        }
+    };
+    std::vector<LimbAxis> axes;
+    std::vector<int32_t> stations;
+    auto add_limb = [&](Limb limb) {
+        axes.push_back(smooth_axis(limb, slices, shape));
+        stations.resize(limb.slices.size());
+        for (size_t i = 0; i < stations.size(); i++)
+            stations[i] = static_cast<int32_t>(i);
+        limbs.push_back(std::move(limb));
+        side_chains(limbs.back().slices, static_cast<int32_t>(limbs.size()) - 1, stations);
+    };
+    Limb first;
+    first.slices = chain_from(0);
+    add_limb(std::move(first));
+
+    while (!waiting.empty()) {
+        const Candidate candidate = waiting.front();
+        waiting.pop_front();
+        const std::vector<int32_t> chain = chain_from(candidate.slice);
+        const LimbAxis& axis = axes[candidate.limb];
+        int station = candidate.station;
+        double escape = 0.0;
+        double spacing = 0.0;
+        stations.clear();
+        for (const int32_t slice : chain) {
+            station = nearest_station(axis, station, slices.centre[slice]);
+            stations.push_back(station);
+            escape = std::max(escape, glm::distance(slices.centre[slice], axis.position[station]) -
+                                          kSurfaceFactor * axis.radius[station]);
+            spacing += shape.spacing[slice];
+        }
+        spacing /= static_cast<double>(chain.size());
+        if (escape >= std::max(options.minimum_branch, kSparseBranch * spacing)) {
+            Limb limb;
+            limb.parent = candidate.limb;
+            limb.attach = candidate.station;
+            limb.slices = chain;
+            add_limb(std::move(limb));
+            continue;
+        }
+        Limb& parent = limbs[candidate.limb];
+        parent.absorbed.insert(parent.absorbed.end(), chain.begin(), chain.end());
+        parent.absorbed_at.insert(parent.absorbed_at.end(), stations.begin(), stations.end());
+        side_chains(chain, candidate.limb, stations);
+    }
+    return limbs;
+}
+
+}  // namespace treerec

@@ -1,0 +1,32 @@
+// The slices' tree as limbs - chains from a fork to a tip - without those that are no branches.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "skeleton/slices.h"
+
+namespace treerec {
+
+// One chain of slices. A limb grows out of station `attach` of its parent limb.
+struct Limb {
+    int32_t parent = -1;               // index of the parent limb; -1 for the first
+    int32_t attach = 0;                // station (index into the parent's `slices`)
+    std::vector<int32_t> slices;       // from the base to the tip
+    std::vector<int32_t> absorbed;     // slices of side chains that are part of this limb's own surface
+    std::vector<int32_t> absorbed_at;  // and the station that each of them lies at
+};
+
+struct LimbOptions {
+    double minimum_branch = 0.05;  // metres that a limb must reach out of its parent's surface
+};
+
+// Splits the tree of slices at its forks; the child with the longest way to a tip continues the limb. A side
+// chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of its parent's
+// surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise (AdTree, Du et
+// al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What grows on an
+// absorbed chain is tried again as a side limb of the parent. Parents come before children.
+std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
+                             const LimbOptions& options);
+
+}  // namespace treerec

@@ -1,0 +1,30 @@
+// The shortest-path tree of the point graph.
+#pragma once
+
+#include <vector>
+
+#include "skeleton/delaunay_graph.h"
+
+namespace treerec {
+
+// Where the paths start.
+struct PathSeed {
+    uint32_t vertex = 0;
+    double distance = 0.0;  // metres that the vertex already is away from the base
+};
+
+struct PathTree {
+    std::vector<int32_t> parent;  // by vertex; -1 at a seed
+    std::vector<float> step;      // length of the edge to the parent, metres; 0 at a seed
+    std::vector<float> along;     // metres along the path from the base
+    std::vector<uint32_t> order;  // the vertices, parents before children
+};
+
+// Dijkstra's algorithm from all seeds at once. An edge costs its length up to the local reach, and
+// length * (length / reach)^2 beyond it, so that a path takes the wood rather than a gap (AdTree, Du et al.
+// 2019, 2.2, finds the same with plain lengths on complete scans). Ties are broken by vertex number.
+// seeds: at least one.
+PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
+                        Progress& progress);
+
+}  // namespace treerec

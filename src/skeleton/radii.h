@@ -1,0 +1,17 @@
+// Radii that never grow outward, measured where possible and inferred elsewhere.
+#pragma once
+
+#include <vector>
+
+#include "skeleton/axis.h"
+
+namespace treerec {
+
+// Replaces every station's radius, in metres. Along a limb the measured radii (and, with little weight, the
+// unmeasured stations' own estimates) go through a running median and an isotonic regression (pool adjacent
+// violators, Ayer et al. 1955), so that they never grow outward. Where nothing was measured, the radius
+// follows allometry: no thicker than the distance to the tip allows (McMahon and Kronauer 1976: thickness
+// and length of branches are tied), and no limb is thicker than its parent where it leaves it.
+void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs);
+
+}  // namespace treerec

@@ -1,0 +1,118 @@
+#include <chrono>
+
+#include "skeleton/assemble.h"
+#include "skeleton/axis.h"
+#include "skeleton/delaunay_graph.h"
+#include "skeleton/limbs.h"
+#include "skeleton/paths.h"
+#include "skeleton/radii.h"
+#include "skeleton/root.h"
+#include "skeleton/skeleton.h"
+#include "skeleton/slices.h"
+#include "skeleton/thin.h"
+#include "tree/trunk.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kLeastPoints = 10;
+constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
+constexpr double kLeastBranch = 0.05;   // metres, likewise
+constexpr double kRawRadius = 0.002;    // metres
+
+class StageClock {
+  public:
+    explicit StageClock(std::vector<SkeletonStage>& stages) : stages_(stages) {}
+    void stop(const char* name, size_t count) {
+        const Clock::time_point now = Clock::now();
+        stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
+        start_ = now;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    std::vector<SkeletonStage>& stages_;
+    Clock::time_point start_ = Clock::now();
+};
+
+// The shortest-path tree itself, for pictures.
+Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
+    std::vector<NodeId> parents(points.size() + 1);
+    std::vector<DVec3> positions(points.size() + 1);
+    const std::vector<double> radii(points.size() + 1, kRawRadius);
+    const std::vector<uint8_t> flags(points.size() + 1, 0);
+    parents[0] = kNoNode;
+    positions[0] = root;
+    for (size_t v = 0; v < points.size(); v++) {
+        parents[v + 1] = paths.parent[v] + 1;
+        positions[v + 1] = DVec3(points[v]);
+    }
+    return Tree::from_arrays(parents, positions, radii, flags);
+}
+
+}  // namespace
+
+SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options, Progress* listener) {
+    SubProgress progress(listener, 0.0, 1.0);
+    SkeletonResult result;
+    StageClock clock(result.stages);
+
+    progress.update(0.0, "Thinning");
+    result.spacing = options.spacing > 0.0 ? options.spacing : automatic_spacing(cloud.positions);
+    const std::vector<Vec3> points = thin_points(cloud.positions, result.spacing, progress);
+    if (points.size() < kLeastPoints)
+        throw Error(
+            "The cloud has only " + std::to_string(points.size()) +
+            " distinct points, and a tree needs at least 10. Check that the file is complete and that the "
+            "cleaning steps did not take too much.");
+    clock.stop("Thinning", points.size());
+
+    SubProgress triangulating(listener, 0.1, 0.55);
+    const PointGraph graph = delaunay_graph(points, triangulating);
+    const LocalScale scale = local_scale(graph, result.spacing);
+    clock.stop("Triangulation", graph.neighbour.size() / 2);
+
+    progress.update(0.55, "Shortest paths");
+    progress.check();
+    const RootGuess root = find_root(points, graph, scale);
+    progress.check();
+    const PathTree paths = shortest_paths(graph, scale, root.seeds, progress);
+    result.raw = raw_tree(points, paths, root.position);
+    clock.stop("Shortest paths", points.size());
+
+    progress.update(0.7, "Branches");
+    progress.check();
+    const Slices slices = cut_slices(points, graph, scale, paths, root.position);
+    progress.check();
+    LimbOptions limb_options;
+    double extent = 0.0;
+    for (const DVec3& centre : slices.centre)
+        extent = std::max(extent, glm::distance(centre, root.position));
+    limb_options.minimum_branch =
+        options.minimum_branch > 0.0 ? options.minimum_branch : std::max(kLeastBranch, kBranchShare * extent);
+    std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
+    clock.stop("Branches", limbs.size());
+
+    progress.update(0.8, "Radii");
+    AxisOptions axis_options;
+    axis_options.fit_radii = options.fit_radii;
+    axis_options.seed = options.seed;
+    std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
+    infer_radii(axes, limbs);
+    clock.stop("Radii", limbs.size());
+
+    progress.update(0.95, "Simplification");
+    result.tree = assemble_tree(axes, limbs, options.simplify_distance);
+    mark_trunk(result.tree);
+    result.tree.set_frame(cloud.frame);
+    result.raw.set_frame(cloud.frame);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    result.tree.rebase(base);
+    result.raw.rebase(base);
+    clock.stop("Simplification", result.tree.size());
+    progress.update(1.0, "Skeleton");
+    return result;
+}
+
+}  // namespace treerec

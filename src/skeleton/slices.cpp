@@ -1,0 +1,118 @@
+#include "skeleton/slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace treerec {
+
+namespace {
+
+constexpr double kThickness = 2.5;  // slice thickness in local point spacings
+
+uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
+    while (leader[v] != v)
+        v = leader[v] = leader[leader[v]];
+    return v;
+}
+
+// The level of each vertex: the path length from the root in units of the local slice thickness. An edge
+// across a gap always ends on a new level.
+std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& scale, const PathTree& paths) {
+    std::vector<double> measure(graph.size(), 0.0);
+    std::vector<int32_t> level(graph.size(), 0);
+    for (const uint32_t v : paths.order) {
+        const int32_t p = paths.parent[v];
+        if (p < 0) {
+            measure[v] = paths.along[v] / (kThickness * scale.spacing[v]);
+        } else {
+            const uint32_t from = static_cast<uint32_t>(p);
+            const double length = paths.step[v];
+            const double thickness = kThickness * 0.5 * (scale.spacing[v] + scale.spacing[from]);
+            measure[v] = measure[from] + length / thickness;
+            if (paths.step[v] > edge_reach(scale, v, from))
+                measure[v] = std::max(measure[v], std::floor(measure[from]) + 1.0);
+        }
+        level[v] = static_cast<int32_t>(std::min(measure[v], 1e9));
+    }
+    return level;
+}
+
+}  // namespace
+
+Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+                  const PathTree& paths, const DVec3& root) {
+    const size_t count = graph.size();
+    const std::vector<int32_t> level = vertex_levels(graph, scale, paths);
+    std::vector<uint32_t> leader(count);
+    std::iota(leader.begin(), leader.end(), 0u);
+    auto join = [&](uint32_t v, uint32_t n) {
+        const uint32_t a = find(leader, v);
+        const uint32_t b = find(leader, n);
+        leader[std::max(a, b)] = std::min(a, b);
+    };
+    for (uint32_t v = 0; v < count; v++)
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+            const uint32_t n = graph.neighbour[e];
+            if (n < v && level[n] == level[v] && graph.length[e] <= edge_reach(scale, v, n)) join(v, n);
+        }
+
+    // Number the groups by level, then by their smallest vertex. Slice 0 is the root itself and has no
+    // points.
+    std::vector<uint32_t> leaders;
+    for (uint32_t v = 0; v < count; v++)
+        if (find(leader, v) == v) leaders.push_back(v);
+    std::stable_sort(leaders.begin(), leaders.end(),
+                     [&](uint32_t a, uint32_t b) { return level[a] < level[b]; });
+    std::vector<uint32_t> slice_of(count);
+    for (uint32_t s = 0; s < leaders.size(); s++)
+        slice_of[leaders[s]] = s + 1;
+    for (uint32_t v = 0; v < count; v++)
+        slice_of[v] = slice_of[find(leader, v)];
+
+    Slices slices;
+    const size_t slice_count = leaders.size() + 1;
+    slices.begin.assign(slice_count + 1, 0);
+    for (uint32_t v = 0; v < count; v++)
+        slices.begin[slice_of[v] + 1]++;
+    for (size_t s = 0; s < slice_count; s++)
+        slices.begin[s + 1] += slices.begin[s];
+    slices.vertices.resize(count);
+    std::vector<uint32_t> fill(slices.begin.begin(), slices.begin.end() - 1);
+    for (uint32_t v = 0; v < count; v++)
+        slices.vertices[fill[slice_of[v]]++] = v;
+
+    slices.parent.assign(slice_count, 0);
+    slices.parent[0] = -1;
+    slices.bridged.assign(slice_count, 0);
+    slices.centre.assign(slice_count, root);
+    std::vector<uint32_t> votes;
+    for (size_t s = 1; s < slice_count; s++) {
+        DVec3 sum(0.0);
+        votes.clear();
+        bool linked = false;
+        for (const uint32_t v : slices.points_of(s)) {
+            sum += DVec3(points[v]);
+            const int32_t p = paths.parent[v];
+            const uint32_t from = p < 0 ? 0 : slice_of[p];
+            if (from == s) continue;
+            votes.push_back(from);
+            linked = linked || p < 0 || paths.step[v] <= edge_reach(scale, v, static_cast<uint32_t>(p));
+        }
+        slices.centre[s] = sum / static_cast<double>(slices.points_of(s).size());
+        std::sort(votes.begin(), votes.end());
+        size_t best_count = 0;
+        for (size_t i = 0, j = 0; i < votes.size(); i = j) {
+            while (j < votes.size() && votes[j] == votes[i])
+                j++;
+            if (j - i > best_count) {
+                best_count = j - i;
+                slices.parent[s] = static_cast<int32_t>(votes[i]);
+            }
+        }
+        slices.bridged[s] = !linked;
+    }
+    return slices;
+}
+
+}  // namespace treerec
