@@ -1,0 +1,295 @@
+#include "exchange/tree_files.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "error.h"
+#include "exchange/file_bytes.h"
+#include "exchange/skeleton_table.h"
+#include "tree/branches.h"
+
+namespace treerec {
+
+namespace {
+
+std::vector<std::string> split_fields(std::string_view line) {
+    std::vector<std::string> fields;
+    std::string field;
+    for (char c : line) {
+        if (c == ',' || c == ' ' || c == '\t' || c == ';') {
+            if (!field.empty()) fields.push_back(field);
+            field.clear();
+        } else if (c != '"' && c != '\r') {
+            field += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        }
+    }
+    if (!field.empty()) fields.push_back(field);
+    return fields;
+}
+
+int find_field(const std::vector<std::string>& fields, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+        const auto at = std::find(fields.begin(), fields.end(), name);
+        if (at != fields.end()) return static_cast<int>(at - fields.begin());
+    }
+    return -1;
+}
+
+// Where the values of one node lie in its tuple; -1 where they are missing.
+struct Columns {
+    int x = -1, y = -1, z = -1, radius = -1, parent = -1, flags = -1, id = -1, count = 0;
+
+    explicit Columns(const std::vector<std::string>& fields)
+        : x(find_field(fields, {"x"})),
+          y(find_field(fields, {"y"})),
+          z(find_field(fields, {"z"})),
+          radius(find_field(fields, {"radius"})),
+          parent(find_field(fields, {"parent_id", "parent"})),
+          flags(find_field(fields, {"flags"})),
+          id(find_field(fields, {"id", "node", "node_id", "index"})),
+          count(static_cast<int>(fields.size())) {}
+    bool has_node() const { return x >= 0 && y >= 0 && z >= 0 && radius >= 0; }
+};
+
+struct TreefileHeader {
+    size_t tree_fields = 0;  // values before the root's
+    Columns root;
+    Columns branch;
+};
+
+// The line of field names, or nothing if it is none.
+std::optional<TreefileHeader> parse_treefile_header(std::string_view line) {
+    const std::vector<std::string> fields = split_fields(line);
+    const auto first = std::find(fields.begin(), fields.end(), "x");
+    if (first == fields.end()) return std::nullopt;
+    const auto second = std::find(first + 1, fields.end(), "x");
+    TreefileHeader header{
+        static_cast<size_t>(first - fields.begin()), Columns(std::vector<std::string>(first, second)),
+        Columns(std::vector<std::string>(second == fields.end() ? first : second, fields.end()))};
+    if (!header.root.has_node() || !header.branch.has_node()) return std::nullopt;
+    return header;
+}
+
+uint8_t flags_from(double value) {
+    return value >= 0.0 && value <= 255.0 ? static_cast<uint8_t>(value) : uint8_t{0};
+}
+
+NodeId parent_from(double value) {
+    return value >= -1.0 && value < 16777216.0 ? static_cast<NodeId>(value) : NodeId{-2};
+}
+
+void append_node(const double* values, const Columns& columns, bool is_root, SkeletonTable& table) {
+    table.positions.emplace_back(values[columns.x], values[columns.y], values[columns.z]);
+    table.radii.push_back(values[columns.radius]);
+    table.parents.push_back(columns.parent >= 0 ? parent_from(values[columns.parent])
+                            : is_root           ? kNoNode
+                                                : NodeId{-2});
+    table.flags.push_back(columns.flags >= 0 ? flags_from(values[columns.flags]) : uint8_t{0});
+}
+
+SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, const TreefileHeader& header,
+                                  const std::string& path) {
+    const std::string where = "'" + path + "', line " + std::to_string(line_number) + ": ";
+    std::vector<double> values;
+    values.reserve(static_cast<size_t>(std::count(line.begin(), line.end(), ',')) + 1);
+    for (size_t at = 0; at < line.size();) {
+        const size_t end = std::min(line.find(',', at), line.size());
+        const std::string_view word = line.substr(at, end - at);
+        at = end + 1;
+        if (word.find_first_not_of(" \t") == std::string_view::npos) continue;
+        const std::optional<double> value = parse_number(word);
+        if (!value) throw Error(where + "'" + std::string(word.substr(0, 40)) + "' is no number.");
+        values.push_back(*value);
+    }
+    const size_t root_end = header.tree_fields + static_cast<size_t>(header.root.count);
+    if (values.size() < root_end || (values.size() - root_end) % static_cast<size_t>(header.branch.count))
+        throw Error(where + "its " + std::to_string(values.size()) +
+                    " values do not fill whole nodes; is the file cut off?");
+    SkeletonTable table;
+    append_node(values.data() + header.tree_fields, header.root, true, table);
+    for (size_t at = root_end; at < values.size(); at += static_cast<size_t>(header.branch.count))
+        append_node(values.data() + at, header.branch, false, table);
+    return table;
+}
+
+}  // namespace
+
+void write_treefile(const std::string& path, const Tree& tree) {
+    const SkeletonTable table = table_of(tree);
+    std::string text = "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) +
+                       "\nx,y,z,radius,parent_id,flags\n";
+    text.reserve(text.size() + 90 * table.positions.size());
+    for (size_t i = 0; i < table.positions.size(); i++) {
+        if (i > 0) text += ", ";
+        for (int axis = 0; axis < 3; axis++) {
+            append_number(text, table.positions[i][axis]);
+            text += ',';
+        }
+        append_number(text, table.radii[i]);
+        text += ',';
+        append_number(text, int64_t{table.parents[i]});
+        text += ',';
+        append_number(text, int64_t{table.flags[i]});
+    }
+    text += '\n';
+    write_file_bytes(path, text);
+}
+
+Tree read_treefile(const std::string& path, UpAxis up) {
+    const std::string bytes = read_file_bytes(path);
+    std::string_view rest = bytes;
+    FileStamp stamp{up, 1.0};
+    std::optional<TreefileHeader> header;
+    SkeletonTable largest;
+    size_t line_number = 0;
+    while (const std::optional<std::string_view> line = next_line(rest)) {
+        line_number++;
+        if (line->find_first_not_of(" \t") == std::string_view::npos) continue;
+        if (line->front() == '#') {
+            read_stamp(*line, stamp, path);
+            continue;
+        }
+        if (!header) {
+            header = parse_treefile_header(*line);
+            if (!header)
+                throw Error("'" + path + "' is no tree file: line " + std::to_string(line_number) +
+                            " does not name the fields x,y,z,radius,parent_id.");
+            continue;
+        }
+        SkeletonTable table = parse_treefile_line(*line, line_number, *header, path);
+        if (table.positions.size() > largest.positions.size()) largest = std::move(table);
+    }
+    if (!header) throw Error("'" + path + "' is no tree file: it names no fields x,y,z,radius,parent_id.");
+    if (largest.positions.empty()) throw Error("'" + path + "' holds no tree.");
+    return tree_of(largest, stamp, path);
+}
+
+void write_qsm_csv(const std::string& path, const Tree& tree) {
+    std::string text =
+        "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent_1based,branch,order,measured\n";
+    text.reserve(text.size() + 160 * tree.size());
+    const BranchList list = list_branches(tree);
+    const ScanFrame& frame = tree.frame();
+    std::vector<int32_t> cylinder(static_cast<size_t>(tree.id_end()), 0);
+    int32_t count = 0;
+    for (size_t b = 0; b < list.branches.size(); b++) {
+        for (NodeId id : list.nodes_of(list.branches[b])) {
+            const Node& node = tree.node(id);
+            if (node.parent == kNoNode) continue;
+            const DVec3 start = frame.to_scan(tree.node(node.parent).position);
+            const DVec3 along = frame.to_scan(node.position) - start;
+            const double length = glm::length(along);
+            const DVec3 axis = normalized_or(along, frame.turn_to_scan(DVec3(0.0, 1.0, 0.0)));
+            cylinder[id] = ++count;
+            for (double value : {frame.length_to_scan(node.radius), length, start.x, start.y, start.z, axis.x,
+                                 axis.y, axis.z}) {
+                append_number(text, value);
+                text += ',';
+            }
+            append_number(text, int64_t{cylinder[node.parent]});
+            text += ',';
+            append_number(text, static_cast<int64_t>(b + 1));
+            text += ',';
+            append_number(text, int64_t{list.branches[b].order});
+            text += node.is_measured() ? ",1\n" : ",0\n";
+        }
+    }
+    write_file_bytes(path, text);
+}
+
+Tree read_node_csv(const std::string& path, UpAxis up) {
+    const std::string bytes = read_file_bytes(path);
+    std::string_view rest = bytes;
+    const std::optional<std::string_view> head = next_line(rest);
+    const Columns columns(head ? split_fields(*head) : std::vector<std::string>());
+    if (!columns.has_node() || columns.parent < 0)
+        throw Error("'" + path +
+                    "' is no table of nodes: its first line does not name x, y, z, radius and parent.");
+    SkeletonTable table;
+    std::vector<double> parent_ids;
+    std::unordered_map<double, NodeId> row_of;  // looked up only, never walked
+    std::vector<double> values;
+    size_t line_number = 1;
+    while (const std::optional<std::string_view> line = next_line(rest)) {
+        line_number++;
+        if (line->find_first_not_of(" \t") == std::string_view::npos) continue;
+        values.clear();
+        for (const std::string& field : split_fields(*line)) {
+            const std::optional<double> value = parse_number(field);
+            if (!value)
+                throw Error("'" + path + "', line " + std::to_string(line_number) + ": '" +
+                            field.substr(0, 40) + "' is no number.");
+            values.push_back(*value);
+        }
+        if (values.size() != static_cast<size_t>(columns.count))
+            throw Error("'" + path + "', line " + std::to_string(line_number) + ": " +
+                        std::to_string(values.size()) + " values where the first line names " +
+                        std::to_string(columns.count) + ".");
+        const NodeId row = static_cast<NodeId>(table.positions.size());
+        append_node(values.data(), columns, false, table);
+        parent_ids.push_back(values[columns.parent]);
+        if (!row_of.emplace(columns.id >= 0 ? values[columns.id] : row, row).second)
+            throw Error("'" + path + "', line " + std::to_string(line_number) +
+                        ": this id was there before.");
+    }
+    if (table.positions.empty()) throw Error("'" + path + "' holds no nodes.");
+    for (size_t i = 0; i < parent_ids.size(); i++) {
+        const auto parent = row_of.find(parent_ids[i]);
+        table.parents[i] = parent == row_of.end() ? kNoNode : parent->second;
+    }
+    return tree_of(table, {up, 1.0}, path);
+}
+
+namespace {
+
+enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv };
+
+// From the file's first 4 kB.
+SkeletonFormat sniff(const std::string& path) {
+    const std::string bytes = read_file_head(path, 4096);
+    std::string_view rest = bytes;
+    if (rest.starts_with("ply")) {
+        bool edges = false;
+        bool radius = false;
+        while (const std::optional<std::string_view> line = next_line(rest)) {
+            edges = edges || line->starts_with("element edge");
+            radius =
+                radius || (line->starts_with("property") && line->find(" radius") != std::string_view::npos);
+        }
+        return edges && radius ? SkeletonFormat::kPly : SkeletonFormat::kNone;
+    }
+    while (const std::optional<std::string_view> line = next_line(rest)) {
+        if (line->empty() || line->front() == '#') continue;
+        const std::vector<std::string> fields = split_fields(*line);
+        const Columns columns(fields);
+        if (!columns.has_node() || columns.parent < 0) return SkeletonFormat::kNone;
+        // A node table names its parent column plainly or has ids; a tree file has neither.
+        return columns.id >= 0 || find_field(fields, {"parent"}) >= 0 ? SkeletonFormat::kNodeCsv
+                                                                      : SkeletonFormat::kTreefile;
+    }
+    return SkeletonFormat::kNone;
+}
+
+}  // namespace
+
+bool is_skeleton_file(const std::string& path) {
+    return sniff(path) != SkeletonFormat::kNone;
+}
+
+Tree read_skeleton(const std::string& path, UpAxis up) {
+    switch (sniff(path)) {
+        case SkeletonFormat::kTreefile:
+            return read_treefile(path, up);
+        case SkeletonFormat::kPly:
+            return read_skeleton_ply(path, up);
+        case SkeletonFormat::kNodeCsv:
+            return read_node_csv(path, up);
+        case SkeletonFormat::kNone:
+            break;
+    }
+    throw Error(
+        "'" + path +
+        "' is no skeleton that can be read: a tree file (.txt), a skeleton PLY or a table of nodes (.csv).");
+}
+
+}  // namespace treerec

@@ -1,0 +1,198 @@
+#include "fidelity/score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "error.h"
+#include "fidelity/segment_tree.h"
+#include "geometry/parallel.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kSampleStep = 0.001;     // metres
+constexpr double kSame = 1e-6;            // metres: what rounding may part
+constexpr double kLongestWood = 20000.0;  // metres
+constexpr double kExplained = 0.02;       // metres
+constexpr double kMatch = 0.01;           // metres
+constexpr size_t kChunk = 4096;
+
+// The tree's segments in the tree space of another frame, in its metres.
+std::vector<WoodSegment> segments_in(const Tree& tree, const ScanFrame& frame) {
+    std::vector<WoodSegment> segments = wood_segments(tree);
+    if (segments.empty()) throw Error("The tree has no wood: it needs at least two nodes.");
+    if (tree.frame() == frame) return segments;
+    const double scale = frame.metres_per_unit / tree.frame().metres_per_unit;
+    for (WoodSegment& segment : segments) {
+        segment.from = frame.to_tree(tree.frame().to_scan(segment.from));
+        segment.to = frame.to_tree(tree.frame().to_scan(segment.to));
+        segment.radius *= scale;
+    }
+    return segments;
+}
+
+double total_length(const std::vector<WoodSegment>& segments) {
+    double sum = 0.0;
+    for (const WoodSegment& segment : segments)
+        sum += glm::distance(segment.from, segment.to);
+    return sum;
+}
+
+double total_volume(const std::vector<WoodSegment>& segments) {
+    double sum = 0.0;
+    for (const WoodSegment& segment : segments)
+        sum += kPi * segment.radius * segment.radius * glm::distance(segment.from, segment.to);
+    return sum;
+}
+
+// Reorders values.
+double quantile(std::vector<double>& values, double share) {
+    if (values.empty()) return 0.0;
+    const size_t at =
+        std::min(values.size() - 1, static_cast<size_t>(share * static_cast<double>(values.size())));
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+    return values[at];
+}
+
+struct Sample {
+    double distance;      // to the other skeleton's axis
+    double radius;        // of the sampled segment
+    double other_radius;  // of the segment it met
+};
+
+// Samples every segment at about `kSampleStep`, in the middle of equal parts, against the other's axes.
+std::vector<Sample> sample_against(const std::vector<WoodSegment>& segments, const SegmentTree& other,
+                                   Progress* progress, const char* stage) {
+    std::vector<size_t> first(segments.size() + 1, 0);
+    for (size_t i = 0; i < segments.size(); i++) {
+        const double parts = std::ceil(glm::distance(segments[i].from, segments[i].to) / kSampleStep);
+        first[i + 1] = first[i] + static_cast<size_t>(std::max(1.0, parts));
+    }
+    std::vector<Sample> samples(first.back());
+    if (progress) progress->update(0.0, stage);
+    parallel_for(segments.size(), 64, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        int32_t hint = -1;
+        for (size_t i = begin; i < end; i++) {
+            const size_t parts = first[i + 1] - first[i];
+            for (size_t k = 0; k < parts; k++) {
+                const double t = (static_cast<double>(k) + 0.5) / static_cast<double>(parts);
+                const DVec3 p = glm::mix(segments[i].from, segments[i].to, t);
+                const SegmentTree::Hit hit = other.nearest_axis(p, hint);
+                hint = hit.segment;
+                samples[first[i] + k] = {hit.distance, segments[i].radius, other.segment(hit.segment).radius};
+            }
+        }
+    });
+    return samples;
+}
+
+double mean_distance(const std::vector<Sample>& samples) {
+    double sum = 0.0;
+    for (const Sample& sample : samples)
+        sum += sample.distance;
+    return sum / static_cast<double>(samples.size());
+}
+
+template <typename Limit>
+double share_within(const std::vector<Sample>& samples, Limit limit) {
+    size_t within = 0;
+    for (const Sample& sample : samples)
+        within += sample.distance <= limit(sample) + kSame;
+    return static_cast<double>(within) / static_cast<double>(samples.size());
+}
+
+Agreement agreement(double threshold, double precision, double recall) {
+    const double sum = precision + recall;
+    return {threshold, precision, recall, sum > 0.0 ? 2.0 * precision * recall / sum : 0.0};
+}
+
+}  // namespace
+
+ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Progress* progress) {
+    if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to score against.");
+    const SegmentTree wood(segments_in(tree, tree.frame()));
+    const bool same_frame = tree.frame() == cloud.frame;
+    std::vector<double> errors(cloud.size());
+    if (progress) progress->update(0.0, "Score");
+    parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        for (size_t i = begin; i < end; i++)
+            errors[i] = wood.surface_distance(
+                same_frame ? DVec3(cloud.positions[i])
+                           : tree.frame().to_tree(cloud.frame.to_scan(DVec3(cloud.positions[i]))));
+    });
+    // Sorted, so that the sum does not depend on the order of the points.
+    std::sort(errors.begin(), errors.end());
+    ScanScore score;
+    score.points = errors.size();
+    const double count = static_cast<double>(errors.size());
+    const auto at = [&](double share) {
+        const double position = share * (count - 1.0);
+        const size_t below = static_cast<size_t>(position);
+        const size_t above = std::min(below + 1, errors.size() - 1);
+        return errors[below] + (errors[above] - errors[below]) * (position - static_cast<double>(below));
+    };
+    const auto share_below = [&](double limit) {
+        return static_cast<double>(std::lower_bound(errors.begin(), errors.end(), limit) - errors.begin()) /
+               count;
+    };
+    score.median_mm = 1000.0 * at(0.5);
+    score.mean_mm = 1000.0 * std::accumulate(errors.begin(), errors.end(), 0.0) / count;
+    score.p95_mm = 1000.0 * at(0.95);
+    score.explained_2cm = share_below(kExplained);
+    score.explained_2cm_noise = share_below(kExplained + noise);
+    if (progress) progress->update(1.0, "Score");
+    return score;
+}
+
+SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* progress) {
+    const std::vector<WoodSegment> reference_wood = segments_in(reference, reference.frame());
+    const std::vector<WoodSegment> wood = segments_in(tree, reference.frame());
+    SkeletonScore score;
+    score.length = total_length(wood);
+    score.reference_length = total_length(reference_wood);
+    score.volume = total_volume(wood);
+    score.reference_volume = total_volume(reference_wood);
+    for (double length : {score.length, score.reference_length}) {
+        if (!(length > 0.0)) throw Error("A tree whose nodes all lie in one place cannot be scored.");
+        if (!(length < kLongestWood))
+            throw Error("A tree with more than 20 km of wood cannot be scored; is its unit metres?");
+    }
+    score.length_error = score.length / score.reference_length - 1.0;
+    score.volume_error = score.volume / score.reference_volume - 1.0;
+
+    SubProgress first(progress, 0.0, 0.5);
+    SubProgress second(progress, 0.5, 1.0);
+    const std::vector<Sample> found = sample_against(wood, SegmentTree(reference_wood), &first, "Precision");
+    const std::vector<Sample> wanted = sample_against(reference_wood, SegmentTree(wood), &second, "Recall");
+    for (int quarter = 0; quarter <= 4; quarter++) {
+        const double factor = 0.25 * quarter;
+        score.by_radius.push_back(
+            agreement(factor, share_within(found, [&](const Sample& s) { return factor * s.other_radius; }),
+                      share_within(wanted, [&](const Sample& s) { return factor * s.radius; })));
+    }
+    for (int centimetres = 0; centimetres <= 5; centimetres++) {
+        const double limit = 0.01 * centimetres;
+        const auto constant = [&](const Sample&) { return limit; };
+        score.by_distance.push_back(
+            agreement(limit, share_within(found, constant), share_within(wanted, constant)));
+    }
+    score.chamfer_mm = 500.0 * (mean_distance(found) + mean_distance(wanted));
+
+    std::vector<double> errors;
+    errors.reserve(wanted.size());
+    for (const Sample& sample : wanted)
+        if (sample.distance <= std::max(kMatch, sample.radius))
+            errors.push_back(sample.other_radius / sample.radius - 1.0);
+    score.radius_error = quantile(errors, 0.5);
+    for (double& error : errors)
+        error = std::abs(error);
+    score.radius_error_abs = quantile(errors, 0.5);
+    if (progress) progress->update(1.0, "Score");
+    return score;
+}
+
+}  // namespace treerec
