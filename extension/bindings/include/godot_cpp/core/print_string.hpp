@@ -5,8 +5,8 @@
 namespace godot {
 
 template <typename... Args>
-void print_line(const Variant &p_first, const Args &...p_rest) {
-	UtilityFunctions::print(p_first, p_rest...);
+void print_line(const Variant& p_first, const Args&... p_rest) {
+    UtilityFunctions::print(p_first, p_rest...);
 }
 
-} // namespace godot
+}  // namespace godot

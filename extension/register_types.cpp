@@ -1,0 +1,56 @@
+#include "register_types.h"
+
+#include <gdextension_interface.h>
+
+#include <godot_cpp/core/class_db.hpp>
+
+#ifdef TREEREC_EDITOR
+#include "class_reference.h"
+#endif
+
+using namespace godot;
+
+#ifdef TREEREC_EDITOR
+static GDExtensionInterfaceGetProcAddress get_proc_address = nullptr;
+
+static void load_class_reference() {
+    using LoadXml = void (*)(const char* p_text, GDExtensionInt p_length);
+    const auto load =
+        reinterpret_cast<LoadXml>(get_proc_address("editor_help_load_xml_from_utf8_chars_and_len"));
+    if (load == nullptr) {
+        return;  // An engine without an editor.
+    }
+    for (const std::string_view text : kClassReference) {
+        load(text.data(), int64_t(text.size()));
+    }
+}
+#endif
+
+void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
+    switch (p_level) {
+        case MODULE_INITIALIZATION_LEVEL_SCENE:
+            break;
+        case MODULE_INITIALIZATION_LEVEL_EDITOR:
+#ifdef TREEREC_EDITOR
+            load_class_reference();
+#endif
+            break;
+        default:
+            break;
+    }
+}
+
+void terminate_tree_reconstruction(ModuleInitializationLevel) {}
+
+extern "C" GDExtensionBool GDE_EXPORT tree_reconstruction_library_init(
+    GDExtensionInterfaceGetProcAddress p_get_proc_address, GDExtensionClassLibraryPtr p_library,
+    GDExtensionInitialization* r_initialization) {
+#ifdef TREEREC_EDITOR
+    get_proc_address = p_get_proc_address;
+#endif
+    const GDExtensionBinding::InitObject binding(p_get_proc_address, p_library, r_initialization);
+    binding.register_initializer(initialize_tree_reconstruction);
+    binding.register_terminator(terminate_tree_reconstruction);
+    binding.set_minimum_library_initialization_level(MODULE_INITIALIZATION_LEVEL_SCENE);
+    return binding.init();
+}
