@@ -23,9 +23,10 @@ using Triangulation =
     CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
 constexpr size_t kInsertChunk = 2000;  // points between two looks at the cancel flag
-constexpr size_t kScaleNeighbour = 4;  // the local spacing is the length of this shortest edge
+constexpr size_t kScaleMax = 8;
+constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of this shortest edge
 constexpr int kScaleSmoothings = 3;
-constexpr float kReachFactor = 3.0f;
+constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
 
 }  // namespace
@@ -91,14 +92,14 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
     const size_t count = graph.size();
     std::vector<float> spacing(count);
     for (size_t v = 0; v < count; v++) {
-        std::array<float, kScaleNeighbour> shortest;
+        std::array<float, kScaleMax> shortest;
         shortest.fill(std::numeric_limits<float>::max());
         for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
             float length = graph.length[e];
             for (float& s : shortest)
                 if (length < s) std::swap(length, s);
         }
-        size_t last = std::min<size_t>(kScaleNeighbour, graph.begin[v + 1] - graph.begin[v]);
+        const size_t last = std::min<size_t>(kScaleNeighbour, graph.begin[v + 1] - graph.begin[v]);
         spacing[v] = std::max(static_cast<float>(thinning_spacing), last ? shortest[last - 1] : 0.0f);
     }
     std::vector<float> sorted = spacing;

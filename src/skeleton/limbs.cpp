@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numeric>
 
 namespace treerec {
 
@@ -131,23 +132,25 @@ std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& poin
 
     std::vector<Limb> limbs;
     std::deque<Candidate> waiting;
-    auto side_chains = [&](const std::vector<int32_t>& chain, int32_t limb,
-                           const std::vector<int32_t>& stations) {
-        for (size_t i = 0; i < chain.size(); i++) {
+    // Puts the side chains of chain[begin..end) on the waiting list of `limb`.
+    auto side_chains = [&](const std::vector<int32_t>& chain, size_t begin, size_t end, int32_t limb,
+                           const std::vector<int32_t>& at) {
+        for (size_t i = begin; i < end; i++) {
             const int32_t next = i + 1 < chain.size() ? chain[i + 1] : -1;
             for (int32_t c = shape.first_child[chain[i]]; c >= 0; c = shape.next_sibling[c])
-                if (c != next) waiting.push_back({c, limb, stations[i]});
+                if (c != next) waiting.push_back({c, limb, at[i]});
         }
     };
     std::vector<LimbAxis> axes;
     std::vector<int32_t> stations;
+    std::vector<double> escapes;
     auto add_limb = [&](Limb limb) {
         axes.push_back(smooth_axis(limb, slices, shape));
         stations.resize(limb.slices.size());
-        for (size_t i = 0; i < stations.size(); i++)
-            stations[i] = static_cast<int32_t>(i);
+        std::iota(stations.begin(), stations.end(), 0);
         limbs.push_back(std::move(limb));
-        side_chains(limbs.back().slices, static_cast<int32_t>(limbs.size()) - 1, stations);
+        side_chains(limbs.back().slices, 0, stations.size(), static_cast<int32_t>(limbs.size()) - 1,
+                    stations);
     };
     Limb first;
     first.slices = chain_from(0);
@@ -159,29 +162,50 @@ std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& poin
         const std::vector<int32_t> chain = chain_from(candidate.slice);
         const LimbAxis& axis = axes[candidate.limb];
         int station = candidate.station;
-        double escape = 0.0;
         double spacing = 0.0;
+        double farthest = 0.0;
         stations.clear();
+        escapes.clear();
         for (const int32_t slice : chain) {
-            station = nearest_station(axis, station, slices.centre[slice]);
+            const DVec3& centre = slices.centre[slice];
+            station = nearest_station(axis, station, centre);
             stations.push_back(station);
-            escape = std::max(escape, glm::distance(slices.centre[slice], axis.position[station]) -
-                                          kSurfaceFactor * axis.radius[station]);
+            escapes.push_back(glm::distance(centre, axis.position[station]) -
+                              kSurfaceFactor * axis.radius[station]);
+            farthest = std::max(farthest, escapes.back());
             spacing += shape.spacing[slice];
         }
         spacing /= static_cast<double>(chain.size());
-        if (escape >= std::max(options.minimum_branch, kSparseBranch * spacing)) {
-            Limb limb;
-            limb.parent = candidate.limb;
-            limb.attach = candidate.station;
-            limb.slices = chain;
-            add_limb(std::move(limb));
-            continue;
+        const double least_escape = std::max(options.least_escape, kSparseBranch * spacing);
+        const bool grows_out = farthest >= least_escape;
+        // The part of the chain that still lies on the parent's surface belongs to the parent.
+        size_t inside = chain.size();
+        if (grows_out) {
+            inside = 0;
+            while (escapes[inside] < least_escape)
+                inside++;
+            while (inside > 0 && escapes[inside - 1] > 0.0)
+                inside--;
         }
+        double length = 0.0;
+        if (grows_out) {
+            station = inside > 0 ? stations[inside - 1] : candidate.station;
+            length = glm::distance(slices.centre[chain[inside]], axis.position[station]) +
+                     shape.longest[chain[inside]];
+        }
+        if (length < options.minimum_branch) inside = chain.size();
+
         Limb& parent = limbs[candidate.limb];
-        parent.absorbed.insert(parent.absorbed.end(), chain.begin(), chain.end());
-        parent.absorbed_at.insert(parent.absorbed_at.end(), stations.begin(), stations.end());
-        side_chains(chain, candidate.limb, stations);
+        const auto cut = static_cast<ptrdiff_t>(inside);
+        parent.absorbed.insert(parent.absorbed.end(), chain.begin(), chain.begin() + cut);
+        parent.absorbed_at.insert(parent.absorbed_at.end(), stations.begin(), stations.begin() + cut);
+        side_chains(chain, 0, inside, candidate.limb, stations);
+        if (inside == chain.size()) continue;
+        Limb limb;
+        limb.parent = candidate.limb;
+        limb.attach = station;
+        limb.slices.assign(chain.begin() + cut, chain.end());
+        add_limb(std::move(limb));
     }
     return limbs;
 }

@@ -8,7 +8,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kThickness = 2.5;  // slice thickness in local point spacings
+constexpr double kThickness = 2.0;  // slice thickness in local point spacings
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
     while (leader[v] != v)
