@@ -12,26 +12,28 @@ namespace treerec {
 
 enum class LeafArrangement { kAlternate, kOpposite };
 
-// Lengths in metres, angles in degrees.
+// A card shows a spray: a twig's end with several leaves, so that a crown looks full with few triangles.
+// Lengths in metres, for a tree of 6 m or taller; on a smaller one they shrink with the square root of its
+// height. Angles in degrees.
 struct LeafRules {
     bool enabled = true;
     LeafArrangement arrangement = LeafArrangement::kAlternate;
-    double internode = 0.05;       // distance between leaf nodes along a twig
+    double internode = 0.05;       // distance between sprays along a twig; pairs stand twice as far apart
     double twig_length = 0.6;      // how far from its tip a branch bears leaves
-    double maximum_radius = 0.02;  // thicker wood bears none
-    double leaf_size = 0.10;       // length of a leaf card
+    double maximum_radius = 0.02;  // thicker wood bears none, but for the tips
+    double leaf_size = 0.25;       // length of a spray
     double size_variation = 0.3;   // share
-    double angle = 55.0;           // between the twig and the leaf
+    double angle = 55.0;           // between the twig and the spray
     double droop = 20.0;           // towards the ground
     double angle_variation = 20.0;
     int maximum_leaves = 60000;  // beyond it fewer, larger leaves cover the same area
 };
 
-// "generic", "maple", "cherry", "oak", "birch", "none". Throws Error for another name, listing these.
+// "generic", "maple", "cherry", "oak", "birch", "pine", "none". Throws Error for another name, listing these.
 LeafRules leaf_preset(const std::string& name);
 std::vector<std::string> leaf_preset_names();
 
-// One leaf card. x,y,z: the card's axes (unit, right-handed): x across, y from the base to the tip, z out of
+// One card. x,y,z: the card's axes (unit, right-handed): x across, y from the base to the tip, z out of
 // its upper face. position: where the petiole leaves the bark. outward: unit, from the crown's centre (for
 // rounded normals).
 struct LeafPlacement {
@@ -46,8 +48,9 @@ struct LeafPlacement {
     float occlusion = 1.0f;  // 1 open to the sky .. 0 deep in the crown
 };
 
-// seed: the same seed gives the same leaves. Each leaf's random numbers belong to its place (hash_seed), so
-// pruning one branch leaves the leaves of others alone.
+// Sprays on the last `twig_length` of every branch, and one at every tip. An empty tree or a lone root has
+// none. seed: the same seed gives the same leaves. Each leaf's random numbers belong to its place
+// (hash_seed), so pruning one branch leaves the leaves of others alone.
 std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed);
 
 }  // namespace treerec

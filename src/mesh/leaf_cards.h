@@ -12,7 +12,8 @@ namespace treerec {
 // whole leaf texture (v = 1 at the base). level 0: 4 triangles or more; higher levels 2.
 Mesh build_leaf_card(int level = 0);
 
-// Every leaf as geometry, with rounded-canopy normals and wind channels in colors.
+// Every leaf as geometry, with rounded-canopy normals and wind channels in colors; colors.g runs from 0 at
+// the card's base to 1 at its tip. custom0 stays empty.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0);
 
 // Which leaves a level of detail keeps, and how much larger it draws them (fewer, larger, the same area).

@@ -1,0 +1,114 @@
+#include "foliage/branch_axis.h"
+
+#include <algorithm>
+
+namespace treerec {
+
+namespace {
+
+constexpr double kBendPerPoint = 0.20;  // radians
+constexpr int kMostPieces = 6;
+
+struct Knot {
+    DVec3 position;
+    double radius;
+};
+
+// Direction at the knot between two chords: nearer to that of the shorter, as a circle through the knots has.
+DVec3 direction_between(const DVec3& before, double before_length, const DVec3& after, double after_length) {
+    return normalized_or(before * after_length + after * before_length, after);
+}
+
+}  // namespace
+
+void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch, double least,
+                 std::vector<AxisPoint>& points) {
+    points.clear();
+    const std::span<const NodeId> nodes = list.nodes_of(branch);
+    const NodeId start = branch.attach != kNoNode ? branch.attach : nodes[0];
+    size_t next_node = branch.attach != kNoNode ? 0 : 1;
+    Knot from{tree.node(start).position, tree.node(nodes[0]).radius}, to{};
+    const DVec3 tip = tree.node(nodes.back()).position;
+    const auto next_knot = [&](const Knot& last_knot, Knot& knot) {
+        while (next_node < nodes.size()) {
+            const Node& node = tree.node(nodes[next_node++]);
+            const double apart = std::max(0.25 * std::min(last_knot.radius, node.radius), least);
+            const bool last = next_node == nodes.size();
+            if (glm::distance(node.position, last_knot.position) <= (last ? least : apart)) continue;
+            // Just below the tip, the tip stands for both.
+            if (!last && glm::distance(node.position, tip) <= apart) continue;
+            knot = {node.position, node.radius};
+            return true;
+        }
+        return false;
+    };
+
+    if (!next_knot(from, to)) return;
+    DVec3 chord = to.position - from.position;
+    double length = glm::length(chord);
+    chord /= length;
+    DVec3 start_direction = chord;
+    double along = 0.0;
+    bool first = true;
+    while (true) {
+        Knot beyond{};
+        const bool more = next_knot(to, beyond);
+        DVec3 next_chord = chord;
+        double next_length = length;
+        if (more) {
+            next_chord = beyond.position - to.position;
+            next_length = glm::length(next_chord);
+            next_chord /= next_length;
+        }
+        DVec3 end_direction = more ? direction_between(chord, length, next_chord, next_length)
+                                   : normalized_or(1.5 * chord - 0.5 * start_direction, chord);
+        if (first) start_direction = normalized_or(1.5 * chord - 0.5 * end_direction, chord);
+        if (first) points.push_back({from.position, start_direction, from.radius, 0.0});
+        first = false;
+        const double bend = std::acos(std::clamp(glm::dot(start_direction, chord), -1.0, 1.0)) +
+                            std::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
+        const int pieces = std::clamp(static_cast<int>(std::ceil(bend / kBendPerPoint)), 1, kMostPieces);
+        for (int i = 1; i <= pieces; i++) {
+            AxisPoint point{to.position, end_direction, to.radius, 0.0};
+            if (i < pieces) {
+                const double t = static_cast<double>(i) / pieces, t2 = t * t, t3 = t2 * t;
+                const DVec3 m0 = start_direction * length, m1 = end_direction * length;
+                point.position = (2.0 * t3 - 3.0 * t2 + 1.0) * from.position + (t3 - 2.0 * t2 + t) * m0 +
+                                 (3.0 * t2 - 2.0 * t3) * to.position + (t3 - t2) * m1;
+                point.direction =
+                    normalized_or((6.0 * t2 - 6.0 * t) * (from.position - to.position) +
+                                      (3.0 * t2 - 4.0 * t + 1.0) * m0 + (3.0 * t2 - 2.0 * t) * m1,
+                                  chord);
+                point.radius = from.radius + (to.radius - from.radius) * t;
+            }
+            const double step = glm::distance(point.position, points.back().position);
+            if (step <= 0.5 * least) continue;
+            along += step;
+            point.along = along;
+            points.push_back(point);
+        }
+        if (!more) break;
+        from = to;
+        to = beyond;
+        chord = next_chord;
+        length = next_length;
+        start_direction = end_direction;
+    }
+    if (points.size() < 2) points.clear();
+}
+
+AxisPoint axis_at(const std::vector<AxisPoint>& points, double along, size_t& hint) {
+    hint = std::min(hint, points.size() - 2);
+    while (hint > 0 && points[hint].along > along)
+        hint--;
+    while (hint + 2 < points.size() && points[hint + 1].along < along)
+        hint++;
+    const AxisPoint& a = points[hint];
+    const AxisPoint& b = points[hint + 1];
+    const double t = std::clamp((along - a.along) / (b.along - a.along), 0.0, 1.0);
+    return {a.position + (b.position - a.position) * t,
+            normalized_or(a.direction + (b.direction - a.direction) * t, a.direction),
+            a.radius + (b.radius - a.radius) * t, a.along + (b.along - a.along) * t};
+}
+
+}  // namespace treerec

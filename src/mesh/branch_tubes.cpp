@@ -1,0 +1,362 @@
+#include "mesh/branch_tubes.h"
+
+#include <algorithm>
+
+#include "error.h"
+#include "foliage/branch_axis.h"
+#include "foliage/crown.h"
+#include "geometry/parallel.h"
+#include "tree/branches.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLargestTree = 1e6;       // metres from the origin
+constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood would vanish in floats
+constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
+constexpr double kCollarRadius = 0.008;    // metres; thinner branches get no collar of their own
+constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
+constexpr double kBendPerRing = 0.26;      // radians between rings at level 0
+constexpr size_t kBranchesPerChunk = 256;  // of parallel work
+
+struct Ring {
+    DVec3 centre;
+    DVec3 normal;  // unit, towards the tip
+    double radius;
+    double along;
+};
+
+// How one branch becomes a tube: where its rings lie in its chunk, and its vertices and indices in the mesh.
+struct Tube {
+    uint32_t first_ring = 0;
+    uint32_t rings = 0;  // 0: not drawn
+    uint32_t sides = 0;
+    bool round_tip = false;
+    double exit = 0.0;           // metres along, where it leaves its parent's bark; 0 for the trunk
+    double parent_radius = 0.0;  // metres, 0 for the trunk
+    size_t first_vertex = 0;
+    size_t first_index = 0;
+
+    size_t all_rings() const { return rings + (round_tip ? 1u : 0u); }
+    size_t vertices() const { return rings ? all_rings() * (sides + 1) + sides : 0; }
+    size_t indices() const { return rings ? (all_rings() - 1) * sides * 6 + sides * 3 : 0; }
+};
+
+uint32_t sides_of(double radius, const TubeOptions& options) {
+    const double wanted = 2.0 * kPi * radius / std::max(options.side_length, 1e-6);
+    const int most = std::max(options.maximum_sides, 3), least = std::clamp(options.minimum_sides, 3, most);
+    const int sides =
+        static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
+    return static_cast<uint32_t>(std::max(3, sides >> std::clamp(options.level, 0, 8)));
+}
+
+// Everything that the tubes of one tree share.
+struct Builder {
+    const Tree& tree;
+    const TubeOptions& options;
+    const BranchList list;
+    const Crown crown;
+    const double least;  // metres: the smallest radius and half the smallest ring distance
+
+    Builder(const Tree& t, const TubeOptions& o)
+        : tree(t),
+          options(o),
+          list(list_branches(t)),
+          crown(measure_crown(t)),
+          least(kLeastShare * crown.coordinate) {}
+
+    // The largest radius that a ring about `attach` may have and still hide in its parent's tube: the parent
+    // is a prism, and thins towards its next node.
+    double hidden_radius(NodeId attach, double reach) const {
+        const Node& node = tree.node(attach);
+        double radius = node.radius;
+        const Branch& parent = list.branches[list.branch_of[attach]];
+        for (NodeId child : tree.children(attach)) {
+            if (list.branch_of[child] != list.branch_of[attach]) continue;
+            const double distance = glm::distance(tree.node(child).position, node.position);
+            const double t = distance > reach ? reach / distance : 1.0;
+            radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
+        }
+        const double thickest = tree.node(list.nodes[parent.begin]).radius;
+        return 0.92 * std::cos(kPi / sides_of(thickest, options)) * radius;
+    }
+
+    void plan_rings(const Branch& branch, std::vector<AxisPoint>& points, std::vector<Ring>& rings,
+                    Tube& tube) const;
+    void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
+    void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
+                    std::vector<Ring>& rings) const;
+    void emit(const Branch& branch, const Tube& tube, const Ring* rings, Mesh& mesh) const;
+    bool too_thin(const Branch& branch) const;
+};
+
+// Far away, thin and short branches are less than a pixel.
+bool Builder::too_thin(const Branch& branch) const {
+    if (options.level <= 0 || branch.attach == kNoNode) return false;
+    const double scale = crown.height * std::ldexp(1.0, std::min(options.level, 16));
+    const Node& first = tree.node(list.nodes[branch.begin]);
+    return first.radius < 0.0002 * scale || branch.length < 0.005 * scale;
+}
+
+// Radii near the parent: hidden at the start, widened where the branch comes out of the bark.
+void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const {
+    const Node& attach = tree.node(branch.attach);
+    const double own = points.front().radius;
+    tube.parent_radius = attach.radius;
+    const double hidden = std::max(hidden_radius(branch.attach, std::max(own, attach.radius)), least);
+    DVec3 parent_direction(0.0);
+    if (attach.parent != kNoNode) parent_direction = attach.position - tree.node(attach.parent).position;
+    parent_direction = normalized_or(parent_direction, DVec3(0.0, 1.0, 0.0));
+    const double sine = glm::length(glm::cross(parent_direction, points.front().direction));
+    const double length = points.back().along;
+    tube.exit = std::min(attach.radius / std::max(sine, 0.3), 0.7 * length);
+    if (options.level == 0 && own >= kCollarRadius && own < 0.98 * hidden) {
+        // Rings at the bark, and two more where the collar has run out.
+        size_t hint = 0;
+        std::vector<AxisPoint>::iterator at;
+        for (double along : {0.85 * tube.exit, tube.exit + 0.8 * own, tube.exit + 2.2 * own}) {
+            if (along >= length) break;
+            const AxisPoint point = axis_at(points, along, hint);
+            const double gap = std::max(0.2 * own, 2.0 * least);
+            if (along - points[hint].along < gap || points[hint + 1].along - along < gap) continue;
+            points.insert(points.begin() + static_cast<std::ptrdiff_t>(hint) + 1, point);
+        }
+        for (AxisPoint& point : points) {
+            const double past = std::max(point.along - 0.85 * tube.exit, 0.0) / (1.4 * own);
+            if (past > 3.0) break;
+            const double widened = point.radius * (1.0 + kCollar * std::exp(-past * past));
+            point.radius = std::min(widened, std::max(point.radius, hidden));
+        }
+    }
+    // A branch as thick as its parent, or thicker, grows out of it over its first metres.
+    const double until = std::max(tube.exit, 0.5 * points[1].along);
+    for (AxisPoint& point : points) {
+        if (point.radius <= hidden) {
+            if (point.along >= until) break;
+            continue;
+        }
+        const double t = std::clamp(point.along / std::max(2.0 * until, 4.0 * least), 0.0, 1.0);
+        if (point.along > 0.0 && t >= 1.0) break;
+        point.radius = hidden + (point.radius - hidden) * t;
+    }
+}
+
+// As few rings as show the axis' bends and the radius' changes.
+void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
+                         std::vector<Ring>& rings) const {
+    const int level = std::clamp(options.level, 0, 8);
+    const double bend_limit = std::cos(std::min(kBendPerRing * (1 + level), 1.2));
+    const double change_limit = 0.30 * (1 + level);
+    const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
+    const double closeness = 0.35 * (1 + level);
+    const auto add = [&](const AxisPoint& point) {
+        rings.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
+    };
+    size_t last = 0;
+    add(points[0]);
+    while (last + 1 < points.size()) {
+        const AxisPoint& from = points[last];
+        size_t best = last + 1;
+        const double gap = std::max(closeness * from.radius, 2.0 * least);
+        for (size_t next = last + 1; next < points.size(); next++) {
+            const AxisPoint& to = points[next];
+            const bool far = to.along - from.along > spacing_limit;
+            const bool bent = glm::dot(from.direction, to.direction) < bend_limit;
+            const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
+            if ((far || bent || changed) && points[best].along - from.along >= gap) break;
+            best = next;
+            const bool collar = level == 0 && to.along < tube.exit + 2.5 * to.radius && tube.exit > 0.0 &&
+                                to.radius >= kCollarRadius;
+            if (collar && to.along - from.along >= gap) break;
+        }
+        // A last ring right above another only makes slivers.
+        if (best + 1 == points.size() && last > 0 &&
+            points[best].along - from.along < std::max(0.15 * from.radius, least))
+            rings.pop_back();
+        add(points[best]);
+        last = best;
+    }
+}
+
+// Two rings must not cross on the inner side of a bend: turns both towards their mean until they clear.
+void limit_tilt(Ring* rings, size_t count) {
+    for (int pass = 0; pass < 3; pass++) {
+        for (size_t i = 0; i + 1 < count; i++) {
+            Ring &a = rings[i], &b = rings[i + 1];
+            const double distance = glm::distance(a.centre, b.centre);
+            const double sine_half = std::min(1.0, 0.4 * distance / std::max(a.radius, b.radius));
+            const double least_cosine = 1.0 - 2.0 * sine_half * sine_half;
+            const double cosine = glm::dot(a.normal, b.normal);
+            if (cosine >= least_cosine) continue;
+            const DVec3 mean =
+                normalized_or(a.normal + b.normal, normalized_or(b.centre - a.centre, a.normal));
+            const DVec3 side = normalized_or(b.normal - mean * glm::dot(b.normal, mean), DVec3(0.0));
+            const double cosine_half = std::sqrt(1.0 - sine_half * sine_half);
+            a.normal = normalized_or(mean * cosine_half - side * sine_half, mean);
+            b.normal = normalized_or(mean * cosine_half + side * sine_half, mean);
+        }
+    }
+}
+
+void Builder::plan_rings(const Branch& branch, std::vector<AxisPoint>& points, std::vector<Ring>& rings,
+                         Tube& tube) const {
+    tube.first_ring = static_cast<uint32_t>(rings.size());
+    if (too_thin(branch)) return;
+    sample_axis(tree, list, branch, 2.0 * least, points);
+    if (points.size() < 2) return;
+    if (branch.attach != kNoNode) {
+        // A stub that ends within its parent is never seen.
+        const double end = glm::distance(points.back().position, points.front().position);
+        const double parent = tree.node(branch.attach).radius;
+        if (branch.length + points.back().radius < 0.8 * hidden_radius(branch.attach, parent) && end < parent)
+            return;
+        add_collar(branch, points, tube);
+    }
+    pick_rings(branch, points, tube, rings);
+    tube.rings = static_cast<uint32_t>(rings.size()) - tube.first_ring;
+    limit_tilt(rings.data() + tube.first_ring, tube.rings);
+    double thickest = 0.0;
+    for (size_t i = tube.first_ring; i < rings.size(); i++)
+        thickest = std::max(thickest, rings[i].radius);
+    tube.sides = sides_of(thickest, options);
+    tube.round_tip = options.level == 0 && rings.back().radius >= kRoundTipRadius;
+}
+
+void Builder::emit(const Branch& branch, const Tube& tube, const Ring* rings, Mesh& mesh) const {
+    const uint32_t sides = tube.sides;
+    const size_t count = tube.rings;
+    const Ring& last_ring = rings[count - 1];
+    const double length = last_ring.along;
+    const double repeats = std::max(
+        1.0, std::round(2.0 * kPi * rings[count > 1 ? 1 : 0].radius / std::max(options.bark_width, 1e-6)));
+    const float phase = static_cast<float>(branch_phase(list.nodes[branch.end - 1]));
+    const DVec3 pivot = rings[0].centre;
+    const Vec4 custom0(Vec3(pivot), static_cast<float>(branch.order));
+    DVec2 circle[65];
+    for (uint32_t j = 0; j <= sides; j++) {
+        const double angle = 2.0 * kPi * (j % sides) / sides;
+        circle[j] = {std::cos(angle), std::sin(angle)};
+    }
+    size_t vertex = tube.first_vertex;
+    const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double u, double v,
+                         const Vec4& color) {
+        mesh.positions[vertex] = Vec3(position);
+        mesh.normals[vertex] = Vec3(normal);
+        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
+        mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
+        mesh.colors[vertex] = color;
+        mesh.custom0[vertex] = custom0;
+        vertex++;
+    };
+    const auto color_at = [&](const DVec3& centre, double along) {
+        double light = 0.45 + 0.55 * crown.openness(centre);
+        if (centre.y < crown.centre.y - crown.radii.y) light = 0.95;
+        if (tube.parent_radius > 0.0) {
+            const double t = std::clamp((along - tube.exit) / (1.5 * tube.parent_radius), 0.0, 1.0);
+            light *= 0.6 + 0.4 * t;
+        } else {
+            light *= 0.75 + 0.25 * std::clamp(along / (4.0 * rings[0].radius), 0.0, 1.0);
+        }
+        return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
+                    phase, static_cast<float>(light));
+    };
+    DVec3 normal = rings[0].normal;
+    DVec3 x = any_perpendicular(normal);
+    for (size_t i = 0; i < count; i++) {
+        const Ring& ring = rings[i];
+        // Parallel transport: the smallest turn that takes the last ring's normal to this one's.
+        const double turn = 1.0 + glm::dot(normal, ring.normal);
+        if (turn > 1e-9) x -= (normal + ring.normal) * (glm::dot(x, ring.normal) / turn);
+        normal = ring.normal;
+        x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
+        const DVec3 y = glm::cross(normal, x);
+        const Ring& before = rings[i > 0 ? i - 1 : 0];
+        const Ring& after = rings[std::min(i + 1, count - 1)];
+        const double slope = std::clamp(
+            (after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0, 1.0);
+        const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
+        const Vec4 color = color_at(ring.centre, ring.along);
+        for (uint32_t j = 0; j <= sides; j++) {
+            const DVec3 radial = x * circle[j].x + y * circle[j].y;
+            const DVec3 tangent = y * circle[j].x - x * circle[j].y;
+            put(ring.centre + radial * ring.radius, (radial - normal * slope) * scale, tangent,
+                repeats * j / sides, ring.along, color);
+        }
+    }
+    // The tip: a dome, or a point as high as the tip is wide.
+    const DVec3 y = glm::cross(normal, x);
+    const Vec4 color = color_at(last_ring.centre, length);
+    if (tube.round_tip) {
+        for (uint32_t j = 0; j <= sides; j++) {
+            const DVec3 radial = x * circle[j].x + y * circle[j].y;
+            put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
+                radial * 0.7746 + normal * 0.6325, y * circle[j].x - x * circle[j].y, repeats * j / sides,
+                length + 0.66 * last_ring.radius, color);
+        }
+    }
+    const DVec3 apex = last_ring.centre + normal * (0.98 * last_ring.radius);
+    for (uint32_t j = 0; j < sides; j++) {
+        const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
+        const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
+        put(apex, normal, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius, color);
+    }
+    size_t index = tube.first_index;
+    const uint32_t base = static_cast<uint32_t>(tube.first_vertex), stride = sides + 1;
+    const uint32_t spans = static_cast<uint32_t>(tube.all_rings()) - 1;
+    for (uint32_t i = 0; i < spans; i++) {
+        for (uint32_t j = 0; j < sides; j++) {
+            const uint32_t a = base + i * stride + j, b = a + 1, c = a + stride, d = c + 1;
+            for (uint32_t corner : {a, b, d, a, d, c})
+                mesh.indices[index++] = corner;
+        }
+    }
+    for (uint32_t j = 0; j < sides; j++) {
+        const uint32_t a = base + spans * stride + j;
+        for (uint32_t corner : {a, a + 1, base + (spans + 1) * stride + j})
+            mesh.indices[index++] = corner;
+    }
+}
+
+}  // namespace
+
+Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
+    Mesh mesh;
+    if (tree.size() < 2) return mesh;
+    if (options.maximum_sides > 64) throw Error("A branch can have at most 64 sides.");
+    const Builder builder(tree, options);
+    if (!(builder.crown.coordinate < kLargestTree))
+        throw Error("The tree reaches beyond 1000 km; check the scan's units.");
+    const std::vector<Branch>& branches = builder.list.branches;
+    std::vector<Tube> tubes(branches.size());
+    std::vector<std::vector<Ring>> rings((branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk);
+    parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
+        std::vector<AxisPoint> points;
+        for (size_t i = begin; i < end; i++)
+            builder.plan_rings(branches[i], points, rings[begin / kBranchesPerChunk], tubes[i]);
+    });
+    size_t vertices = 0, indices = 0;
+    for (Tube& tube : tubes) {
+        tube.first_vertex = vertices;
+        tube.first_index = indices;
+        vertices += tube.vertices();
+        indices += tube.indices();
+    }
+    if (vertices > UINT32_MAX) throw Error("The tree's bark has too many vertices; simplify the tree first.");
+    mesh.positions.resize(vertices);
+    mesh.normals.resize(vertices);
+    mesh.tangents.resize(vertices);
+    mesh.uvs.resize(vertices);
+    mesh.colors.resize(vertices);
+    mesh.custom0.resize(vertices);
+    mesh.indices.resize(indices);
+    parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++)
+            if (tubes[i].rings > 0)
+                builder.emit(branches[i], tubes[i],
+                             rings[begin / kBranchesPerChunk].data() + tubes[i].first_ring, mesh);
+    });
+    return mesh;
+}
+
+}  // namespace treerec

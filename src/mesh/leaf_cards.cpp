@@ -1,0 +1,126 @@
+#include "mesh/leaf_cards.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "geometry/parallel.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kFloatsPerLeaf = 20;
+constexpr float kRoundness = 0.65f;  // how far the normals of baked leaves follow the crown
+
+}  // namespace
+
+Mesh build_leaf_card(int level) {
+    Mesh card;
+    const bool fine = level <= 0;
+    card.positions = {{-0.5f, 0.0f, 0.0f},
+                      {0.5f, 0.0f, 0.0f},
+                      {0.5f, 1.0f, fine ? -0.16f : 0.0f},
+                      {-0.5f, 1.0f, fine ? -0.16f : 0.0f}};
+    card.uvs = {{0.0f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}, {0.0f, 0.0f}};
+    if (fine) {
+        // The middle stands up, so that the card is folded along and bent across at once.
+        card.positions.push_back({0.0f, 0.5f, 0.07f});
+        card.uvs.push_back({0.5f, 0.5f});
+        card.indices = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+    } else {
+        card.indices = {0, 1, 2, 0, 2, 3};
+    }
+    for (const Vec3& position : card.positions) {
+        const Vec3 normal = fine ? glm::normalize(Vec3(0.45f * position.x, 0.35f * (position.y - 0.4f), 1.0f))
+                                 : Vec3(0.0f, 0.0f, 1.0f);
+        card.normals.push_back(normal);
+        const Vec3 tangent = glm::normalize(Vec3(1.0f, 0.0f, 0.0f) - normal * normal.x);
+        card.tangents.push_back(Vec4(tangent, 1.0f));
+        card.colors.push_back(Vec4(0.0f, position.y, 0.0f, 1.0f));
+    }
+    return card;
+}
+
+Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level) {
+    const Mesh card = build_leaf_card(level);
+    const size_t corners = card.positions.size(), card_indices = card.indices.size();
+    if (leaves.size() * corners > UINT32_MAX) throw Error("There are too many leaves for one mesh.");
+    Mesh mesh;
+    const size_t vertices = leaves.size() * corners;
+    mesh.positions.resize(vertices);
+    mesh.normals.resize(vertices);
+    mesh.tangents.resize(vertices);
+    mesh.uvs.resize(vertices);
+    mesh.colors.resize(vertices);
+    mesh.indices.resize(leaves.size() * card_indices);
+    parallel_for(leaves.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            const LeafPlacement& leaf = leaves[i];
+            const glm::mat3 turn(leaf.x, leaf.y, leaf.z);
+            for (size_t k = 0; k < corners; k++) {
+                const size_t v = i * corners + k;
+                mesh.positions[v] = leaf.position + turn * card.positions[k] * leaf.size;
+                const Vec3 flat = turn * card.normals[k];
+                const Vec3 normal = flat * (1.0f - kRoundness) + leaf.outward * kRoundness;
+                const float length = glm::length(normal);
+                mesh.normals[v] = length > 1e-3f ? normal / length : flat;
+                const Vec3 across = turn * Vec3(card.tangents[k]);
+                const Vec3 tangent = across - mesh.normals[v] * glm::dot(across, mesh.normals[v]);
+                const float tangent_length = glm::length(tangent);
+                // Where the rounded normal runs along the card's x, its y axis still gives a direction.
+                mesh.tangents[v] =
+                    Vec4(tangent_length > 1e-3f ? tangent / tangent_length
+                                                : glm::normalize(glm::cross(leaf.y, mesh.normals[v])),
+                         1.0f);
+                mesh.uvs[v] = card.uvs[k];
+                mesh.colors[v] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
+            }
+            for (size_t k = 0; k < card_indices; k++)
+                mesh.indices[i * card_indices + k] = static_cast<uint32_t>(i * corners) + card.indices[k];
+        }
+    });
+    return mesh;
+}
+
+std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, int level) {
+    if (level <= 0) return leaves;
+    const double share = std::pow(0.42, std::min(level, 8));
+    const float growth = static_cast<float>(1.0 / std::sqrt(share));
+    std::vector<LeafPlacement> kept;
+    kept.reserve(static_cast<size_t>(static_cast<double>(leaves.size()) * share) + 2);
+    for (size_t i = 0; i < leaves.size(); i++) {
+        // The golden ratio's multiples spread evenly, so each level is a subset of the finer one and every
+        // stretch of twig keeps its share.
+        const double turn = static_cast<double>(i) * 0.61803398874989485;
+        if (turn - std::floor(turn) >= share) continue;
+        kept.push_back(leaves[i]);
+        kept.back().size *= growth;
+    }
+    return kept;
+}
+
+std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves) {
+    std::vector<float> buffer(leaves.size() * kFloatsPerLeaf);
+    float* out = buffer.data();
+    for (const LeafPlacement& leaf : leaves) {
+        for (int row = 0; row < 3; row++) {
+            *out++ = leaf.x[row] * leaf.size;
+            *out++ = leaf.y[row] * leaf.size;
+            *out++ = leaf.z[row] * leaf.size;
+            *out++ = leaf.position[row];
+        }
+        const Vec3 outward(glm::dot(leaf.outward, leaf.x), glm::dot(leaf.outward, leaf.y),
+                           glm::dot(leaf.outward, leaf.z));
+        for (int axis = 0; axis < 3; axis++)
+            *out++ = 0.5f + 0.5f * outward[axis];
+        *out++ = leaf.occlusion;
+        *out++ = leaf.phase;
+        *out++ = leaf.size;
+        *out++ = leaf.hue;
+        *out++ = leaf.stiffness;
+    }
+    return buffer;
+}
+
+}  // namespace treerec

@@ -1,0 +1,306 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "error.h"
+#include "geometry/parallel.h"
+#include "mesh/branch_tubes.h"
+#include "random_tree.h"
+#include "tree/branches.h"
+
+namespace treerec {
+namespace {
+
+// The tubes of a mesh: runs of vertices joined by triangles, which follow each other in the buffers.
+struct TubeRange {
+    uint32_t first_vertex, end_vertex;
+    size_t first_index, end_index;
+};
+
+std::vector<TubeRange> tubes_of(const Mesh& mesh) {
+    std::vector<TubeRange> tubes;
+    size_t index = 0;
+    uint32_t vertex = 0;
+    while (index < mesh.indices.size()) {
+        uint32_t top = vertex;
+        size_t end = index;
+        while (end < mesh.indices.size()) {
+            const uint32_t least =
+                std::min({mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
+            if (end > index && least > top) break;
+            top = std::max({top, mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
+            end += 3;
+        }
+        tubes.push_back({vertex, top + 1, index, end});
+        vertex = top + 1;
+        index = end;
+    }
+    return tubes;
+}
+
+bool same_bytes(const Mesh& a, const Mesh& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() &&
+               (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+    };
+    return same(a.positions, b.positions) && same(a.normals, b.normals) && same(a.tangents, b.tangents) &&
+           same(a.uvs, b.uvs) && same(a.colors, b.colors) && same(a.custom0, b.custom0) &&
+           same(a.indices, b.indices);
+}
+
+void expect_sound(const Mesh& mesh, const Tree& tree) {
+    const size_t count = mesh.positions.size();
+    ASSERT_EQ(mesh.normals.size(), count);
+    ASSERT_EQ(mesh.tangents.size(), count);
+    ASSERT_EQ(mesh.uvs.size(), count);
+    ASSERT_EQ(mesh.colors.size(), count);
+    ASSERT_EQ(mesh.custom0.size(), count);
+    ASSERT_EQ(mesh.indices.size() % 3, 0u);
+    double longest = 0.0;
+    for (NodeId id : tree.depth_first())
+        if (tree.node(id).parent != kNoNode)
+            longest = std::max(
+                longest, glm::distance(tree.node(id).position, tree.node(tree.node(id).parent).position));
+    const Bounds box = tree.bounds();
+    const double slack = 0.2 * longest + 0.4 * 0.5 + 1e-4;
+    for (size_t i = 0; i < count; i++) {
+        const DVec3 p(mesh.positions[i]);
+        ASSERT_TRUE(is_finite(p));
+        ASSERT_TRUE(glm::all(glm::greaterThanEqual(p, box.min - slack)) &&
+                    glm::all(glm::lessThanEqual(p, box.max + slack)));
+        ASSERT_NEAR(glm::length(mesh.normals[i]), 1.0f, 1e-4f);
+        ASSERT_NEAR(glm::length(Vec3(mesh.tangents[i])), 1.0f, 1e-4f);
+        ASSERT_EQ(std::abs(mesh.tangents[i].w), 1.0f);
+        ASSERT_TRUE(std::isfinite(mesh.uvs[i].x) && std::isfinite(mesh.uvs[i].y));
+        for (int c = 0; c < 4; c++) {
+            ASSERT_GE(mesh.colors[i][c], 0.0f);
+            ASSERT_LE(mesh.colors[i][c], 1.0f);
+            ASSERT_TRUE(std::isfinite(mesh.custom0[i][c]));
+        }
+    }
+    for (uint32_t index : mesh.indices)
+        ASSERT_LT(index, count);
+}
+
+DVec3 face_normal(const Mesh& mesh, size_t index) {
+    const DVec3 a(mesh.positions[mesh.indices[index]]), b(mesh.positions[mesh.indices[index + 1]]),
+        c(mesh.positions[mesh.indices[index + 2]]);
+    return glm::cross(b - a, c - a);
+}
+
+TEST(BranchTubes, ManyRandomTreesAreSound) {
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        SCOPED_TRACE(seed);
+        const Tree tree = test::random_tree(seed, 2 + static_cast<int>(seed * 7 % 600));
+        for (int level = 0; level < 4; level++) {
+            const Mesh mesh = build_branch_tubes(tree, {.level = level});
+            expect_sound(mesh, tree);
+            ASSERT_GT(mesh.triangle_count(), 0u);
+            size_t inward = 0;
+            for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+                const DVec3 face = face_normal(mesh, i);
+                ASSERT_GT(glm::length(face), 0.0);
+                DVec3 smooth(0.0);
+                for (size_t k = 0; k < 3; k++)
+                    smooth += DVec3(mesh.normals[mesh.indices[i + k]]);
+                inward += glm::dot(face, smooth) <= 0.0;
+            }
+            // Only where wood thicker than it is long turns sharply may a face lean over.
+            ASSERT_LE(inward, mesh.triangle_count() / 500 + 1);
+        }
+    }
+}
+
+TEST(BranchTubes, WildTreesAreSound) {
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        SCOPED_TRACE(seed);
+        const Tree tree = test::wild_tree(seed, 1 + static_cast<int>(seed % 60));
+        const Mesh mesh = build_branch_tubes(tree, {.level = static_cast<int>(seed % 4)});
+        const size_t count = mesh.positions.size();
+        for (size_t i = 0; i < count; i++) {
+            ASSERT_TRUE(is_finite(DVec3(mesh.positions[i])));
+            ASSERT_NEAR(glm::length(mesh.normals[i]), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(Vec3(mesh.tangents[i])), 1.0f, 1e-4f);
+        }
+        for (uint32_t index : mesh.indices)
+            ASSERT_LT(index, count);
+        for (size_t i = 0; i < mesh.indices.size(); i += 3)
+            ASSERT_GT(glm::length(face_normal(mesh, i)), 0.0);
+    }
+}
+
+TEST(BranchTubes, EachTubeIsClosedButForItsBase) {
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        const Tree tree = test::random_tree(seed, 300);
+        const Mesh mesh = build_branch_tubes(tree, {.level = static_cast<int>(seed % 3)});
+        const std::vector<TubeRange> tubes = tubes_of(mesh);
+        ASSERT_GT(tubes.size(), 1u);
+        for (const TubeRange& tube : tubes) {
+            // Vertices that share a place are one corner: the seam, and the apex.
+            std::map<std::tuple<float, float, float>, uint32_t> corner_of;
+            std::vector<uint32_t> corner(tube.end_vertex - tube.first_vertex);
+            for (uint32_t v = tube.first_vertex; v < tube.end_vertex; v++) {
+                const Vec3 p = mesh.positions[v];
+                corner[v - tube.first_vertex] = corner_of.try_emplace({p.x, p.y, p.z}, v).first->second;
+            }
+            std::map<std::pair<uint32_t, uint32_t>, int> edges;
+            for (size_t i = tube.first_index; i < tube.end_index; i += 3)
+                for (int k = 0; k < 3; k++)
+                    edges[{corner[mesh.indices[i + k] - tube.first_vertex],
+                           corner[mesh.indices[i + (k + 1) % 3] - tube.first_vertex]}]++;
+            for (const auto& [edge, uses] : edges) {
+                ASSERT_EQ(uses, 1);  // one way once: the winding agrees all over
+                const bool at_base = mesh.colors[edge.first].g == 0.0f && mesh.colors[edge.second].g == 0.0f;
+                ASSERT_TRUE(at_base || edges.count({edge.second, edge.first}) == 1);
+            }
+            // Outward: the tube, closed by a lid on its base, holds a positive volume.
+            const DVec3 inside(mesh.custom0[tube.first_vertex]);
+            double volume = 0.0;
+            for (size_t i = tube.first_index; i < tube.end_index; i += 3)
+                volume += glm::dot(DVec3(mesh.positions[mesh.indices[i]]) - inside, face_normal(mesh, i));
+            ASSERT_GT(volume, 0.0);
+        }
+    }
+}
+
+TEST(BranchTubes, ChildrenStartInsideTheirParents) {
+    for (uint64_t seed = 0; seed < 100; seed++) {
+        const Tree tree = test::random_tree(seed, 400);
+        const Mesh mesh = build_branch_tubes(tree);
+        const BranchList list = list_branches(tree);
+        size_t bases = 0;
+        for (size_t v = 0; v < mesh.positions.size(); v++) {
+            if (mesh.colors[v].g != 0.0f || mesh.custom0[v].w == 0.0f) continue;
+            // The parent at the pivot: the node there and its continuation.
+            NodeId attach = kNoNode;
+            for (NodeId id = 0; id < tree.id_end(); id++)
+                if (glm::distance(Vec3(tree.node(id).position), Vec3(mesh.custom0[v])) < 1e-6f) attach = id;
+            ASSERT_NE(attach, kNoNode);
+            const double distance = glm::distance(DVec3(mesh.positions[v]), tree.node(attach).position);
+            ASSERT_LT(distance, tree.node(attach).radius);
+            bases++;
+        }
+        ASSERT_GT(bases, 0u);
+    }
+}
+
+TEST(BranchTubes, UvsGoRoundWithoutASeamJump) {
+    const Tree tree = test::random_tree(5, 500);
+    const Mesh mesh = build_branch_tubes(tree);
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        for (int k = 0; k < 3; k++) {
+            const uint32_t a = mesh.indices[i + k], b = mesh.indices[i + (k + 1) % 3];
+            // A triangle spans at most one side; a seam jump would span nearly a repeat.
+            ASSERT_LT(std::abs(mesh.uvs[a].x - mesh.uvs[b].x), 0.5f);
+        }
+    }
+    // First and last vertex of a ring are one place, with whole repeats between them and all else alike.
+    std::map<std::tuple<float, float, float>, std::set<float>> us;
+    for (size_t v = 0; v < mesh.positions.size(); v++) {
+        if (mesh.colors[v].g >= 1.0f) continue;
+        const Vec3 p = mesh.positions[v];
+        us[{p.x, p.y, p.z}].insert(mesh.uvs[v].x);
+    }
+    size_t seams = 0;
+    for (const auto& [place, values] : us) {
+        if (values.size() < 2) continue;
+        seams++;
+        ASSERT_EQ(*values.begin(), 0.0f);
+        ASSERT_EQ(*values.rbegin(), std::round(*values.rbegin()));
+    }
+    ASSERT_GT(seams, 100u);
+}
+
+TEST(BranchTubes, TangentsFollowTheUvs) {
+    const Tree tree = test::random_tree(6, 300);
+    const Mesh mesh = build_branch_tubes(tree);
+    size_t good = 0, all = 0;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
+        const DVec3 e1(mesh.positions[b] - mesh.positions[a]), e2(mesh.positions[c] - mesh.positions[a]);
+        const DVec2 d1(mesh.uvs[b] - mesh.uvs[a]), d2(mesh.uvs[c] - mesh.uvs[a]);
+        const double det = d1.x * d2.y - d1.y * d2.x;
+        if (std::abs(det) < 1e-12) continue;
+        const DVec3 along_u = (e1 * d2.y - e2 * d1.y) / det, along_v = (e2 * d1.x - e1 * d2.x) / det;
+        const DVec3 tangent(mesh.tangents[a]), normal(mesh.normals[a]);
+        const DVec3 bitangent = glm::cross(normal, tangent) * static_cast<double>(mesh.tangents[a].w);
+        all++;
+        // v runs down the picture, the bitangent up it.
+        good += glm::dot(along_u, tangent) > 0.0 && glm::dot(along_v, bitangent) < 0.0;
+    }
+    ASSERT_GT(all, 1000u);
+    EXPECT_GT(good, all * 99 / 100);
+}
+
+TEST(BranchTubes, WindChannelsMeanWhatTheDesignSays) {
+    const Tree tree = test::random_tree(7, 800);
+    const Mesh mesh = build_branch_tubes(tree);
+    float low = 1.0f, high = 0.0f;
+    for (const Vec4& color : mesh.colors) {
+        low = std::min(low, color.r);
+        high = std::max(high, color.r);
+    }
+    EXPECT_EQ(low, 0.0f);
+    EXPECT_NEAR(high, 1.0f, 1e-4f);
+    for (const TubeRange& tube : tubes_of(mesh)) {
+        float tip = 0.0f;
+        for (uint32_t v = tube.first_vertex; v < tube.end_vertex; v++) {
+            ASSERT_EQ(mesh.colors[v].b, mesh.colors[tube.first_vertex].b);
+            ASSERT_EQ(mesh.custom0[v], mesh.custom0[tube.first_vertex]);
+            tip = std::max(tip, mesh.colors[v].g);
+        }
+        ASSERT_EQ(mesh.colors[tube.first_vertex].g, 0.0f);
+        ASSERT_EQ(tip, 1.0f);
+    }
+}
+
+TEST(BranchTubes, NormalsPointAwayFromTheAxis) {
+    const Tree tree = test::random_tree(8, 300);
+    const Mesh mesh = build_branch_tubes(tree);
+    for (const TubeRange& tube : tubes_of(mesh)) {
+        // The first ring lies about the pivot.
+        for (uint32_t v = tube.first_vertex; v < tube.end_vertex && mesh.colors[v].g == 0.0f; v++)
+            ASSERT_GT(glm::dot(mesh.normals[v], mesh.positions[v] - Vec3(mesh.custom0[v])), 0.0f);
+    }
+}
+
+TEST(BranchTubes, SameBytesWhateverTheThreads) {
+    const Tree tree = test::random_tree(9, 5000);
+    set_thread_count(1);
+    const Mesh one = build_branch_tubes(tree);
+    set_thread_count(5);
+    const Mesh five = build_branch_tubes(tree);
+    set_thread_count(0);
+    EXPECT_TRUE(same_bytes(one, five));
+}
+
+TEST(BranchTubes, CoarserLevelsCostLessAndKeepTheTrunk) {
+    const Tree tree = test::random_tree(10, 3000);
+    size_t before = SIZE_MAX;
+    for (int level = 0; level < 4; level++) {
+        const Mesh mesh = build_branch_tubes(tree, {.level = level});
+        EXPECT_LT(mesh.triangle_count(), before * 7 / 10) << level;
+        before = mesh.triangle_count();
+        EXPECT_EQ(mesh.custom0[0].w, 0.0f);
+    }
+}
+
+TEST(BranchTubes, SmallestTrees) {
+    EXPECT_TRUE(build_branch_tubes(Tree()).positions.empty());
+    Tree tree;
+    const NodeId root = tree.add_root({1.0, 2.0, 3.0}, 0.1);
+    EXPECT_TRUE(build_branch_tubes(tree).positions.empty());
+    const NodeId twin = tree.add_child(root, {1.0, 2.0, 3.0}, 0.1);
+    EXPECT_TRUE(build_branch_tubes(tree).positions.empty());
+    tree.set_position(twin, {1.0, 4.0, 3.0});
+    const Mesh mesh = build_branch_tubes(tree);
+    expect_sound(mesh, tree);
+    EXPECT_GT(mesh.triangle_count(), 10u);
+    tree.set_position(twin, {1e9, 4.0, 3.0});
+    EXPECT_THROW(build_branch_tubes(tree), Error);
+}
+
+}  // namespace
+}  // namespace treerec
