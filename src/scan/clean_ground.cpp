@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "geometry/random.h"
+#include "scan/clean_steps.h"
+#include "scan/robust.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kSteepest = 0.7;      // rise over run of the ground, 35 degrees
+constexpr double kLowPart = 0.3;       // of the height: where ground may lie
+constexpr double kLeastFilled = 0.4;   // share of the columns around that hold ground
+constexpr size_t kFewestColumns = 30;  // with ground
+constexpr int kTrials = 300;           // planes tried
+constexpr int kMostAcross = 512;       // columns along an axis
+
+// The ground's height: y = height + slope . (x, z) from a centre.
+struct Plane {
+    DVec2 centre{0.0};
+    double height = 0.0;
+    DVec2 slope{0.0};
+
+    double above(const Vec3& p) const { return p.y - height - glm::dot(slope, DVec2(p.x, p.z) - centre); }
+};
+
+// Square columns over the XZ plane, with the lowest point of each.
+class Columns {
+  public:
+    Columns(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges, double cell)
+        : x_(ranges[0]), z_(ranges[2]), cell_(cell) {
+        width_ = static_cast<int>(x_.size() / cell_) + 1;
+        depth_ = static_cast<int>(z_.size() / cell_) + 1;
+        lowest_.assign(static_cast<size_t>(width_) * static_cast<size_t>(depth_), -1);
+        for (size_t i = 0; i < points.size(); i++) {
+            const int c = column_of(points[i]);
+            if (c < 0 || !ranges[1].contains(points[i].y)) continue;
+            int32_t& low = lowest_[static_cast<size_t>(c)];
+            if (low < 0 || points[i].y < points[static_cast<size_t>(low)].y) low = static_cast<int32_t>(i);
+        }
+    }
+
+    // -1 outside.
+    int column_of(const Vec3& p) const {
+        if (!x_.contains(p.x) || !z_.contains(p.z)) return -1;
+        return static_cast<int>((p.z - z_.low) / cell_) * width_ + static_cast<int>((p.x - x_.low) / cell_);
+    }
+    const std::vector<int32_t>& lowest() const { return lowest_; }
+    int width() const { return width_; }
+    int depth() const { return depth_; }
+
+  private:
+    Range x_;
+    Range z_;
+    double cell_;
+    int width_ = 0;
+    int depth_ = 0;
+    std::vector<int32_t> lowest_;  // by column; -1 where it is empty
+};
+
+bool plane_through(const Vec3& a, const Vec3& b, const Vec3& c, Plane& plane) {
+    const DVec3 normal = glm::cross(DVec3(b) - DVec3(a), DVec3(c) - DVec3(a));
+    if (std::abs(normal.y) < 1e-9 || !is_finite(normal)) return false;
+    plane.centre = DVec2(a.x, a.z);
+    plane.height = a.y;
+    plane.slope = DVec2(-normal.x / normal.y, -normal.z / normal.y);
+    return glm::length(plane.slope) <= kSteepest;
+}
+
+// Least squares through the points within `tolerance` of `plane`.
+Plane refine(const std::vector<Vec3>& points, const Plane& plane, double tolerance) {
+    DVec3 mean(0.0);
+    double count = 0.0;
+    for (const Vec3& p : points) {
+        if (std::abs(plane.above(p)) > tolerance) continue;
+        mean += DVec3(p);
+        count += 1.0;
+    }
+    if (count < 3.0) return plane;
+    mean /= count;
+    double xx = 0.0, xz = 0.0, zz = 0.0, xy = 0.0, zy = 0.0;
+    for (const Vec3& p : points) {
+        if (std::abs(plane.above(p)) > tolerance) continue;
+        const DVec3 d = DVec3(p) - mean;
+        xx += d.x * d.x;
+        xz += d.x * d.z;
+        zz += d.z * d.z;
+        xy += d.x * d.y;
+        zy += d.z * d.y;
+    }
+    const double determinant = xx * zz - xz * xz;
+    if (determinant < 1e-9 * xx * zz || !(xx * zz > 0.0)) return plane;
+    Plane better;
+    better.centre = DVec2(mean.x, mean.z);
+    better.height = mean.y;
+    better.slope = DVec2(xy * zz - zy * xz, zy * xx - xy * xz) / determinant;
+    return glm::length(better.slope) <= kSteepest ? better : plane;
+}
+
+// The plane near most of the low points (Fischler and Bolles 1981), refined; inliers: how many are near it.
+Plane best_plane(const std::vector<Vec3>& low, double tolerance, size_t& inliers) {
+    Random random(1);
+    Plane best;
+    inliers = 0;
+    auto count_near = [&](const Plane& plane) {
+        return static_cast<size_t>(std::count_if(
+            low.begin(), low.end(), [&](const Vec3& p) { return std::abs(plane.above(p)) <= tolerance; }));
+    };
+    const uint32_t size = static_cast<uint32_t>(low.size());
+    for (int trial = 0; trial < kTrials; trial++) {
+        Plane plane;
+        const Vec3& a = low[random.below(size)];
+        const Vec3& b = low[random.below(size)];
+        if (!plane_through(a, b, low[random.below(size)], plane)) continue;
+        const size_t near = count_near(plane);
+        if (near <= inliers) continue;
+        inliers = near;
+        best = plane;
+    }
+    for (int round = 0; round < 3; round++)
+        best = refine(low, best, tolerance);
+    inliers = count_near(best);
+    return best;
+}
+
+// Whether the columns with ground are a filled area, not a stem's foot or the rim of a crown.
+bool is_wide_and_filled(const Columns& columns, const std::vector<uint8_t>& has_ground) {
+    size_t count = 0;
+    DVec2 mean(0.0);
+    auto each = [&](const auto& body) {
+        for (int z = 0; z < columns.depth(); z++)
+            for (int x = 0; x < columns.width(); x++)
+                if (has_ground[static_cast<size_t>(z * columns.width() + x)]) body(DVec2(x, z));
+    };
+    each([&](const DVec2& c) {
+        mean += c;
+        count++;
+    });
+    if (count < kFewestColumns) return false;
+    mean /= static_cast<double>(count);
+    double xx = 0.0, xz = 0.0, zz = 0.0;
+    each([&](const DVec2& c) {
+        const DVec2 d = c - mean;
+        xx += d.x * d.x;
+        xz += d.x * d.y;
+        zz += d.y * d.y;
+    });
+    const double n = static_cast<double>(count);
+    xx /= n, xz /= n, zz /= n;
+    const double middle = 0.5 * (xx + zz);
+    const double split = std::sqrt(0.25 * (xx - zz) * (xx - zz) + xz * xz);
+    // A filled ellipse with these second moments has the area 4 pi sqrt(det), here in columns.
+    const double area = 4.0 * kPi * std::sqrt(std::max(0.0, (middle - split) * (middle + split)));
+    return middle - split > 1.5 && n > kLeastFilled * area;
+}
+
+}  // namespace
+
+std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
+    std::vector<uint8_t> goes(points.size());
+    if (points.size() < 100) return goes;
+    const std::array<Range, 3> ranges = robust_ranges(points);
+    const double height = ranges[1].size();
+    const double across = std::max(ranges[0].size(), ranges[2].size());
+    if (!(height > 0.0) || !(across > 0.0)) return goes;
+    const double cell = std::max(across / kMostAcross, 0.025 * std::max(height, 0.4 * across));
+    const double tolerance = 0.4 * cell;
+    const Columns columns(points, ranges, cell);
+
+    std::vector<Vec3> low;
+    for (const int32_t i : columns.lowest())
+        if (i >= 0 &&
+            points[static_cast<size_t>(i)].y < ranges[1].low + kLowPart * height + 0.5 * kSteepest * across)
+            low.push_back(points[static_cast<size_t>(i)]);
+    if (low.size() < kFewestColumns) return goes;
+    size_t inliers = 0;
+    const Plane plane = best_plane(low, tolerance, inliers);
+    if (inliers < kFewestColumns) return goes;
+
+    // Next to nothing may lie below the ground: a crown has its stem below it.
+    size_t below = 0;
+    for (const Vec3& p : points)
+        below += plane.above(p) < -3.0 * tolerance && ranges[1].contains(p.y);
+    if (below * 500 > points.size()) return goes;
+
+    std::vector<uint8_t> has_ground(columns.lowest().size());
+    for (size_t c = 0; c < has_ground.size(); c++) {
+        const int32_t i = columns.lowest()[c];
+        has_ground[c] = i >= 0 && std::abs(plane.above(points[static_cast<size_t>(i)])) <= tolerance;
+    }
+    if (!is_wide_and_filled(columns, has_ground)) return goes;
+
+    // What stands on the ground is seen in the layers right above it, all of them.
+    constexpr int kLayers = 4;
+    std::vector<uint8_t> layers(has_ground.size());
+    for (const Vec3& p : points) {
+        const int c = columns.column_of(p);
+        const double layer = (plane.above(p) - tolerance) / tolerance;
+        if (c >= 0 && layer >= 0.0 && layer < kLayers)
+            layers[static_cast<size_t>(c)] |= static_cast<uint8_t>(1 << static_cast<int>(layer));
+    }
+    constexpr uint8_t kAllLayers = (1 << kLayers) - 1;
+    for (size_t i = 0; i < points.size(); i++) {
+        const double above = plane.above(points[i]);
+        if (std::abs(above) > tolerance) continue;
+        const int c = columns.column_of(points[i]);
+        goes[i] = c < 0 || layers[static_cast<size_t>(c)] != kAllLayers;
+    }
+    return goes;
+}
+
+}  // namespace treerec

@@ -1,0 +1,26 @@
+// A cloud reduced to what the cleaners look at. Internal to scan/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "scan/robust.h"
+
+namespace treerec {
+
+// Representatives in canonical order (by x, y, z; all distinct), whatever the order of the cloud's points.
+struct Samples {
+    std::vector<Vec3> points;
+    std::vector<uint32_t> of_point;  // by point of the cloud
+};
+
+// Every distinct point, or one point per grid cell where there would be more than `limit`.
+Samples take_samples(const std::vector<Vec3>& positions, size_t limit);
+
+// Labels the points by connected component, where points in touching cells (26 neighbours) are connected.
+// Labels are 0.. in the order of each component's first point. cell: metres.
+std::vector<uint32_t> connected_components(const std::vector<Vec3>& points, double cell);
+
+}  // namespace treerec
