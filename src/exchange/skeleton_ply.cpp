@@ -3,9 +3,9 @@
 #include <cstring>
 
 #include "error.h"
-#include "exchange/file_bytes.h"
 #include "exchange/skeleton_table.h"
 #include "exchange/tree_files.h"
+#include "scan/file_bytes.h"
 
 namespace treerec {
 
@@ -211,12 +211,12 @@ void write_skeleton_ply(const std::string& path, const Tree& tree) {
         append_bytes(bytes, static_cast<int32_t>(table.parents[i]));
         append_bytes(bytes, static_cast<int32_t>(i));
     }
-    write_file_bytes(path, bytes);
+    write_file(path, bytes);
 }
 
 Tree read_skeleton_ply(const std::string& path, UpAxis up) {
-    const std::string bytes = read_file_bytes(path);
-    std::string_view rest = bytes;
+    const FileBytes bytes = read_file(path);
+    std::string_view rest = bytes.view();
     const Header header = read_header(rest, up, path);
     SkeletonTable table;
     bool has_vertices = false;

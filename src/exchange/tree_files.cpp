@@ -1,11 +1,13 @@
 #include "exchange/tree_files.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <unordered_map>
 
 #include "error.h"
-#include "exchange/file_bytes.h"
 #include "exchange/skeleton_table.h"
+#include "scan/file_bytes.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -132,12 +134,12 @@ void write_treefile(const std::string& path, const Tree& tree) {
         append_number(text, int64_t{table.flags[i]});
     }
     text += '\n';
-    write_file_bytes(path, text);
+    write_file(path, text);
 }
 
 Tree read_treefile(const std::string& path, UpAxis up) {
-    const std::string bytes = read_file_bytes(path);
-    std::string_view rest = bytes;
+    const FileBytes bytes = read_file(path);
+    std::string_view rest = bytes.view();
     FileStamp stamp{up, 1.0};
     std::optional<TreefileHeader> header;
     SkeletonTable largest;
@@ -194,12 +196,12 @@ void write_qsm_csv(const std::string& path, const Tree& tree) {
             text += node.is_measured() ? ",1\n" : ",0\n";
         }
     }
-    write_file_bytes(path, text);
+    write_file(path, text);
 }
 
 Tree read_node_csv(const std::string& path, UpAxis up) {
-    const std::string bytes = read_file_bytes(path);
-    std::string_view rest = bytes;
+    const FileBytes bytes = read_file(path);
+    std::string_view rest = bytes.view();
     const std::optional<std::string_view> head = next_line(rest);
     const Columns columns(head ? split_fields(*head) : std::vector<std::string>());
     if (!columns.has_node() || columns.parent < 0)
@@ -246,7 +248,13 @@ enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv };
 
 // From the file's first 4 kB.
 SkeletonFormat sniff(const std::string& path) {
-    const std::string bytes = read_file_head(path, 4096);
+    const std::filesystem::path file(std::u8string(path.begin(), path.end()));
+    if (!std::filesystem::exists(file)) throw Error("There is no file '" + path + "'.");
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes(4096, '\0');
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0)
+        return SkeletonFormat::kNone;
+    bytes.resize(static_cast<size_t>(in.gcount()));
     std::string_view rest = bytes;
     if (rest.starts_with("ply")) {
         bool edges = false;

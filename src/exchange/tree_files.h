@@ -35,7 +35,7 @@ Tree read_skeleton_ply(const std::string& path, UpAxis up = UpAxis::kZ);
 Tree read_node_csv(const std::string& path, UpAxis up = UpAxis::kZ);
 
 // Whether the file's first lines say that it is one of the skeleton files read here (and not a point cloud).
-// Throws Error only if the file cannot be read.
+// Throws Error only if there is no such file.
 bool is_skeleton_file(const std::string& path);
 // Any of them, told apart by their contents.
 Tree read_skeleton(const std::string& path, UpAxis up = UpAxis::kZ);

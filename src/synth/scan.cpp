@@ -44,11 +44,11 @@ std::vector<Surface> wood_of(const Tree& tree) {
     return surfaces;
 }
 
-// Discs along the thin wood. `share` of full foliage: 1 is a disc every 2.5 cm.
+// Discs along the thin wood. `share` of full foliage: 1 is a disc every 1.5 cm.
 void add_leaves(const Tree& tree, double share, uint64_t seed, std::vector<Surface>& surfaces) {
     if (share <= 0.0) return;
     constexpr double kThinWood = 0.008;
-    constexpr double kFullSpacing = 0.025;
+    constexpr double kFullSpacing = 0.015;
     const double spacing = kFullSpacing / share;
     Random random(seed, 21);
     double until_next = spacing * random.uniform();
@@ -60,7 +60,7 @@ void add_leaves(const Tree& tree, double share, uint64_t seed, std::vector<Surfa
         for (; until_next < length; until_next += spacing * random.uniform(0.6, 1.4)) {
             const DVec3 out = random.direction();
             const DVec3 normal = glm::normalize(DVec3(0.0, 0.9, 0.0) + 0.8 * random.direction());
-            const double radius = random.uniform(0.02, 0.04);
+            const double radius = random.uniform(0.025, 0.05);
             const DVec3 centre = glm::mix(from, node.position, until_next / length) + 0.06 * out;
             surfaces.push_back({centre, normal, radius, radius, true});
         }
