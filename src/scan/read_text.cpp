@@ -80,7 +80,7 @@ bool next_value(const char*& p, const char* end, char separator, double& value, 
             // Text, or "1.#QNAN" and its like.
             clean = clean && *p == '#';
             value = kNaN;
-            while (p != end && !is_blank(*p) && *p != separator)
+            while (p != end && *p != separator && (separator != ' ' || !is_blank(*p)))
                 p++;
         }
         while (p != end && is_blank(*p))
@@ -296,10 +296,11 @@ Layout find_layout(const ReadJob& job) {
         const std::string_view text = trimmed(line);
         if (text.empty()) continue;
         size_t numeric = 0;
-        size_t spaced = 0;
-        const std::vector<double> values = values_of(text, ',', numeric);
-        values_of(text, ';', spaced);
-        if (!is_comment(text) && std::max(numeric, spaced) >= 3) {
+        std::string split(text);  // by every separator there is
+        std::replace_if(
+            split.begin(), split.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+        const std::vector<double> values = values_of(split, ' ', numeric);
+        if (!is_comment(text) && numeric >= 3) {
             layout.data = lines.begin();
             found = true;
         } else if (values.size() == 1 && numeric == 1 && values[0] >= 0.0 &&
