@@ -1,0 +1,24 @@
+// What goes into a model file, whatever its format.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exchange/material_textures.h"
+#include "mesh/mesh.h"
+
+namespace treerec {
+
+struct ModelFile {
+    const Mesh* bark = nullptr;      // null or without triangles: left out
+    const Mesh* leaves = nullptr;    // likewise
+    std::string preset = "generic";  // of the textures (foliage/leaves.h)
+    uint64_t texture_seed = 1;
+    // Made from preset and texture_seed when empty; give them to write several files at the cost of one.
+    std::vector<NamedPicture> pictures;
+    std::vector<std::pair<std::string, double>> extras;  // kept in glTF: height_m, dbh_m, seed, nodes, ...
+};
+
+}  // namespace treerec

@@ -1,0 +1,151 @@
+#include "exchange/obj.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "error.h"
+#include "geometry/parallel.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kChunk = 8192;  // vertices or triangles formatted at a time
+
+// Appends to a char array that has room: the caller reserves the longest line times the lines.
+struct Writer {
+    char* at;
+
+    void text(const char* s) {
+        const size_t length = std::strlen(s);
+        std::memcpy(at, s, length);
+        at += length;
+    }
+    void integer(uint64_t value) { at = std::to_chars(at, at + 20, value).ptr; }
+    // With `decimals` digits after the point, without trailing zeros.
+    void number(float value, int decimals) {
+        static constexpr double kScales[] = {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
+        const double scaled = std::abs(static_cast<double>(value)) * kScales[decimals] + 0.5;
+        if (!(scaled < 9e15)) {
+            at = std::to_chars(at, at + 48, value).ptr;
+            return;
+        }
+        auto digits = static_cast<uint64_t>(scaled);
+        if (value < 0.0f && digits > 0) *at++ = '-';
+        const auto unit = static_cast<uint64_t>(kScales[decimals]);
+        integer(digits / unit);
+        digits %= unit;
+        if (digits == 0) return;
+        *at++ = '.';
+        for (uint64_t place = unit / 10; digits > 0; place /= 10) {
+            *at++ = static_cast<char>('0' + digits / place);
+            digits %= place;
+        }
+    }
+};
+
+// Formats lines 0..count in parallel, `longest` bytes each at most, and appends them to `out` in order.
+template <typename Line>
+void append_lines(std::string& out, size_t count, size_t longest, const Line& line) {
+    std::vector<std::string> parts((count + kChunk - 1) / kChunk);
+    parallel_for(count, kChunk, [&](size_t begin, size_t end) {
+        std::string& part = parts[begin / kChunk];
+        part.resize((end - begin) * longest);
+        Writer writer{part.data()};
+        for (size_t i = begin; i < end; i++)
+            line(writer, i);
+        part.resize(static_cast<size_t>(writer.at - part.data()));
+    });
+    size_t size = out.size();
+    for (const std::string& part : parts)
+        size += part.size();
+    out.reserve(size);
+    for (const std::string& part : parts)
+        out += part;
+}
+
+void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t first) {
+    out += std::string("o ") + name + "\n";
+    const size_t count = mesh.positions.size();
+    append_lines(out, count, 160, [&](Writer& writer, size_t i) {
+        writer.text("v");
+        for (int axis = 0; axis < 3; axis++) {
+            writer.text(" ");
+            writer.number(mesh.positions[i][axis], 5);
+        }
+        writer.text("\n");
+    });
+    append_lines(out, count, 110, [&](Writer& writer, size_t i) {
+        writer.text("vt ");
+        writer.number(mesh.uvs[i].x, 5);
+        writer.text(" ");
+        writer.number(1.0f - mesh.uvs[i].y, 5);  // OBJ counts v upwards
+        writer.text("\n");
+    });
+    append_lines(out, count, 160, [&](Writer& writer, size_t i) {
+        writer.text("vn");
+        for (int axis = 0; axis < 3; axis++) {
+            writer.text(" ");
+            writer.number(mesh.normals[i][axis], 4);
+        }
+        writer.text("\n");
+    });
+    out += std::string("usemtl ") + name + "\n";
+    append_lines(out, mesh.triangle_count(), 210, [&](Writer& writer, size_t i) {
+        writer.text("f");
+        for (size_t k = 0; k < 3; k++) {
+            const uint64_t index = first + mesh.indices[3 * i + k];
+            writer.text(" ");
+            const char* number = writer.at;
+            writer.integer(index);
+            const auto length = static_cast<size_t>(writer.at - number);
+            for (int repeat = 0; repeat < 2; repeat++) {
+                *writer.at++ = '/';
+                std::memcpy(writer.at, number, length);
+                writer.at += length;
+            }
+        }
+        writer.text("\n");
+    });
+}
+
+}  // namespace
+
+void write_obj(const std::string& path, const ModelFile& model) {
+    const std::filesystem::path target(path);
+    const std::string stem = target.stem().string();
+    const bool bark = model.bark && !model.bark->indices.empty();
+    const bool leaves = model.leaves && !model.leaves->indices.empty();
+    std::string out = "# Metres, Y up.\n";
+    std::string materials;
+    if (bark || leaves) {
+        out += "mtllib " + stem + ".mtl\n";
+        const std::vector<NamedPicture> pictures =
+            model.pictures.empty() ? make_pictures(model.preset, kTextureSize, model.texture_seed)
+                                   : model.pictures;
+        for (const NamedPicture& picture : pictures) {
+            const bool used = picture.name.rfind("bark", 0) == 0 ? bark : leaves;
+            if (!used) continue;
+            const std::string name = stem + "_" + picture.name + ".png";
+            write_file((target.parent_path() / name).string(), picture.png.data(), picture.png.size());
+        }
+    }
+    if (bark) {
+        materials += "newmtl bark\nKd 1 1 1\nKs 0 0 0\nPr 1\nmap_Kd " + stem + "_bark_albedo.png\nnorm " +
+                     stem + "_bark_normal.png\nmap_Bump " + stem + "_bark_normal.png\n";
+        append_mesh(out, *model.bark, "bark", 1);
+    }
+    if (leaves) {
+        materials += "newmtl leaves\nKd 1 1 1\nKs 0 0 0\nPr 0.7\nmap_Kd " + stem +
+                     "_leaf_albedo.png\nmap_d " + stem + "_leaf_albedo.png\nnorm " + stem +
+                     "_leaf_normal.png\nmap_Bump " + stem + "_leaf_normal.png\n";
+        append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1);
+    }
+    if (!materials.empty())
+        write_file((target.parent_path() / (stem + ".mtl")).string(), materials.data(), materials.size());
+    write_file(path, out.data(), out.size());
+}
+
+}  // namespace treerec
