@@ -88,6 +88,13 @@ PointGraph delaunay_graph(const std::vector<Vec3>& points, Progress& progress) {
     return graph;
 }
 
+void LocalScale::set_spacing(std::vector<float> values) {
+    spacing = std::move(values);
+    reach.resize(spacing.size());
+    for (size_t v = 0; v < spacing.size(); v++)
+        reach[v] = kReachFactor * spacing[v];
+}
+
 LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
     const size_t count = graph.size();
     std::vector<float> spacing(count);
@@ -124,10 +131,7 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
         spacing.swap(smooth);
     }
     LocalScale scale;
-    scale.reach.resize(count);
-    for (size_t v = 0; v < count; v++)
-        scale.reach[v] = kReachFactor * spacing[v];
-    scale.spacing = std::move(spacing);
+    scale.set_spacing(std::move(spacing));
     return scale;
 }
 

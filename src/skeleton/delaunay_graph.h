@@ -28,6 +28,9 @@ PointGraph delaunay_graph(const std::vector<Vec3>& points, Progress& progress);
 struct LocalScale {
     std::vector<float> spacing;  // metres between neighbouring samples, smoothed over the neighbours
     std::vector<float> reach;    // metres; an edge longer than this crosses a gap
+
+    // Takes new spacings; the reach follows.
+    void set_spacing(std::vector<float> values);
 };
 
 LocalScale local_scale(const PointGraph& graph, double thinning_spacing);

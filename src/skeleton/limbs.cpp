@@ -10,6 +10,7 @@ namespace treerec {
 namespace {
 
 constexpr double kSurfaceFactor = 1.3;  // times the radius: still the parent's own surface
+constexpr double kSurfaceMargin = 1.0;  // and so many point spacings more: a strip's radius is too small
 constexpr double kSparseBranch = 3.0;   // point spacings that a branch must at least reach out
 constexpr int kSmoothWindow = 2;        // stations to each side
 
@@ -50,17 +51,18 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     return shape;
 }
 
-// The axis of a limb, smoothed, with smoothed radii: what side chains are compared with.
+// The axis of a limb, smoothed, and how far around it points are still its own: what side chains are compared
+// with.
 struct LimbAxis {
     std::vector<DVec3> position;
-    std::vector<double> radius;
+    std::vector<double> surface;
 };
 
 LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& shape) {
     const int count = static_cast<int>(limb.slices.size());
     LimbAxis axis;
     axis.position.resize(limb.slices.size());
-    axis.radius.resize(limb.slices.size());
+    axis.surface.resize(limb.slices.size());
     for (int i = 0; i < count; i++) {
         DVec3 sum(0.0);
         double radius = 0.0;
@@ -77,7 +79,8 @@ LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& s
             members += n;
         }
         axis.position[i] = sum / weight;
-        axis.radius[i] = members > 0.0 ? radius / members : 0.0;
+        axis.surface[i] = kSurfaceFactor * (members > 0.0 ? radius / members : 0.0) +
+                          kSurfaceMargin * shape.spacing[limb.slices[i]];
     }
     return axis;
 }
@@ -170,8 +173,7 @@ std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& poin
             const DVec3& centre = slices.centre[slice];
             station = nearest_station(axis, station, centre);
             stations.push_back(station);
-            escapes.push_back(glm::distance(centre, axis.position[station]) -
-                              kSurfaceFactor * axis.radius[station]);
+            escapes.push_back(glm::distance(centre, axis.position[station]) - axis.surface[station]);
             farthest = std::max(farthest, escapes.back());
             spacing += shape.spacing[slice];
         }

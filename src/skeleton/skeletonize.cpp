@@ -19,6 +19,7 @@ namespace {
 constexpr size_t kLeastPoints = 10;
 constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
 constexpr double kLeastBranch = 0.05;   // metres, likewise
+constexpr double kFineScale = 0.6;      // the second cut of thin wood is that much finer
 constexpr double kRawRadius = 0.002;    // metres
 
 class StageClock {
@@ -70,7 +71,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     SubProgress triangulating(listener, 0.1, 0.55);
     const PointGraph graph = delaunay_graph(points, triangulating);
-    const LocalScale scale = local_scale(graph, result.spacing);
+    LocalScale scale = local_scale(graph, result.spacing);
     clock.stop("Triangulation", graph.neighbour.size() / 2);
 
     progress.update(0.55, "Shortest paths");
@@ -83,22 +84,29 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.7, "Branches");
     progress.check();
-    const Slices slices = cut_slices(points, graph, scale, paths, root.position);
-    progress.check();
     LimbOptions limb_options;
     double extent = 0.0;
-    for (const DVec3& centre : slices.centre)
-        extent = std::max(extent, glm::distance(centre, root.position));
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root.position));
     limb_options.minimum_branch =
         options.minimum_branch > 0.0 ? options.minimum_branch : std::max(kLeastBranch, kBranchShare * extent);
-    std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
-    clock.stop("Branches", limbs.size());
-
-    progress.update(0.8, "Radii");
     AxisOptions axis_options;
     axis_options.fit_radii = options.fit_radii;
     axis_options.seed = options.seed;
+    // Once to learn where the wood is thick, then again with slices that fit the thickness.
+    Slices slices = cut_slices(points, graph, scale, paths, root.position);
+    std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
+    infer_radii(axes, limbs);
+    follow_thickness(scale, kFineScale, axes, limbs, slices, points);
+    progress.check();
+    slices = cut_slices(points, graph, scale, paths, root.position);
+    progress.check();
+    limbs = find_limbs(slices, points, scale, limb_options);
+    clock.stop("Branches", limbs.size());
+
+    progress.update(0.8, "Radii");
+    axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     infer_radii(axes, limbs);
     clock.stop("Radii", limbs.size());
 
