@@ -4,6 +4,8 @@
 
 #include <godot_cpp/core/class_db.hpp>
 
+#include "tree_reconstruction.h"
+
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
 #endif
@@ -29,6 +31,7 @@ static void load_class_reference() {
 void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
     switch (p_level) {
         case MODULE_INITIALIZATION_LEVEL_SCENE:
+            GDREGISTER_CLASS(TreeReconstruction)
             break;
         case MODULE_INITIALIZATION_LEVEL_EDITOR:
 #ifdef TREEREC_EDITOR

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <exception>
+#include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_float32_array.hpp>
+#include <godot_cpp/variant/packed_int32_array.hpp>
+#include <string>
+#include <vector>
+
+#include "foliage/leaves.h"
+#include "geometry/vec.h"
+#include "mesh/mesh.h"
+#include "tree/tree.h"
+
+// Values of the core as values of the engine.
+
+inline godot::Vector3 to_godot(const treerec::DVec3& p_vector) {
+    return godot::Vector3(float(p_vector.x), float(p_vector.y), float(p_vector.z));
+}
+
+inline godot::String to_godot(const std::string& p_text) {
+    return godot::String::utf8(p_text.c_str(), int64_t(p_text.size()));
+}
+
+std::string to_std(const godot::String& p_text);
+
+godot::PackedFloat32Array to_godot(const std::vector<float>& p_values);
+godot::PackedInt32Array to_godot(const std::vector<treerec::NodeId>& p_ids);
+
+// Arguments for ArrayMesh::add_surface_from_arrays(), with kSurfaceFlags where there are CUSTOM0 values;
+// empty for an empty mesh. Turns the triangles, since the engine's front faces are clockwise.
+godot::Array to_surface_arrays(const treerec::Mesh& p_mesh);
+extern const int64_t kSurfaceFlags;
+
+// The core's trees keep what a file or a Dictionary holds. Throws treerec::Error for what is no such
+// skeleton.
+godot::Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version);
+treerec::Tree tree_from_dictionary(const godot::Dictionary& p_data);
+
+// Runs what may throw; the engine gets the error's sentence and the caller gets p_fallback.
+template <typename F, typename T>
+T guarded(T p_fallback, const F& p_function) {
+    try {
+        return p_function();
+    } catch (const std::exception& error) {
+        ERR_PRINT(to_godot(std::string(error.what())));
+        return p_fallback;
+    }
+}

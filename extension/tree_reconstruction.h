@@ -1,0 +1,110 @@
+#pragma once
+
+#include <godot_cpp/classes/array_mesh.hpp>
+#include <godot_cpp/classes/multi_mesh.hpp>
+#include <godot_cpp/classes/resource.hpp>
+#include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_vector3_array.hpp>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "foliage/leaves.h"
+#include "tree/tree.h"
+
+// A reconstructed tree: its skeleton, where it comes from, and the rules by which it gets bark and leaves.
+// The builders may run on any thread, also while another thread changes the tree: they see it as it was when
+// they began.
+class TreeReconstruction : public godot::Resource {
+    GDCLASS(TreeReconstruction, godot::Resource)
+
+  public:
+    enum NodeKind { NODE_KIND_LEAF, NODE_KIND_BRANCH, NODE_KIND_COMMON, NODE_KIND_TRUNK };
+    enum LeafArrangement { LEAF_ARRANGEMENT_ALTERNATE, LEAF_ARRANGEMENT_OPPOSITE };
+    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 1 };
+
+    // For the other classes of this extension.
+    void set_tree(treerec::Tree p_tree);
+    std::shared_ptr<const treerec::Tree> get_tree() const;
+    treerec::LeafRules get_leaf_rules() const;
+
+    // Stored properties.
+    void set_skeleton(const godot::Dictionary& p_skeleton);
+    godot::Dictionary get_skeleton() const;
+    void set_provenance(const godot::Dictionary& p_provenance);
+    godot::Dictionary get_provenance() const { return provenance_; }
+    void set_seed(int64_t p_seed);
+    int64_t get_seed() const;
+    void set_leaf_preset(const godot::String& p_name);
+    godot::String get_leaf_preset() const;
+    void set_leaves_enabled(bool p_enabled);
+    bool are_leaves_enabled() const;
+    void set_leaf_arrangement(LeafArrangement p_arrangement);
+    LeafArrangement get_leaf_arrangement() const;
+    void set_leaf_value(int p_index, double p_value);
+    double get_leaf_value(int p_index) const;
+    void set_maximum_leaves(int p_count);
+    int get_maximum_leaves() const;
+
+    // Queries.
+    bool is_empty() const;
+    int64_t get_node_count() const;
+    int get_root() const;
+    bool has_node(int p_id) const;
+    godot::Vector3 get_node_position(int p_id) const;
+    godot::PackedFloat64Array get_node_scan_position(int p_id) const;
+    double get_node_radius(int p_id) const;
+    int get_node_parent(int p_id) const;
+    godot::PackedInt32Array get_node_children(int p_id) const;
+    NodeKind get_node_kind(int p_id) const;
+    int get_node_depth(int p_id) const;
+    bool is_trunk(int p_id) const;
+    bool is_radius_measured(int p_id) const;
+    bool is_guess(int p_id) const;
+    godot::PackedInt32Array get_node_ids() const;
+    godot::PackedInt32Array get_leaves() const;
+    godot::PackedInt32Array get_branch_nodes() const;
+    godot::PackedInt32Array get_trunk_nodes() const;
+    godot::PackedVector3Array get_positions() const;
+    godot::PackedFloat32Array get_radii() const;
+    godot::PackedInt32Array get_parents() const;
+    godot::AABB get_aabb() const;
+    godot::Dictionary measure() const;
+
+    // Builders.
+    godot::Array build_mesh_arrays(int p_lod) const;
+    godot::Ref<godot::ArrayMesh> build_mesh(int p_lod) const;
+    godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
+    godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;
+    godot::Array build_skeleton_lines() const;
+    static godot::Array build_leaf_card_arrays(int p_lod);
+    static godot::PackedStringArray get_leaf_preset_names();
+
+  protected:
+    static void _bind_methods();
+    void _validate_property(godot::PropertyInfo& p_property) const;
+
+  private:
+    struct LeafValue;
+    static const LeafValue kLeafValues[];
+
+    // A node's data, or nothing and an error that names the id.
+    std::optional<treerec::Node> _find_node(int p_id) const;
+    godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
+    static void _bind_properties();
+
+    // Guards what the builders read, so that they may run while the main thread edits.
+    mutable std::mutex mutex_;
+    std::shared_ptr<const treerec::Tree> tree_ = std::make_shared<treerec::Tree>();
+    treerec::LeafRules leaf_rules_;
+    int64_t seed_ = 1;
+
+    godot::String leaf_preset_ = "generic";
+    godot::Dictionary provenance_;
+    godot::Dictionary
+        newer_skeleton_;  // of a version that this one can't read; kept so that saving loses nothing
+};
+
+VARIANT_ENUM_CAST(TreeReconstruction::NodeKind);
+VARIANT_ENUM_CAST(TreeReconstruction::LeafArrangement);
