@@ -1,0 +1,272 @@
+@tool
+@icon("../icons/TreeInstance3D.svg")
+class_name TreeInstance3D
+extends MeshInstance3D
+## Shows a [TreeReconstruction]: its bark as this node's mesh, its leaves as a multimesh.
+##
+## Set [member reconstruction] and the tree appears as soon as a worker thread has built it; [signal rebuilt]
+## says when. The tree is built again when the reconstruction or a property changes, at most once a frame.
+## The mesh is never saved with the scene: the reconstruction is, and the tree is built again on load.
+
+## Emitted when the mesh and the leaves match the properties again.
+signal rebuilt
+
+const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+const _WIND_MARGIN: float = 0.15
+
+## Whether trees are built on worker threads. Turn it off to find errors more easily: then they are built on
+## the main thread, at the end of the frame.
+static var threaded: bool = true
+
+## The tree to show.
+@export var reconstruction: TreeReconstruction:
+	set(value):
+		if reconstruction == value:
+			return
+		if reconstruction != null:
+			reconstruction.changed.disconnect(rebuild)
+		reconstruction = value
+		if reconstruction != null:
+			reconstruction.changed.connect(rebuild)
+		update_configuration_warnings()
+		rebuild()
+
+## The level of detail: 0 is the finest; each further one has about a quarter of the triangles and fewer,
+## larger leaves.
+@export_range(0, 4) var lod: int = 0:
+	set(value):
+		lod = value
+		rebuild()
+
+## Whether the tree bears its leaves.
+@export var leaves: bool = true:
+	set(value):
+		leaves = value
+		rebuild()
+
+## Whether the wind moves this tree. How strongly it blows is set in the materials.
+@export var wind: bool = true:
+	set(value):
+		wind = value
+		_update_instances()
+
+@export_group("Materials")
+
+## The bark's material. Without one, the preset of the reconstruction's leaves chooses it.
+@export var bark_material: Material:
+	set(value):
+		bark_material = value
+		_update_materials()
+
+## The leaves' material. Without one, the preset of the reconstruction's leaves chooses it.
+@export var leaf_material: Material:
+	set(value):
+		leaf_material = value
+		_update_materials()
+
+var _leaves_node: MultiMeshInstance3D
+var _queued: bool = false
+var _job: BuildJob
+var _height: float = 1.0
+
+
+## Builds the tree again, once, before the next frame is drawn or as soon as a build that is under way has
+## ended. You need it only after changing something that does not say so itself.
+func rebuild() -> void:
+	if _queued:
+		return
+	_queued = true
+	_start.call_deferred()
+
+
+## Whether a build is waiting or under way.
+func is_rebuilding() -> bool:
+	return _queued or _job != null
+
+
+## The number of triangles of the bark and the leaves as they are drawn now.
+func get_triangle_count() -> int:
+	return _triangles(mesh) + get_leaf_count() * _triangles(_leaf_card())
+
+
+## The number of leaf cards drawn now.
+func get_leaf_count() -> int:
+	if _leaves_node == null or _leaves_node.multimesh == null:
+		return 0
+	return _leaves_node.multimesh.instance_count
+
+
+func _notification(what: int) -> void:
+	match what:
+		NOTIFICATION_PREDELETE:
+			_drop_job()
+		NOTIFICATION_ENTER_TREE, NOTIFICATION_VISIBILITY_CHANGED:
+			_update_instances()
+
+
+func _validate_property(property: Dictionary) -> void:
+	# The mesh is built, so neither saved nor edited.
+	if property.name == &"mesh":
+		property.usage = PROPERTY_USAGE_NONE
+
+
+func _get_configuration_warnings() -> PackedStringArray:
+	if reconstruction == null:
+		return ["Give this node a TreeReconstruction to show."]
+	return []
+
+
+func _start() -> void:
+	_queued = false
+	if reconstruction == null or reconstruction.get_node_count() == 0:
+		_drop_job()
+		mesh = null
+		if _leaves_node != null:
+			_leaves_node.multimesh = null
+		rebuilt.emit()
+		return
+	if _job != null:
+		# Its result is out of date already; the next one starts when it has ended.
+		_job.stale = true
+		return
+	var job: BuildJob = BuildJob.new()
+	# A copy, since this one may change while the worker reads.
+	job.source = reconstruction.duplicate() as TreeReconstruction
+	job.lod = lod
+	job.leaves = leaves
+	if not threaded:
+		job.run()
+		_apply(job)
+		return
+	_job = job
+	job.task = WorkerThreadPool.add_task(job.run, false, "Build the tree of %s" % name)
+	_main_loop().process_frame.connect(_poll)
+
+
+func _poll() -> void:
+	if _job == null or not WorkerThreadPool.is_task_completed(_job.task):
+		return
+	var job: BuildJob = _job
+	_drop_job()
+	if job.stale:
+		rebuild()
+	else:
+		_apply(job)
+
+
+# Waits for the worker, so that nothing runs on after this node.
+func _drop_job() -> void:
+	if _job == null:
+		return
+	_main_loop().process_frame.disconnect(_poll)
+	WorkerThreadPool.wait_for_task_completion(_job.task)
+	_job = null
+
+
+func _apply(job: BuildJob) -> void:
+	var bark: ArrayMesh = ArrayMesh.new()
+	if not job.bark.is_empty():
+		var custom: int = Mesh.ARRAY_CUSTOM_RGBA_FLOAT << Mesh.ARRAY_FORMAT_CUSTOM0_SHIFT
+		bark.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, custom)
+	var box: AABB = bark.get_aabb()
+	_height = maxf(box.end.y, 0.1)
+	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
+	mesh = bark
+	if job.buffer.is_empty():
+		if _leaves_node != null:
+			_leaves_node.multimesh = null
+	else:
+		if _leaves_node == null:
+			_leaves_node = MultiMeshInstance3D.new()
+			_leaves_node.name = &"Leaves"
+			add_child(_leaves_node, false, Node.INTERNAL_MODE_BACK)
+		_leaves_node.multimesh = _leaf_multimesh(job)
+	_update_materials()
+	_update_instances()
+	rebuilt.emit()
+
+
+func _leaf_multimesh(job: BuildJob) -> MultiMesh:
+	var multimesh: MultiMesh = MultiMesh.new()
+	multimesh.transform_format = MultiMesh.TRANSFORM_3D
+	multimesh.use_colors = true
+	multimesh.use_custom_data = true
+	var card: ArrayMesh = ArrayMesh.new()
+	card.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, job.card)
+	multimesh.mesh = card
+	@warning_ignore("integer_division")
+	multimesh.instance_count = job.buffer.size() / BuildJob.FLOATS_PER_LEAF
+	multimesh.buffer = job.buffer
+	return multimesh
+
+
+func _update_materials() -> void:
+	if mesh != null and mesh.get_surface_count() > 0:
+		mesh.surface_set_material(0, _material_or_preset(bark_material, "bark"))
+	if _leaves_node != null:
+		_leaves_node.material_override = _material_or_preset(leaf_material, "leaf")
+
+
+func _material_or_preset(material: Material, part: String) -> Material:
+	if material != null or reconstruction == null:
+		return material
+	var path: String = _PRESETS % [reconstruction.leaf_preset, part]
+	if not ResourceLoader.exists(path):
+		path = _PRESETS % ["generic", part]
+	return load(path) as Material
+
+
+# The values that the shaders take per instance. They are set in the server, so that scenes stay free of them.
+func _update_instances() -> void:
+	var instances: Array[RID] = [get_instance()]
+	if _leaves_node != null:
+		_leaves_node.layers = layers
+		_leaves_node.cast_shadow = cast_shadow
+		_leaves_node.gi_mode = gi_mode
+		instances.append(_leaves_node.get_instance())
+	for instance: RID in instances:
+		RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_height", _height)
+		RenderingServer.instance_geometry_set_shader_parameter(
+			instance, &"tree_wind", 1.0 if wind else 0.0
+		)
+
+
+func _leaf_card() -> Mesh:
+	if _leaves_node == null or _leaves_node.multimesh == null:
+		return null
+	return _leaves_node.multimesh.mesh
+
+
+static func _triangles(of: Mesh) -> int:
+	var count: int = 0
+	if of is ArrayMesh:
+		for surface: int in of.get_surface_count():
+			@warning_ignore("integer_division")
+			count += (of as ArrayMesh).surface_get_array_index_len(surface) / 3
+	return count
+
+
+static func _main_loop() -> SceneTree:
+	return Engine.get_main_loop() as SceneTree
+
+
+# One build: what a worker thread needs and what it makes.
+class BuildJob:
+	extends RefCounted
+
+	const FLOATS_PER_LEAF: int = 20
+
+	var source: TreeReconstruction
+	var lod: int
+	var leaves: bool
+	var task: int = -1
+	var stale: bool = false
+	var bark: Array
+	var card: Array
+	var buffer: PackedFloat32Array
+
+	func run() -> void:
+		bark = source.build_mesh_arrays(lod)
+		if leaves:
+			buffer = source.build_leaf_buffer(lod)
+			card = source.build_leaf_card_arrays(lod)

@@ -1,0 +1,228 @@
+extends SceneTree
+## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its four sides.
+##
+## godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER [--seed N] [--leaves PRESET]
+## writes FOLDER/tree.tscn and FOLDER/preview.png. Needs a window (xvfb-run will do).
+
+const Plots: GDScript = preload("./plots.gd")
+const Sheet: GDScript = preload("./sheet.gd")
+const Studio: GDScript = preload("./studio.gd")
+
+const _WIDTH: int = 2000
+const _STAGE_HEIGHT: int = 600
+const _VIEW_HEIGHT: int = 640
+const _YAWS: Array[float] = [PI / 2, 0.0, -PI / 2, PI]
+const _VIEW_NAMES: Array[String] = ["+X", "+Z", "−X", "−Z"]
+
+var _arguments: Dictionary[String, String] = {
+	"--scan": "", "--out": "", "--seed": "1", "--leaves": "generic"
+}
+var _reconstructor: TreeReconstructor
+var _tree: TreeReconstruction
+var _started: int
+
+
+func _initialize() -> void:
+	_run.call_deferred()
+
+
+func _run() -> void:
+	_started = Time.get_ticks_msec()
+	quit(0 if await _work() else 1)
+
+
+func _work() -> bool:
+	if not _read_arguments():
+		return false
+	_reconstructor = TreeReconstructor.new()
+	_tree = _reconstructor.reconstruct_file(
+		_arguments["--scan"],
+		{"seed": _arguments["--seed"].to_int(), "leaves": _arguments["--leaves"]}
+	)
+	if _tree == null:
+		printerr(_reconstructor.get_error_message())
+		return false
+	_say("reconstructed")
+	DirAccess.make_dir_recursive_absolute(_arguments["--out"])
+	var instance: TreeInstance3D = TreeInstance3D.new()
+	TreeInstance3D.threaded = false
+	instance.name = "Tree"
+	instance.reconstruction = _tree
+	if not _save_scene(instance):
+		return false
+	_say("saved the scene")
+	await instance.rebuilt
+	_say("built")
+	var saved: bool = await _draw(instance)
+	_say("drawn")
+	return saved
+
+
+func _read_arguments() -> bool:
+	var given: PackedStringArray = OS.get_cmdline_user_args()
+	var i: int = 0
+	while i < given.size():
+		if not _arguments.has(given[i]) or i + 1 == given.size():
+			printerr("preview.gd: unknown option or no value: %s" % given[i])
+			return false
+		_arguments[given[i]] = given[i + 1]
+		i += 2
+	if _arguments["--scan"].is_empty() or _arguments["--out"].is_empty():
+		printerr("preview.gd: --scan FILE and --out FOLDER are needed.")
+		return false
+	return true
+
+
+func _save_scene(instance: TreeInstance3D) -> bool:
+	var scene: PackedScene = PackedScene.new()
+	var error: Error = scene.pack(instance)
+	var path: String = _arguments["--out"].path_join("tree.tscn")
+	if error == OK:
+		error = ResourceSaver.save(scene, path)
+	if error != OK:
+		printerr("Could not save %s: %s." % [path, error_string(error)])
+	return error == OK
+
+
+func _draw(instance: TreeInstance3D) -> bool:
+	var sheet: Sheet = Sheet.new(_WIDTH)
+	var stage_size: Vector2i = Vector2i(sheet.cell_width(5), _STAGE_HEIGHT)
+	var view_size: Vector2i = Vector2i(sheet.cell_width(4), _VIEW_HEIGHT)
+	var cloud: PackedVector3Array = _reconstructor.get_cloud_points()
+	var raw: TreeReconstruction = _reconstructor.get_raw_skeleton()
+	var everything: PackedVector3Array = cloud.duplicate()
+	everything.append_array(_leaf_places(instance))
+	everything.append_array(_tree.get_positions())
+	var views: Studio.Framing = Studio.frame(everything, view_size, _YAWS)
+	var front: Array[float] = [0.0]
+	var stages: Studio.Framing = Studio.frame(everything, stage_size, front)
+
+	var worlds: Array[SubViewport] = [
+		Studio.make_world(
+			[
+				_shape(
+					Plots.cloud(cloud, _reconstructor.get_cloud_colors()),
+					Plots.bead_material(3.2, 0.0),
+					stages
+				)
+			],
+			stages,
+			false
+		),
+		Studio.make_world(
+			[_shape(Plots.segments(raw, false), Plots.line_material(1.6), stages)], stages, false
+		),
+		Studio.make_world(_pruned(stages), stages, false),
+		Studio.make_world([_bark_of(instance)], stages, true),
+		Studio.make_world([instance], views, true),
+	]
+	var measures: Dictionary = _tree.measure()
+	var captions: Array[String] = [
+		"Scan", "Raw skeleton", "Pruned skeleton", "Bark", "Bark and leaves"
+	]
+	var figures: Array[String] = [
+		"%s points" % _grouped(cloud.size()),
+		"%s nodes" % _grouped(raw.get_node_count()),
+		"%s nodes" % _grouped(_tree.get_node_count()),
+		"%s triangles" % _grouped(instance.mesh.surface_get_array_index_len(0) / 3),
+		"%s leaf cards" % _grouped(instance.get_leaf_count()),
+	]
+	var row: Array[Array] = []
+	for i: int in worlds.size():
+		Studio.place_camera(worlds[i], stage_size, stages, 0.0)
+		row.append([worlds[i], captions[i], figures[i]])
+	sheet.add_row(row, _STAGE_HEIGHT)
+	row = []
+	for i: int in _YAWS.size():
+		var view: SubViewport = Studio.share_world(worlds[4])
+		Studio.place_camera(view, view_size, views, _YAWS[i])
+		row.append([view, "From %s" % _VIEW_NAMES[i], ""])
+	sheet.add_row(row, _VIEW_HEIGHT)
+	sheet.set_heading(_arguments["--scan"].get_file().get_basename(), _heading(measures, instance))
+	_say("arranged")
+
+	root.disable_3d = true
+	root.add_child(sheet.viewport)
+	await RenderingServer.frame_post_draw
+	var picture: Image = sheet.viewport.get_texture().get_image()
+	_say("rendered")
+	var path: String = _arguments["--out"].path_join("preview.png")
+	var error: Error = picture.save_png(path)
+	if error != OK:
+		printerr("Could not save %s: %s." % [path, error_string(error)])
+	return error == OK
+
+
+func _say(what: String) -> void:
+	print("%5d ms  %s" % [Time.get_ticks_msec() - _started, what])
+
+
+func _shape(mesh: ArrayMesh, material: ShaderMaterial, framing: Studio.Framing) -> MeshInstance3D:
+	var shape: MeshInstance3D = MeshInstance3D.new()
+	shape.mesh = mesh
+	shape.material_override = material
+	shape.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
+	# What is further away is paler, which tells near twigs from far ones.
+	material.set_shader_parameter(&"fade", 0.45)
+	material.set_shader_parameter(&"fade_color", Color(0.86, 0.87, 0.87))
+	var near: float = framing.distance - framing.reach * 0.6
+	material.set_shader_parameter(&"fade_range", Vector2(near, near + framing.reach * 1.2))
+	return shape
+
+
+# Lines below, then the nodes by kind: leaves green, forks orange, the trunk red (papers/000, figure 3.7).
+func _pruned(framing: Studio.Framing) -> Array:
+	return [
+		_shape(Plots.segments(_tree, true), Plots.line_material(2.6), framing),
+		_shape(
+			Plots.nodes(_tree, _tree.get_leaves(), Plots.LEAF),
+			Plots.bead_material(6.0, 0.3),
+			framing
+		),
+		_shape(
+			Plots.nodes(_tree, _tree.get_branch_nodes(), Plots.BRANCH),
+			Plots.bead_material(7.5, 0.3),
+			framing
+		),
+		_shape(
+			Plots.nodes(_tree, _tree.get_trunk_nodes(), Plots.TRUNK),
+			Plots.bead_material(9.0, 0.3),
+			framing
+		),
+	]
+
+
+func _bark_of(instance: TreeInstance3D) -> MeshInstance3D:
+	var bark: MeshInstance3D = MeshInstance3D.new()
+	bark.mesh = instance.mesh
+	return bark
+
+
+func _leaf_places(instance: TreeInstance3D) -> PackedVector3Array:
+	var places: PackedVector3Array = PackedVector3Array()
+	if instance.get_leaf_count() == 0:
+		return places
+	var buffer: PackedFloat32Array = _tree.build_leaf_buffer(0)
+	for i: int in range(0, buffer.size(), 20 * 16):
+		places.append(Vector3(buffer[i + 3], buffer[i + 7], buffer[i + 11]))
+	return places
+
+
+func _heading(measures: Dictionary, instance: TreeInstance3D) -> String:
+	var parts: PackedStringArray = []
+	parts.append("%.1f m tall" % measures.get("height_m", 0.0))
+	if measures.get("dbh_m") is float:
+		parts.append("%.1f cm at breast height" % (measures["dbh_m"] * 100.0))
+	parts.append("%s triangles" % _grouped(instance.get_triangle_count()))
+	parts.append("rendered by Godot %s" % Engine.get_version_info()["string"].get_slice("-", 0))
+	return "   ·   ".join(parts)
+
+
+# 46311 as 46 311.
+static func _grouped(number: int) -> String:
+	var digits: String = str(number)
+	var at: int = digits.length() - 3
+	while at > 0:
+		digits = digits.insert(at, "\u202f")
+		at -= 3
+	return digits
