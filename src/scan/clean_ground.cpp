@@ -126,20 +126,28 @@ Plane best_plane(const std::vector<Vec3>& low, double tolerance, size_t& inliers
     return best;
 }
 
-// Whether the columns with ground are a filled area, not a stem's foot or the rim of a crown.
+// Whether the columns with ground are a filled area, not a stem's foot or the rim of a crown. Looked at in
+// squares of 2 x 2 columns, so that a sparse ground is filled as well.
 bool is_wide_and_filled(const Columns& columns, const std::vector<uint8_t>& has_ground) {
+    const int width = (columns.width() + 1) / 2;
+    const int depth = (columns.depth() + 1) / 2;
+    std::vector<uint8_t> filled(static_cast<size_t>(width) * static_cast<size_t>(depth));
+    for (int z = 0; z < columns.depth(); z++)
+        for (int x = 0; x < columns.width(); x++)
+            filled[static_cast<size_t>(z / 2 * width + x / 2)] |=
+                has_ground[static_cast<size_t>(z * columns.width() + x)];
     size_t count = 0;
     DVec2 mean(0.0);
     auto each = [&](const auto& body) {
-        for (int z = 0; z < columns.depth(); z++)
-            for (int x = 0; x < columns.width(); x++)
-                if (has_ground[static_cast<size_t>(z * columns.width() + x)]) body(DVec2(x, z));
+        for (int z = 0; z < depth; z++)
+            for (int x = 0; x < width; x++)
+                if (filled[static_cast<size_t>(z * width + x)]) body(DVec2(x, z));
     };
     each([&](const DVec2& c) {
         mean += c;
         count++;
     });
-    if (count < kFewestColumns) return false;
+    if (count < kFewestColumns / 2) return false;
     mean /= static_cast<double>(count);
     double xx = 0.0, xz = 0.0, zz = 0.0;
     each([&](const DVec2& c) {
@@ -154,7 +162,7 @@ bool is_wide_and_filled(const Columns& columns, const std::vector<uint8_t>& has_
     const double split = std::sqrt(0.25 * (xx - zz) * (xx - zz) + xz * xz);
     // A filled ellipse with these second moments has the area 4 pi sqrt(det), here in columns.
     const double area = 4.0 * kPi * std::sqrt(std::max(0.0, (middle - split) * (middle + split)));
-    return middle - split > 1.5 && n > kLeastFilled * area;
+    return middle - split > 0.8 && n > kLeastFilled * area;
 }
 
 }  // namespace

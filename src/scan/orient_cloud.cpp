@@ -135,7 +135,7 @@ UpAxis detect_up(const PointCloud& cloud, bool& sure) {
     const AxisView z = view_axis(cloud.positions, ranges, 2);
     const double y_slenderness = std::max(y.low_end.slenderness, y.high_end.slenderness);
     const double margin = cloud.has_colors() ? 0.2 : 0.4;
-    const double least_slenderness = cloud.has_colors() ? 2.0 : 4.0;
+    const double least_slenderness = cloud.has_colors() ? 1.5 : 4.0;
     const double y_score = score_of(y);
     const double z_score = score_of(z);
     sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
