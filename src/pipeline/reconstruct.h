@@ -1,5 +1,4 @@
-// The whole way from a scan file to a tree with leaves, and from there to files: what the program, the demo and the
-// editor all run.
+// The whole way from a scan file to a tree: what the program, the demo and the editor all run.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "foliage/leaves.h"
+#include "pipeline/export.h"
 #include "progress.h"
 #include "scan/clean_cloud.h"
 #include "scan/point_cloud.h"
@@ -33,8 +33,9 @@ struct StageTime {
 struct Reconstruction {
     PointCloud cloud;  // cleaned, in the tree's frame: its points lie on the tree
     Tree raw;          // before pruning and simplification; same frame
-    Tree tree;
+    Tree tree;         // root at (0,0,0), metres, Y up
     size_t points_read = 0;
+    double spacing = 0.0;  // metres: what the skeletonizer thinned to
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;
@@ -45,12 +46,5 @@ struct Reconstruction {
 // Throws Error with a sentence, or Cancelled.
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
                                 Progress* progress = nullptr);
-
-// Writes `tree` in the format that the extension of `path` names: .glb .gltf .obj (Godot's frame: metres, Y up, base at
-// the origin; with leaves) or .ply .txt .csv (the skeleton in scan coordinates). Throws Error for another extension.
-void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed);
-
-// report.json: stage times, counts, measurements, warnings, options. Numbers only finite.
-std::string report_json(const std::string& scan_path, const Reconstruction& result, uint64_t seed);
 
 }  // namespace treerec

@@ -1,0 +1,32 @@
+// The program's commands. Each takes the words after its name, throws Error or UsageError, and prints its
+// result on stdout.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "geometry/scan_frame.h"
+
+namespace treerec {
+
+// What several commands read in the same way: "--up x" (default z) and "--columns x,y,z". Throw UsageError.
+UpAxis up_axis_from(const Arguments& arguments);
+std::vector<std::string> columns_from(const Arguments& arguments);
+
+const Command& reconstruct_command();
+void run_reconstruct(const std::vector<std::string>& words);
+
+const Command& info_command();
+void run_info(const std::vector<std::string>& words);
+
+const Command& score_command();
+void run_score(const std::vector<std::string>& words);
+
+const Command& synth_command();
+void run_synth(const std::vector<std::string>& words);
+
+const Command& textures_command();
+void run_textures(const std::vector<std::string>& words);
+
+}  // namespace treerec

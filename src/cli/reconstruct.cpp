@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "geometry/parallel.h"
+#include "pipeline/export.h"
+#include "pipeline/reconstruct.h"
+#include "pipeline/report.h"
+#include "scan/file_bytes.h"
+
+namespace treerec {
+
+namespace {
+
+// An option's wrong value is a matter of the command line, not of the file.
+template <typename Call>
+auto as_usage(Call call) {
+    try {
+        return call();
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+}
+
+ReconstructOptions options_from(const Arguments& arguments) {
+    ReconstructOptions options;
+    options.read.columns = columns_from(arguments);
+    if (arguments.text("--up", "auto") != "auto") options.orient.up = up_axis_from(arguments);
+    if (arguments.has("--scale"))
+        options.orient.metres_per_unit = arguments.number("--scale", 1.0, 1e-9, 1e9);
+    options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
+    options.skeleton.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    const bool clean = !arguments.has("--no-clean");
+    options.clean.remove_extreme_colors = clean && !arguments.has("--no-clean-colors");
+    options.clean.remove_outliers = clean && !arguments.has("--no-clean-outliers");
+    options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
+    options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
+    return options;
+}
+
+void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds) {
+    const Measurements m = measure(result.tree);
+    std::printf("%zu points, %zu after cleaning; %zu nodes, %zu tips\n", result.points_read,
+                result.cloud.size(), m.nodes, m.tips);
+    std::printf("height %.2f m, ", m.height);
+    if (m.dbh > 0.0)
+        std::printf("DBH %.1f cm, ", 100.0 * m.dbh);
+    else
+        std::printf("no stem at breast height, ");
+    std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
+    for (const std::string& out : outs)
+        std::printf("wrote %s\n", out.c_str());
+    std::printf("%.1f s\n", seconds);
+}
+
+}  // namespace
+
+const Command& reconstruct_command() {
+    static const Command command{
+        "reconstruct",
+        "reconstruct SCAN -o OUT... [--report R.json] [options]",
+        "Turns a point cloud into a tree.",
+        {{"-o", "OUT",
+          "a file to write; its ending names the format: .glb .gltf .obj (bark and leaves:\n"
+          "metres, Y up, base at the origin), .ply .txt .csv (skeleton, tree file, QSM\n"
+          "cylinders: the scan's own coordinates). More of them: -o A -o B, or -o A B",
+          true},
+         {"--report", "FILE", "stage times, counts, measurements and warnings as JSON"},
+         {"--seed", "N", "of everything random (default 1)"},
+         {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
+         {"--scale", "S", "metres per unit of the scan (default: found out)"},
+         {"--leaves", "PRESET", "generic maple cherry oak birch none (default generic)"},
+         {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
+         {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
+         {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
+         {"--no-clean", "", "leave out all cleaning, or one step of it:"},
+         {"--no-clean-colors", "", "near white and near black points stay"},
+         {"--no-clean-outliers", "", "lone points stay"},
+         {"--no-clean-fragments", "", "small far clusters stay"},
+         {"--no-clean-ground", "", "the ground stays"},
+         {"--quiet", "", "print errors and warnings only"}},
+        "SCAN: PLY, text (.xyz .txt .asc .pts .csv) or LAS."};
+    return command;
+}
+
+void run_reconstruct(const std::vector<std::string>& words) {
+    const Arguments arguments(reconstruct_command(), words);
+    const std::vector<std::string>& positional = arguments.positional();
+    if (positional.empty()) throw UsageError("Which scan? Name a point-cloud file.");
+    const std::string scan = positional[0];
+    std::vector<std::string> outs = arguments.all("-o");
+    if (outs.empty() && (positional.size() > 1 || !arguments.has("--report")))
+        throw UsageError("Where to? Name at least one file to write with -o.");
+    outs.insert(outs.end(), positional.begin() + 1, positional.end());
+    const ReconstructOptions options = options_from(arguments);
+    ReportDetails details{scan, options, arguments.text("--leaves", "generic"), options.skeleton.seed, 0, 0};
+    ExportOptions exports;
+    exports.leaves = as_usage([&] { return leaf_preset(details.leaves); });
+    exports.textures = exports.leaves.enabled ? details.leaves : "generic";
+    exports.seed = options.skeleton.seed;
+    set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
+    // Before the long work, not after it.
+    for (const std::string& out : outs) {
+        as_usage([&] { require_writable_format(out); });
+        if (std::count(outs.begin(), outs.end(), out) > 1) throw UsageError(out + " would be written twice.");
+        if (out == scan) throw UsageError(out + " is the scan itself; it would be overwritten.");
+    }
+
+    const auto start = std::chrono::steady_clock::now();
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet);
+    SubProgress reconstructing(&progress, 0.0, 0.9);
+    const Reconstruction result = reconstruct_file(scan, options, &reconstructing);
+    TreeExporter exporter(result.tree, exports);
+    for (size_t i = 0; i < outs.size(); i++) {
+        progress.check();
+        progress.update(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(outs.size()), "Write");
+        exporter.write(outs[i]);
+    }
+    progress.check();
+    if (arguments.has("--report")) {
+        details.triangles = exporter.triangles();
+        details.leaf_count = exporter.leaves();
+        outs.push_back(arguments.text("--report", ""));
+        write_file(outs.back(), report_json(result, details));
+    }
+    progress.clear();
+    for (const std::string& warning : result.warnings)
+        std::fprintf(stderr, "Warning: %s\n", warning.c_str());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!quiet) print_summary(result, outs, seconds);
+}
+
+}  // namespace treerec

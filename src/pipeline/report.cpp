@@ -1,0 +1,118 @@
+#include "pipeline/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "version.h"
+
+#if defined(__unix__) || defined(__APPLE__)
+#include <sys/resource.h>
+#endif
+
+namespace treerec {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void add_measurements(Json& json, const Tree& tree) {
+    const Measurements m = measure(tree);
+    json["nodes"] = m.nodes;
+    json["tips"] = m.tips;
+    Json orders = Json::array();
+    for (size_t order = 0; order < m.by_order.size(); order++)
+        orders.push_back({{"order", order},
+                          {"count", m.by_order[order].branches},
+                          {"length_m", m.by_order[order].length}});
+    json["branches"] = orders;
+    json["height_m"] = m.height;
+    json["dbh_m"] = m.dbh > 0.0 ? Json(m.dbh) : Json(nullptr);
+    json["stems"] = m.stems;
+    json["crown_radius_m"] = m.crown_radius;
+    json["crown_base_m"] = m.crown_base;
+    json["length_m"] = m.total_length;
+    json["volume_m3"] = m.volume;
+    json["measured_share"] = m.measured_share;
+}
+
+Json options_json(const ReportDetails& details) {
+    const ReconstructOptions& options = details.options;
+    Json clean;
+    clean["extreme_colors"] = options.clean.remove_extreme_colors;
+    clean["outliers"] = options.clean.remove_outliers;
+    clean["fragments"] = options.clean.remove_fragments;
+    clean["ground"] = options.clean.remove_ground;
+    Json json;
+    json["up"] = options.orient.up ? up_axis_name(*options.orient.up) : "auto";
+    json["scale"] = options.orient.metres_per_unit ? Json(*options.orient.metres_per_unit) : Json("auto");
+    json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
+    json["columns"] = options.read.columns;
+    json["leaves"] = details.leaves;
+    json["clean"] = clean;
+    return json;
+}
+
+// Paths may hold bytes that are no UTF-8; they must not stop the report.
+std::string dump(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+double peak_memory_mb() {
+#if defined(__APPLE__)
+    rusage usage{};
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0)
+                                               : 0.0;
+#elif defined(__unix__)
+    rusage usage{};
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<double>(usage.ru_maxrss) / 1024.0 : 0.0;
+#else
+    return 0.0;
+#endif
+}
+
+std::string measurements_json(const Tree& tree) {
+    Json json;
+    add_measurements(json, tree);
+    return dump(json);
+}
+
+std::string report_json(const Reconstruction& result, const ReportDetails& details) {
+    Json json;
+    json["format_version"] = 1;
+    json["version"] = kVersion;
+    json["scan"] = details.scan_path;
+    json["scan_format"] = result.read.format;
+    json["seed"] = details.seed;
+    json["options"] = options_json(details);
+    json["points_read"] = result.points_read;
+    json["points"] = result.cloud.size();
+    Json removed = Json::object();
+    for (const CleanStep& step : result.clean.steps)
+        removed[step.name] = step.removed;
+    json["removed"] = removed;
+    json["up"] = up_axis_name(result.orient.up);
+    json["up_detected"] = result.orient.up_detected;
+    json["metres_per_unit"] = result.orient.metres_per_unit;
+    json["scale_guessed"] = result.orient.scale_guessed;
+    const DVec3& origin = result.tree.frame().origin;
+    json["origin"] = {origin.x, origin.y, origin.z};
+    json["spacing_m"] = result.spacing;
+    Json stages = Json::array();
+    double total = 0.0;
+    for (const StageTime& stage : result.stages) {
+        stages.push_back({{"name", stage.name}, {"ms", stage.milliseconds}, {"count", stage.count}});
+        total += stage.milliseconds;
+    }
+    json["stages"] = stages;
+    json["total_ms"] = total;
+    const double peak = peak_memory_mb();
+    json["peak_mb"] = peak > 0.0 ? Json(peak) : Json(nullptr);
+    add_measurements(json, result.tree);
+    json["triangles"] = details.triangles;
+    json["leaves"] = details.leaf_count;
+    json["warnings"] = result.warnings;
+    return dump(json);
+}
+
+}  // namespace treerec

@@ -1,0 +1,36 @@
+// What is told about a tree and about a reconstruction, as JSON.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "pipeline/reconstruct.h"
+
+namespace treerec {
+
+struct ReportDetails {
+    std::string scan_path;
+    ReconstructOptions options;
+    std::string leaves = "generic";  // preset
+    uint64_t seed = 1;
+    size_t triangles = 0;
+    size_t leaf_count = 0;
+};
+
+// report.json, UTF-8, numbers finite or null. Keys:
+//   format_version 1, version, scan, scan_format, seed, options {up, scale, spacing_m, leaves, clean}
+//   points_read, points (after cleaning), removed {step: points}
+//   up, up_detected, metres_per_unit, scale_guessed, origin [x y z in scan coordinates], spacing_m
+//   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
+//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null if there is no wood at breast
+//   height), stems, crown_radius_m, crown_base_m, length_m, volume_m3, measured_share, triangles, leaves
+//   warnings [sentence]
+std::string report_json(const Reconstruction& result, const ReportDetails& details);
+
+// The measurements alone, with the keys above.
+std::string measurements_json(const Tree& tree);
+
+// The largest resident memory of this process so far in MB; 0 where the system does not tell.
+double peak_memory_mb();
+
+}  // namespace treerec
