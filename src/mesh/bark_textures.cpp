@@ -121,7 +121,7 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
     const auto at = [&](int x, int y) {
         return height[static_cast<size_t>(wrap(y, size)) * size + wrap(x, size)];
     };
-    const double steepness = (white ? 0.010 : 0.028) * size;  // metres of relief over metres of pixel
+    const double steepness = (white ? 0.010 : 0.021) * size;  // metres of relief over metres of pixel
     parallel_for(static_cast<size_t>(size), 32, [&](size_t begin, size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++) {
             for (int x = 0; x < size; x++) {

@@ -291,14 +291,14 @@ void draw_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, const 
 
 void draw_needles(std::vector<Sample>& canvas, int size, uint64_t seed, double sway, double top) {
     Random random(seed, 5);
-    const int bundles = 58;
+    const int bundles = 64;
     for (int i = 0; i < bundles; i++) {
         const double f = mix(0.06, 1.0, (i + 0.5) / bundles);
         const DVec2 on = twig_at(f, sway, top);
         for (int k = 0; k < 4; k++) {
             const double side = k % 2 ? 1.0 : -1.0;
-            const double turn = side * random.uniform(0.25, 1.15) * (1.0 - 0.45 * f);
-            const double length = random.uniform(0.20, 0.32) * (1.0 - 0.25 * f);
+            const double turn = side * random.uniform(0.25, 1.25) * (1.0 - 0.45 * f);
+            const double length = random.uniform(0.26, 0.40) * (1.0 - 0.35 * f);
             const DVec2 direction(std::sin(turn), std::cos(turn));
             const DVec2 middle = on + direction * (0.5 * length);
             const DVec2 tip = middle + glm::normalize(direction + DVec2(0.0, 0.25)) * (0.5 * length);

@@ -22,7 +22,8 @@ inline Tree random_tree(uint64_t seed, int nodes, double height = 12.0) {
     Random random(seed);
     std::vector<DVec3> positions{DVec3(0.0)};
     std::vector<NodeId> parents{kNoNode};
-    const double step = height / std::clamp(std::sqrt(static_cast<double>(nodes)), 3.0, 60.0);
+    // Buds open generation by generation; about so many fit into that many nodes.
+    const double step = height / (2.0 + 2.6 * std::log(static_cast<double>(std::max(nodes, 2))));
     std::vector<Bud> buds{{0, DVec3(0.0, 1.0, 0.0), step, 0}};
     size_t next = 0;
     while (static_cast<int>(positions.size()) < nodes && next < buds.size()) {

@@ -1,0 +1,289 @@
+#include "foliage/leaves.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+#include "error.h"
+#include "foliage/branch_axis.h"
+#include "foliage/crown.h"
+#include "geometry/parallel.h"
+#include "mesh/leaf_cards.h"
+#include "random_tree.h"
+
+namespace treerec {
+namespace {
+
+bool same_leaf(const LeafPlacement& a, const LeafPlacement& b) {
+    return std::memcmp(&a, &b, sizeof(LeafPlacement)) == 0;
+}
+
+// Distance from p to the wood of the whole tree, and the radius there.
+std::pair<double, double> nearest_wood(const Tree& tree, const DVec3& p) {
+    std::pair<double, double> best{1e9, 0.0};
+    for (NodeId id : tree.depth_first()) {
+        const Node& node = tree.node(id);
+        if (node.parent == kNoNode) continue;
+        const DVec3 a = tree.node(node.parent).position, along = node.position - a;
+        const double square = glm::dot(along, along);
+        const double t = square > 0.0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
+        const double distance = glm::distance(p, a + along * t);
+        if (distance < best.first) best = {distance, node.radius};
+    }
+    return best;
+}
+
+TEST(Leaves, PresetsHaveSaneRulesAndUnknownNamesAreListed) {
+    for (const std::string& name : leaf_preset_names()) {
+        const LeafRules rules = leaf_preset(name);
+        EXPECT_EQ(rules.enabled, name != "none");
+        EXPECT_GT(rules.leaf_size, 0.05);
+        EXPECT_GT(rules.internode, 0.0);
+    }
+    try {
+        leaf_preset("plastic");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("maple"), std::string::npos);
+    }
+}
+
+TEST(Leaves, SitOnTheBarkOfThinWood) {
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        const Tree tree = test::random_tree(seed, 200);
+        double longest = 0.0;
+        for (NodeId id : tree.depth_first())
+            if (tree.node(id).parent != kNoNode)
+                longest = std::max(
+                    longest, glm::distance(tree.node(id).position, tree.node(tree.node(id).parent).position));
+        const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), seed);
+        ASSERT_GT(leaves.size(), tree.nodes_of_kind(NodeKind::kLeaf).size());
+        for (const LeafPlacement& leaf : leaves) {
+            const auto [distance, radius] = nearest_wood(tree, DVec3(leaf.position));
+            // The axis is rounded at bends, where the straight wood cuts the corner.
+            ASSERT_LT(distance, radius + 0.12 * longest);
+            ASSERT_NEAR(glm::length(leaf.x), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(leaf.y), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(leaf.outward), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(glm::cross(leaf.x, leaf.y) - leaf.z), 0.0f, 1e-4f);
+            for (float channel : {leaf.phase, leaf.hue, leaf.stiffness, leaf.sway, leaf.occlusion}) {
+                ASSERT_GE(channel, 0.0f);
+                ASSERT_LE(channel, 1.0f);
+            }
+        }
+    }
+}
+
+TEST(Leaves, EveryTipBearsOne) {
+    const Tree tree = test::random_tree(4, 500);
+    const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("birch"), 1);
+    for (NodeId tip : tree.nodes_of_kind(NodeKind::kLeaf)) {
+        const Vec3 place(tree.node(tip).position);
+        EXPECT_TRUE(std::any_of(leaves.begin(), leaves.end(), [&](const LeafPlacement& leaf) {
+            return glm::distance(leaf.position, place) < 1e-4f;
+        }));
+    }
+}
+
+TEST(Leaves, SameSeedSameLeavesWhateverTheThreads) {
+    const Tree tree = test::random_tree(3, 4000);
+    set_thread_count(1);
+    const std::vector<LeafPlacement> one = place_leaves(tree, leaf_preset("oak"), 11);
+    set_thread_count(4);
+    const std::vector<LeafPlacement> four = place_leaves(tree, leaf_preset("oak"), 11);
+    set_thread_count(0);
+    ASSERT_EQ(one.size(), four.size());
+    EXPECT_EQ(std::memcmp(one.data(), four.data(), one.size() * sizeof(LeafPlacement)), 0);
+    const std::vector<LeafPlacement> other = place_leaves(tree, leaf_preset("oak"), 12);
+    EXPECT_FALSE(same_leaf(one[0], other[0]));
+}
+
+TEST(Leaves, PruningOneBranchLeavesTheOthersAlone) {
+    Tree tree = test::random_tree(21, 800);
+    const LeafRules rules = leaf_preset("generic");
+    const std::vector<LeafPlacement> before = place_leaves(tree, rules, 5);
+    // A tip inside the crown, so that the tree's measure stays.
+    NodeId cut = kNoNode;
+    double lowest = 1e9;
+    for (NodeId tip : tree.nodes_of_kind(NodeKind::kLeaf))
+        if (tree.node(tree.node(tip).parent).child_count > 1 && tree.node(tip).position.y < lowest) {
+            lowest = tree.node(tip).position.y;
+            cut = tip;
+        }
+    ASSERT_NE(cut, kNoNode);
+    const Vec3 gone(tree.node(cut).position), foot(tree.node(tree.node(cut).parent).position);
+    tree.remove_subtree(cut);
+    const std::vector<LeafPlacement> after = place_leaves(tree, rules, 5);
+    const auto key = [](const LeafPlacement& leaf) {
+        return std::make_tuple(leaf.position.x, leaf.position.y, leaf.position.z);
+    };
+    std::map<std::tuple<float, float, float>, LeafPlacement> kept;
+    for (const LeafPlacement& leaf : after)
+        kept[key(leaf)] = leaf;
+    const float reach = 2.0f * glm::distance(gone, foot) + 0.7f;
+    size_t compared = 0;
+    for (const LeafPlacement& leaf : before) {
+        if (glm::distance(leaf.position, foot) < reach) continue;
+        const auto same = kept.find(key(leaf));
+        ASSERT_NE(same, kept.end());
+        ASSERT_EQ(same->second.size, leaf.size);
+        ASSERT_EQ(same->second.phase, leaf.phase);
+        ASSERT_EQ(same->second.hue, leaf.hue);
+        compared++;
+    }
+    EXPECT_GT(compared, before.size() / 2);
+}
+
+TEST(Leaves, TheLimitKeepsTheArea) {
+    const Tree tree = test::random_tree(8, 3000);
+    LeafRules rules = leaf_preset("generic");
+    const auto area = [](const std::vector<LeafPlacement>& leaves) {
+        double sum = 0.0;
+        for (const LeafPlacement& leaf : leaves)
+            sum += static_cast<double>(leaf.size) * leaf.size;
+        return sum;
+    };
+    const std::vector<LeafPlacement> all = place_leaves(tree, rules, 1);
+    rules.maximum_leaves = static_cast<int>(all.size() / 3);
+    const std::vector<LeafPlacement> fewer = place_leaves(tree, rules, 1);
+    EXPECT_LE(fewer.size(), all.size() / 3);
+    EXPECT_GT(fewer.size(), all.size() / 3 - 3);
+    EXPECT_NEAR(area(fewer) / area(all), 1.0, 0.05);
+    for (int level = 1; level < 4; level++) {
+        const std::vector<LeafPlacement> thin = thin_leaves(all, level);
+        EXPECT_LT(thin.size(), all.size() / 2);
+        EXPECT_NEAR(area(thin) / area(all), 1.0, 0.05) << level;
+    }
+    rules.maximum_leaves = 0;
+    EXPECT_TRUE(place_leaves(tree, rules, 1).empty());
+}
+
+TEST(Leaves, CoarserLevelsAreSubsets) {
+    const std::vector<LeafPlacement> all = place_leaves(test::random_tree(8, 1000), leaf_preset("maple"), 1);
+    std::vector<LeafPlacement> finer = all;
+    for (int level = 1; level < 4; level++) {
+        const std::vector<LeafPlacement> coarser = thin_leaves(all, level);
+        size_t at = 0;
+        for (const LeafPlacement& leaf : coarser) {
+            while (at < finer.size() && finer[at].position != leaf.position)
+                at++;
+            ASSERT_LT(at, finer.size()) << level;
+        }
+        finer = coarser;
+    }
+}
+
+TEST(Leaves, SmallTreesBearSmallLeaves) {
+    const std::vector<LeafPlacement> sapling =
+        place_leaves(test::random_tree(2, 150, 1.0), leaf_preset("oak"), 1);
+    const std::vector<LeafPlacement> grown =
+        place_leaves(test::random_tree(2, 150, 20.0), leaf_preset("oak"), 1);
+    for (const LeafPlacement& leaf : sapling)
+        EXPECT_LT(leaf.size, 0.18f);
+    for (const LeafPlacement& leaf : grown)
+        EXPECT_GT(leaf.size, 0.18f);
+}
+
+TEST(Leaves, WildTreesAndNothing) {
+    EXPECT_TRUE(place_leaves(Tree(), {}, 1).empty());
+    Tree lone;
+    lone.add_root(DVec3(0.0), 0.1);
+    EXPECT_TRUE(place_leaves(lone, {}, 1).empty());
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        const Tree tree = test::wild_tree(seed, 2 + static_cast<int>(seed % 50));
+        for (const LeafPlacement& leaf : place_leaves(tree, leaf_preset("maple"), seed)) {
+            ASSERT_TRUE(is_finite(DVec3(leaf.position)) && is_finite(DVec3(leaf.x)) &&
+                        is_finite(DVec3(leaf.y)) && is_finite(DVec3(leaf.z)));
+            ASSERT_TRUE(std::isfinite(leaf.size));
+        }
+    }
+}
+
+TEST(LeafCards, CardsAreSoundAndFaceUp) {
+    for (int level = 0; level < 3; level++) {
+        const Mesh card = build_leaf_card(level);
+        EXPECT_GE(card.triangle_count(), level == 0 ? 4u : 2u);
+        ASSERT_EQ(card.uvs.size(), card.positions.size());
+        for (size_t i = 0; i < card.positions.size(); i++) {
+            EXPECT_NEAR(card.uvs[i].x, card.positions[i].x + 0.5f, 1e-6f);
+            EXPECT_NEAR(card.uvs[i].y, 1.0f - card.positions[i].y, 1e-6f);
+            EXPECT_GT(card.normals[i].z, 0.8f);
+            EXPECT_NEAR(glm::dot(Vec3(card.tangents[i]), card.normals[i]), 0.0f, 1e-5f);
+        }
+        for (size_t i = 0; i < card.indices.size(); i += 3) {
+            const Vec3 a = card.positions[card.indices[i]], b = card.positions[card.indices[i + 1]],
+                       c = card.positions[card.indices[i + 2]];
+            EXPECT_GT(glm::cross(b - a, c - a).z, 0.0f);
+        }
+    }
+}
+
+TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
+    const std::vector<LeafPlacement> leaves =
+        place_leaves(test::random_tree(6, 400), leaf_preset("cherry"), 3);
+    const Mesh card = build_leaf_card(), mesh = bake_leaves(leaves);
+    const std::vector<float> buffer = leaf_buffer(leaves);
+    ASSERT_EQ(buffer.size(), leaves.size() * 20);
+    ASSERT_EQ(mesh.positions.size(), leaves.size() * card.positions.size());
+    ASSERT_EQ(mesh.indices.size(), leaves.size() * card.indices.size());
+    for (size_t i = 0; i < leaves.size(); i++) {
+        const float* row = buffer.data() + i * 20;
+        for (size_t k = 0; k < card.positions.size(); k++) {
+            const Vec3 p = card.positions[k];
+            const size_t v = i * card.positions.size() + k;
+            for (int axis = 0; axis < 3; axis++)
+                ASSERT_NEAR(mesh.positions[v][axis],
+                            row[4 * axis] * p.x + row[4 * axis + 1] * p.y + row[4 * axis + 2] * p.z +
+                                row[4 * axis + 3],
+                            1e-4f);
+            ASSERT_NEAR(glm::length(mesh.normals[v]), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(Vec3(mesh.tangents[v])), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::dot(Vec3(mesh.tangents[v]), mesh.normals[v]), 0.0f, 1e-3f);
+        }
+        const Vec3 outward = Vec3(row[12], row[13], row[14]) * 2.0f - 1.0f;
+        const Vec3 world = leaves[i].x * outward.x + leaves[i].y * outward.y + leaves[i].z * outward.z;
+        ASSERT_NEAR(glm::distance(world, leaves[i].outward), 0.0f, 1e-4f);
+        ASSERT_EQ(row[17], leaves[i].size);
+    }
+}
+
+TEST(BranchAxis, PassesThroughTheNodesAndNeverStandsStill) {
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        const Tree tree = seed % 2 ? test::random_tree(seed, 200) : test::wild_tree(seed, 60);
+        const BranchList list = list_branches(tree);
+        std::vector<AxisPoint> points;
+        for (const Branch& branch : list.branches) {
+            sample_axis(tree, list, branch, 1e-5, points);
+            if (points.empty()) continue;
+            ASSERT_GE(points.size(), 2u);
+            const NodeId start = branch.attach == kNoNode ? list.nodes[branch.begin] : branch.attach;
+            EXPECT_EQ(points.front().position, tree.node(start).position);
+            EXPECT_NEAR(glm::distance(points.back().position, tree.node(list.nodes[branch.end - 1]).position),
+                        0.0, 2e-5);
+            for (size_t i = 1; i < points.size(); i++) {
+                ASSERT_GT(points[i].along, points[i - 1].along);
+                ASSERT_NEAR(glm::length(points[i].direction), 1.0, 1e-9);
+                ASSERT_GT(points[i].radius, 0.0);
+            }
+            size_t hint = 0;
+            const double middle = 0.5 * points.back().along;
+            EXPECT_NEAR(axis_at(points, middle, hint).along, middle, 1e-9);
+        }
+    }
+}
+
+TEST(Crown, SwayGrowsFromTheRootToTheTop) {
+    const Tree tree = test::random_tree(5, 300);
+    const Crown crown = measure_crown(tree);
+    double top = 0.0;
+    for (NodeId id : tree.depth_first())
+        top = std::max(top, crown.sway(tree.node(id).position));
+    EXPECT_EQ(crown.sway(tree.node(tree.root()).position), 0.0);
+    EXPECT_NEAR(top, 1.0, 1e-12);
+    EXPECT_NEAR(crown.openness(crown.centre), 0.0, 1e-12);
+    EXPECT_EQ(crown.openness(crown.centre + DVec3(3.0 * crown.radii.x, 0.0, 0.0)), 1.0);
+}
+
+}  // namespace
+}  // namespace treerec

@@ -1,0 +1,149 @@
+#include "exchange/gltf.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#include <tiny_gltf.h>
+
+#include "error.h"
+#include "mesh/branch_tubes.h"
+#include "mesh/leaf_cards.h"
+#include "random_tree.h"
+
+namespace treerec {
+namespace {
+
+class GltfWrite : public testing::Test {
+  protected:
+    GltfWrite() {
+        folder_ = std::filesystem::temp_directory_path() / ("treerec gltf " + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+        const Tree tree = test::random_tree(3, 300);
+        bark_ = build_branch_tubes(tree);
+        leaves_ = bake_leaves(place_leaves(tree, leaf_preset("oak"), 1));
+        model_.bark = &bark_;
+        model_.leaves = &leaves_;
+        model_.preset = "oak";
+        model_.pictures = make_pictures("oak", 32, 1);
+        model_.extras = {{"height_m", 11.5}, {"nodes", 300.0}};
+    }
+    ~GltfWrite() override {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    std::string path(const char* name) const { return (folder_ / name).string(); }
+
+    std::filesystem::path folder_;
+    Mesh bark_, leaves_;
+    ModelFile model_;
+};
+
+tinygltf::Model read(const std::string& path) {
+    tinygltf::TinyGLTF reader;
+    reader.SetImageLoader(
+        [](tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+           const unsigned char* bytes, int size, void*) {
+            image->image.assign(bytes, bytes + size);
+            return true;
+        },
+        nullptr);
+    tinygltf::Model model;
+    std::string error, warning;
+    const bool good = path.ends_with(".glb") ? reader.LoadBinaryFromFile(&model, &error, &warning, path)
+                                             : reader.LoadASCIIFromFile(&model, &error, &warning, path);
+    EXPECT_TRUE(good) << error;
+    EXPECT_TRUE(error.empty() && warning.empty()) << error << warning;
+    return model;
+}
+
+template <typename T>
+void expect_attribute(const tinygltf::Model& model, int accessor_index, const std::vector<T>& values) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(accessor_index)];
+    const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(accessor.bufferView)];
+    ASSERT_EQ(accessor.count, values.size());
+    ASSERT_EQ(view.byteLength, values.size() * sizeof(T));
+    EXPECT_EQ(view.byteOffset % 4, 0u);
+    EXPECT_EQ(std::memcmp(model.buffers[0].data.data() + view.byteOffset, values.data(), view.byteLength), 0);
+}
+
+void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh) {
+    const tinygltf::Primitive& primitive = model.meshes[static_cast<size_t>(mesh_index)].primitives.at(0);
+    expect_attribute(model, primitive.indices, mesh.indices);
+    expect_attribute(model, primitive.attributes.at("POSITION"), mesh.positions);
+    expect_attribute(model, primitive.attributes.at("NORMAL"), mesh.normals);
+    expect_attribute(model, primitive.attributes.at("TANGENT"), mesh.tangents);
+    expect_attribute(model, primitive.attributes.at("TEXCOORD_0"), mesh.uvs);
+    const tinygltf::Accessor& wind = model.accessors[static_cast<size_t>(primitive.attributes.at("_WIND"))];
+    EXPECT_TRUE(wind.normalized);
+    const unsigned char* bytes =
+        model.buffers[0].data.data() + model.bufferViews[static_cast<size_t>(wind.bufferView)].byteOffset;
+    for (size_t i = 0; i < mesh.colors.size(); i++)
+        for (int c = 0; c < 4; c++)
+            ASSERT_NEAR(bytes[4 * i + static_cast<size_t>(c)] / 255.0f, mesh.colors[i][c], 0.003f);
+}
+
+TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
+    for (const char* name : {"a tree.glb", "a tree.gltf"}) {
+        write_gltf(path(name), model_);
+        const tinygltf::Model model = read(path(name));
+        ASSERT_EQ(model.nodes.size(), 3u);
+        EXPECT_EQ(model.nodes[0].name, "Tree");
+        EXPECT_EQ(model.nodes[0].extras.Get("height_m").GetNumberAsDouble(), 11.5);
+        EXPECT_EQ(model.nodes[1].name, "Bark");
+        EXPECT_EQ(model.nodes[2].name, "Leaves");
+        expect_mesh(model, model.nodes[1].mesh, bark_);
+        expect_mesh(model, model.nodes[2].mesh, leaves_);
+        EXPECT_EQ(model.materials.at(1).alphaMode, "MASK");
+        EXPECT_TRUE(model.materials.at(1).doubleSided);
+        ASSERT_EQ(model.images.size(), 5u);
+        for (const tinygltf::Image& image : model.images) {
+            const auto picture = std::find_if(model_.pictures.begin(), model_.pictures.end(),
+                                              [&](const NamedPicture& p) { return p.name == image.name; });
+            ASSERT_NE(picture, model_.pictures.end());
+            EXPECT_EQ(image.image, picture->png) << name << " " << image.name;
+        }
+    }
+}
+
+TEST_F(GltfWrite, LeavesOutWhatIsNotThere) {
+    model_.leaves = nullptr;
+    write_gltf(path("bare.glb"), model_);
+    const tinygltf::Model bare = read(path("bare.glb"));
+    EXPECT_EQ(bare.nodes.size(), 2u);
+    EXPECT_EQ(bare.images.size(), 3u);
+    const Mesh nothing;
+    model_.bark = &nothing;
+    for (const char* name : {"empty.glb", "empty.gltf"}) {
+        write_gltf(path(name), model_);
+        EXPECT_EQ(read(path(name)).nodes.size(), 1u);
+    }
+    model_.leaves = &leaves_;
+    write_gltf(path("leaves.gltf"), model_);
+    const tinygltf::Model leaves = read(path("leaves.gltf"));
+    EXPECT_EQ(leaves.materials.size(), 1u);
+    expect_mesh(leaves, leaves.nodes.at(1).mesh, leaves_);
+}
+
+TEST_F(GltfWrite, FailuresNameThePathAndLeaveNothing) {
+    for (const std::string& wrong : {path("no folder/tree.glb"), path("tree.fbx")}) {
+        try {
+            write_gltf(wrong, model_);
+            FAIL() << wrong;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(wrong), std::string::npos) << error.what();
+        }
+        EXPECT_FALSE(std::filesystem::exists(wrong));
+    }
+    std::filesystem::create_directories(path("folder.glb"));
+    EXPECT_THROW(write_gltf(path("folder.glb"), model_), Error);
+    EXPECT_FALSE(std::filesystem::exists(path("folder.glb.tmp")));
+}
+
+}  // namespace
+}  // namespace treerec
