@@ -24,24 +24,30 @@ static func cloud(points: PackedVector3Array, colors: PackedColorArray) -> Array
 ## Every segment of a skeleton, coloured by the kind of its outer node or all alike.
 static func segments(tree: TreeReconstruction, by_kind: bool) -> ArrayMesh:
 	var positions: PackedVector3Array = tree.get_positions()
+	var ids: PackedInt32Array = tree.get_node_ids()
 	var parents: PackedInt32Array = tree.get_parents()
+	var places: Dictionary[int, int] = {}
+	for i: int in ids.size():
+		places[ids[i]] = i
+	var trunk: Dictionary[int, bool] = {}
+	for id: int in tree.get_trunk_nodes() if by_kind else PackedInt32Array():
+		trunk[id] = true
 	var vertices: PackedVector3Array = PackedVector3Array()
 	var normals: PackedVector3Array = PackedVector3Array()
 	var colors: PackedColorArray = PackedColorArray()
 	var sides: PackedVector2Array = PackedVector2Array()
 	var indices: PackedInt32Array = PackedInt32Array()
-	var on_trunk: PackedByteArray = tree.get_trunk_mask() if by_kind else PackedByteArray()
 	var left: Vector2 = Vector2(-1.0, 0.0)
 	var right: Vector2 = Vector2(1.0, 0.0)
 	for i: int in positions.size():
-		if parents[i] < 0:
+		if parents[i] == TreeReconstruction.NO_NODE:
 			continue
-		var from: Vector3 = positions[parents[i]]
+		var from: Vector3 = positions[places[parents[i]]]
 		var to: Vector3 = positions[i]
 		var along: Vector3 = (to - from).normalized()
 		if along == Vector3.ZERO:
 			continue
-		var color: Color = TRUNK if by_kind and on_trunk[i] == 1 else WOOD
+		var color: Color = TRUNK if trunk.has(ids[i]) else WOOD
 		var first: int = vertices.size()
 		vertices.append(from)
 		vertices.append(from)

@@ -106,15 +106,14 @@ func _draw(instance: TreeInstance3D) -> bool:
 					stages
 				)
 			],
-			stages,
-			false
+			stages
 		),
 		Studio.make_world(
-			[_shape(Plots.segments(raw, false), Plots.line_material(1.6), stages)], stages, false
+			[_shape(Plots.segments(raw, false), Plots.line_material(1.6), stages)], stages
 		),
-		Studio.make_world(_pruned(stages), stages, false),
-		Studio.make_world([_bark_of(instance)], stages, true),
-		Studio.make_world([instance], views, true),
+		Studio.make_world(_pruned(stages), stages),
+		Studio.make_world([_bark_of(instance)], stages),
+		Studio.make_world([instance], views),
 	]
 	var measures: Dictionary = _tree.measure()
 	var captions: Array[String] = [
@@ -164,7 +163,7 @@ func _shape(mesh: ArrayMesh, material: ShaderMaterial, framing: Studio.Framing) 
 	shape.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
 	# What is further away is paler, which tells near twigs from far ones.
 	material.set_shader_parameter(&"fade", 0.45)
-	material.set_shader_parameter(&"fade_color", Color(0.86, 0.87, 0.87))
+	material.set_shader_parameter(&"fade_color", Color(0.78, 0.81, 0.83))
 	var near: float = framing.distance - framing.reach * 0.6
 	material.set_shader_parameter(&"fade_range", Vector2(near, near + framing.reach * 1.2))
 	return shape
@@ -176,17 +175,17 @@ func _pruned(framing: Studio.Framing) -> Array:
 		_shape(Plots.segments(_tree, true), Plots.line_material(2.6), framing),
 		_shape(
 			Plots.nodes(_tree, _tree.get_leaves(), Plots.LEAF),
-			Plots.bead_material(6.0, 0.3),
+			Plots.bead_material(5.0, 0.3),
 			framing
 		),
 		_shape(
 			Plots.nodes(_tree, _tree.get_branch_nodes(), Plots.BRANCH),
-			Plots.bead_material(7.5, 0.3),
+			Plots.bead_material(5.5, 0.3),
 			framing
 		),
 		_shape(
 			Plots.nodes(_tree, _tree.get_trunk_nodes(), Plots.TRUNK),
-			Plots.bead_material(9.0, 0.3),
+			Plots.bead_material(7.0, 0.3),
 			framing
 		),
 	]
@@ -210,9 +209,9 @@ func _leaf_places(instance: TreeInstance3D) -> PackedVector3Array:
 
 func _heading(measures: Dictionary, instance: TreeInstance3D) -> String:
 	var parts: PackedStringArray = []
-	parts.append("%.1f m tall" % measures.get("height_m", 0.0))
-	if measures.get("dbh_m") is float:
-		parts.append("%.1f cm at breast height" % (measures["dbh_m"] * 100.0))
+	parts.append("%.1f m tall" % measures["height"])
+	if measures["dbh"] > 0.0:
+		parts.append("%.1f cm at breast height" % (measures["dbh"] * 100.0))
 	parts.append("%s triangles" % _grouped(instance.get_triangle_count()))
 	parts.append("rendered by Godot %s" % Engine.get_version_info()["string"].get_slice("-", 0))
 	return "   ·   ".join(parts)

@@ -8,7 +8,8 @@ const SUPERSAMPLING: int = 2
 
 const _FIELD_OF_VIEW: float = 22.0
 const _PITCH: float = deg_to_rad(-7.0)
-const _MARGIN: float = 0.88
+const _MARGIN: float = 0.9
+const _CAPTION: float = 66.0 # pixels at the top that stay free
 const _SAMPLES: int = 1500
 
 
@@ -20,8 +21,9 @@ class Framing:
 	var reach: float
 
 
-## A world of its own, holding backdrop, sun, floor and `contents`.
-static func make_world(contents: Array, framing: Framing, shadows: bool) -> SubViewport:
+## A world of its own, holding backdrop, sun, floor and `contents`. The energies suit the Compatibility renderer, which adds
+## the light of suns with shadows after the conversion to sRGB.
+static func make_world(contents: Array, framing: Framing) -> SubViewport:
 	var viewport: SubViewport = SubViewport.new()
 	viewport.own_world_3d = true
 	viewport.render_target_update_mode = SubViewport.UPDATE_ONCE
@@ -31,18 +33,19 @@ static func make_world(contents: Array, framing: Framing, shadows: bool) -> SubV
 	environment.environment = _environment()
 	viewport.add_child(environment)
 	var sun: DirectionalLight3D = DirectionalLight3D.new()
-	sun.rotation_degrees = Vector3(-48.0, 38.0, 0.0)
+	sun.rotation_degrees = Vector3(-62.0, 40.0, 0.0)
 	sun.light_color = Color(1.0, 0.965, 0.9)
-	sun.light_energy = 1.55
-	sun.shadow_enabled = shadows
+	sun.light_energy = 0.85
+	sun.shadow_enabled = true
 	sun.directional_shadow_mode = DirectionalLight3D.SHADOW_ORTHOGONAL
 	sun.directional_shadow_max_distance = framing.distance + 2.0 * framing.reach
-	sun.shadow_blur = 1.4
+	sun.shadow_blur = 2.0
+	sun.shadow_opacity = 0.75
 	viewport.add_child(sun)
 	var fill: DirectionalLight3D = DirectionalLight3D.new()
 	fill.rotation_degrees = Vector3(-15.0, -110.0, 0.0)
 	fill.light_color = Color(0.82, 0.89, 1.0)
-	fill.light_energy = 0.28
+	fill.light_energy = 0.1
 	viewport.add_child(fill)
 	var floor_mesh: PlaneMesh = PlaneMesh.new()
 	floor_mesh.size = Vector2.ONE * framing.reach * 5.0
@@ -85,16 +88,18 @@ static func place_camera(
 ## The nearest place from which all `points` fit into a picture of `size`, from every one of `yaws`.
 static func frame(points: PackedVector3Array, size: Vector2i, yaws: Array[float]) -> Framing:
 	var framing: Framing = Framing.new()
-	var tan_y: float = tan(deg_to_rad(_FIELD_OF_VIEW) * 0.5) * _MARGIN
-	var tan_x: float = tan_y * size.x / size.y
+	var half: float = tan(deg_to_rad(_FIELD_OF_VIEW) * 0.5)
+	var tan_down: float = half * _MARGIN
+	var tan_up: float = half * (1.0 - 2.0 * _CAPTION / size.y)
+	var tan_x: float = half * _MARGIN * size.x / size.y
 	@warning_ignore("integer_division")
 	var step: int = maxi(1, points.size() / _SAMPLES)
 	var box: AABB = AABB(Vector3.ZERO, Vector3.ZERO)
 	for i: int in range(0, points.size(), step):
 		box = box.expand(points[i])
 	framing.reach = maxf(box.size.length() * 0.5, 0.05)
-	framing.centre = Vector3(0.0, box.get_center().y, 0.0)
-	for pass_number: int in 3:
+	framing.centre = box.get_center()
+	for pass_number: int in 5:
 		framing.distance = 0.0
 		var too_low: float = 0.0
 		var too_high: float = 0.0
@@ -103,10 +108,10 @@ static func frame(points: PackedVector3Array, size: Vector2i, yaws: Array[float]
 			for i: int in range(0, points.size(), step):
 				var seen: Vector3 = inverse * (points[i] - framing.centre)
 				framing.distance = maxf(framing.distance, absf(seen.x) / tan_x + seen.z)
-				too_high = maxf(too_high, seen.y / tan_y + seen.z)
-				too_low = maxf(too_low, -seen.y / tan_y + seen.z)
+				too_high = maxf(too_high, seen.y / tan_up + seen.z)
+				too_low = maxf(too_low, -seen.y / tan_down + seen.z)
 		framing.distance = maxf(framing.distance, maxf(too_high, too_low))
-		framing.centre.y += (too_high - too_low) * 0.5 * tan_y
+		framing.centre.y += (too_high - too_low) * 0.5 * tan_down
 	return framing
 
 
@@ -121,7 +126,7 @@ static func _environment() -> Environment:
 	environment.sky = sky
 	environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
 	environment.ambient_light_color = Color(0.80, 0.86, 0.95)
-	environment.ambient_light_energy = 0.62
+	environment.ambient_light_energy = 0.36
 	environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
 	environment.tonemap_mode = Environment.TONE_MAPPER_LINEAR
 	return environment

@@ -100,7 +100,10 @@ func _notification(what: int) -> void:
 	match what:
 		NOTIFICATION_PREDELETE:
 			_drop_job()
-		NOTIFICATION_ENTER_TREE, NOTIFICATION_VISIBILITY_CHANGED:
+		NOTIFICATION_ENTER_TREE:
+			set_notify_transform(true)
+			_update_instances()
+		NOTIFICATION_TRANSFORM_CHANGED:
 			_update_instances()
 
 
@@ -130,8 +133,7 @@ func _start() -> void:
 		_job.stale = true
 		return
 	var job: BuildJob = BuildJob.new()
-	# A copy, since this one may change while the worker reads.
-	job.source = reconstruction.duplicate() as TreeReconstruction
+	job.source = reconstruction
 	job.lod = lod
 	job.leaves = leaves
 	if not threaded:
@@ -166,8 +168,9 @@ func _drop_job() -> void:
 func _apply(job: BuildJob) -> void:
 	var bark: ArrayMesh = ArrayMesh.new()
 	if not job.bark.is_empty():
-		var custom: int = Mesh.ARRAY_CUSTOM_RGBA_FLOAT << Mesh.ARRAY_FORMAT_CUSTOM0_SHIFT
-		bark.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, custom)
+		bark.add_surface_from_arrays(
+			Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, TreeReconstruction.MESH_FLAGS
+		)
 	var box: AABB = bark.get_aabb()
 	_height = maxf(box.end.y, 0.1)
 	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
@@ -216,19 +219,27 @@ func _material_or_preset(material: Material, part: String) -> Material:
 	return load(path) as Material
 
 
-# The values that the shaders take per instance. They are set in the server, so that scenes stay free of them.
+# The values that the shaders take per instance. They are set in the server, so that scenes stay free of
+# them.
 func _update_instances() -> void:
-	var instances: Array[RID] = [get_instance()]
+	if not is_inside_tree():
+		return
+	var height: float = _height * global_basis.get_scale().y
+	_set_shader_values(get_instance(), height)
 	if _leaves_node != null:
 		_leaves_node.layers = layers
 		_leaves_node.cast_shadow = cast_shadow
 		_leaves_node.gi_mode = gi_mode
-		instances.append(_leaves_node.get_instance())
-	for instance: RID in instances:
-		RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_height", _height)
-		RenderingServer.instance_geometry_set_shader_parameter(
-			instance, &"tree_wind", 1.0 if wind else 0.0
-		)
+		_set_shader_values(_leaves_node.get_instance(), height)
+
+
+func _set_shader_values(instance: RID, height: float) -> void:
+	var amount: float = 1.0 if wind else 0.0
+	RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_height", height)
+	RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_wind", amount)
+	RenderingServer.instance_geometry_set_shader_parameter(
+		instance, &"tree_origin", global_position
+	)
 
 
 func _leaf_card() -> Mesh:
@@ -250,7 +261,8 @@ static func _main_loop() -> SceneTree:
 	return Engine.get_main_loop() as SceneTree
 
 
-# One build: what a worker thread needs and what it makes.
+# One build: what a worker thread needs and what it makes. The builders see the reconstruction as it was when
+# they began, so it may change meanwhile.
 class BuildJob:
 	extends RefCounted
 
@@ -269,4 +281,4 @@ class BuildJob:
 		bark = source.build_mesh_arrays(lod)
 		if leaves:
 			buffer = source.build_leaf_buffer(lod)
-			card = source.build_leaf_card_arrays(lod)
+			card = TreeReconstruction.build_leaf_card_arrays(lod)
