@@ -11,7 +11,7 @@
 namespace treerec {
 
 struct OrientOptions {
-    std::optional<UpAxis> up;  // none: detect
+    std::optional<UpAxis> up;  // none: detect Z, Y or -Y; Z where the shape does not tell
     std::optional<double>
         metres_per_unit;  // none: guess from the size (metres unless implausible), and say so
 };

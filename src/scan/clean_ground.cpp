@@ -6,6 +6,7 @@
 #include "geometry/random.h"
 #include "scan/clean_steps.h"
 #include "scan/robust.h"
+#include "scan/samples.h"
 
 namespace treerec {
 
@@ -13,10 +14,11 @@ namespace {
 
 constexpr double kSteepest = 0.7;      // rise over run of the ground, 35 degrees
 constexpr double kLowPart = 0.3;       // of the height: where ground may lie
-constexpr double kLeastFilled = 0.4;   // share of the columns around that hold ground
+constexpr double kLeastFilled = 0.4;   // share of the squares around that hold ground
 constexpr size_t kFewestColumns = 30;  // with ground
 constexpr int kTrials = 300;           // planes tried
-constexpr int kMostAcross = 512;       // columns along an axis
+constexpr double kMostAcross = 512.0;  // columns along an axis
+constexpr double kFewestAcross = 24.0;
 
 // The ground's height: y = height + slope . (x, z) from a centre.
 struct Plane {
@@ -165,6 +167,35 @@ bool is_wide_and_filled(const Columns& columns, const std::vector<uint8_t>& has_
     return middle - split > 0.8 && n > kLeastFilled * area;
 }
 
+// Marks what grows out of the ground and ends below a tenth of the tree's height.
+void find_low_plants(const std::vector<Vec3>& points, const Plane& plane, double tolerance, double height,
+                     std::vector<uint8_t>& goes) {
+    std::vector<Vec3> low;
+    std::vector<size_t> index;
+    for (size_t i = 0; i < points.size(); i++) {
+        const double above = plane.above(points[i]);
+        if (goes[i] || above < -tolerance || above > 0.1 * height) continue;
+        low.push_back(points[i]);
+        index.push_back(i);
+    }
+    if (low.empty()) return;
+    const std::vector<uint32_t> label = connected_components(low, tolerance);
+    struct Plant {
+        double foot = std::numeric_limits<double>::max();
+        double top = std::numeric_limits<double>::lowest();
+    };
+    std::vector<Plant> plants(*std::max_element(label.begin(), label.end()) + size_t{1});
+    for (size_t i = 0; i < low.size(); i++) {
+        Plant& plant = plants[label[i]];
+        plant.foot = std::min(plant.foot, plane.above(low[i]));
+        plant.top = std::max(plant.top, plane.above(low[i]));
+    }
+    for (size_t i = 0; i < low.size(); i++) {
+        const Plant& plant = plants[label[i]];
+        if (plant.foot < 2.0 * tolerance && plant.top < 0.1 * height - tolerance) goes[index[i]] = 1;
+    }
+}
+
 }  // namespace
 
 std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
@@ -174,8 +205,9 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
     const double height = ranges[1].size();
     const double across = std::max(ranges[0].size(), ranges[2].size());
     if (!(height > 0.0) || !(across > 0.0)) return goes;
-    const double cell = std::max(across / kMostAcross, 0.025 * std::max(height, 0.4 * across));
-    const double tolerance = 0.4 * cell;
+    const double size = std::max(height, 0.4 * across);
+    const double cell = std::max(across / kMostAcross, std::min(0.025 * size, across / kFewestAcross));
+    const double tolerance = 0.01 * size;
     const Columns columns(points, ranges, cell);
 
     std::vector<Vec3> low;
@@ -212,11 +244,11 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
     }
     constexpr uint8_t kAllLayers = (1 << kLayers) - 1;
     for (size_t i = 0; i < points.size(); i++) {
-        const double above = plane.above(points[i]);
-        if (std::abs(above) > tolerance) continue;
+        if (std::abs(plane.above(points[i])) > tolerance) continue;
         const int c = columns.column_of(points[i]);
         goes[i] = c < 0 || layers[static_cast<size_t>(c)] != kAllLayers;
     }
+    find_low_plants(points, plane, tolerance, height, goes);
     return goes;
 }
 

@@ -15,6 +15,8 @@ constexpr double kTallestTree = 120.0;
 constexpr double kTypicalTree = 10.0;
 // How much more an upside-down stem must look like one. Both ends of a pruned tree look like stems.
 constexpr double kFlipMargin = 1.3;
+// Coordinates this large are a map's (UTM and the like), and maps are Z up.
+constexpr double kMapCoordinates = 1e5;
 
 // How the cloud looks from one end of an axis: the stem that a tree standing on that end would have.
 struct EndView {
@@ -29,18 +31,22 @@ struct AxisView {
 };
 
 struct Slice {
-    size_t count = 0;
+    bool occupied = false;  // by more than stray points
     DVec2 centre{0.0};
     double radius = 0.0;  // holds 80 % of the slice's points
 };
 
 std::vector<Slice> slice_up(const std::vector<std::vector<Vec2>>& points) {
+    size_t total = 0;
+    for (const std::vector<Vec2>& slice : points)
+        total += slice.size();
+    const size_t fewest = std::max<size_t>(3, total / 20000);
     std::vector<Slice> slices(points.size());
     std::vector<float> values;
     for (size_t s = 0; s < points.size(); s++) {
         Slice& slice = slices[s];
-        slice.count = points[s].size();
-        if (slice.count < 3) continue;
+        slice.occupied = points[s].size() >= fewest;
+        if (!slice.occupied) continue;
         for (int axis = 0; axis < 2; axis++) {
             values.clear();
             for (const Vec2& p : points[s])
@@ -57,14 +63,14 @@ std::vector<Slice> slice_up(const std::vector<std::vector<Vec2>>& points) {
 
 // Looks for a run of compact slices that begins in the first quarter. slices: from the end onwards.
 EndView view_end(const std::vector<Slice>& slices, const DVec2& centre, double crown_radius, double height) {
-    auto compact = [&](const Slice& s) { return s.count >= 3 && s.radius < 0.3 * crown_radius; };
+    auto compact = [&](const Slice& s) { return s.occupied && s.radius < 0.3 * crown_radius; };
     size_t first = 0;
     while (first < slices.size() / 4 && !compact(slices[first]))
         first++;
     EndView view;
     if (first == slices.size() / 4) return view;
     size_t last = first;
-    for (size_t s = first; s < slices.size() && (compact(slices[s]) || slices[s].count < 3); s++)
+    for (size_t s = first; s < slices.size() && (compact(slices[s]) || !slices[s].occupied); s++)
         if (compact(slices[s])) last = s;
     std::vector<double> radii;
     DVec2 foot(0.0);
@@ -118,31 +124,28 @@ AxisView view_axis(const std::vector<Vec3>& points, const std::array<Range, 3>& 
     return view;
 }
 
-bool upside_down(const AxisView& view) {
-    return view.high_end.score > view.low_end.score + kFlipMargin;
-}
-
-double score_of(const AxisView& view) {
-    return std::max(view.low_end.score, view.high_end.score) + view.elongation_score;
-}
-
 // Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; no program puts
-// the sky along X. So Z is taken unless Y has a better stem, and more than that is asked of a cloud without
-// colours, which photos would have given it.
+// the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
+// without colours, which photos would have given it.
 UpAxis detect_up(const PointCloud& cloud, bool& sure) {
+    const DVec3 place = glm::abs(cloud.frame.origin);
+    sure = true;
+    if (std::max(place.x, place.y) > kMapCoordinates) return UpAxis::kZ;
+
     const std::array<Range, 3> ranges = robust_ranges(cloud.positions);
     const AxisView y = view_axis(cloud.positions, ranges, 1);
     const AxisView z = view_axis(cloud.positions, ranges, 2);
-    const double y_slenderness = std::max(y.low_end.slenderness, y.high_end.slenderness);
+    const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
+    const double z_score = z.low_end.score + z.elongation_score;
     const double margin = cloud.has_colors() ? 0.2 : 0.4;
     const double least_slenderness = cloud.has_colors() ? 1.5 : 4.0;
-    const double y_score = score_of(y);
-    const double z_score = score_of(z);
     sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
-    if (y_score > z_score + margin && y_slenderness > least_slenderness)
-        return upside_down(y) ? UpAxis::kNegY : UpAxis::kY;
-    if (y_score > z_score + margin) sure = false;
-    return upside_down(z) ? UpAxis::kNegZ : UpAxis::kZ;
+    if (y_score <= z_score + margin) return UpAxis::kZ;
+    if (std::max(y.low_end.slenderness, y.high_end.slenderness) <= least_slenderness) {
+        sure = false;
+        return UpAxis::kZ;
+    }
+    return y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
 }
 
 struct Unit {

@@ -92,23 +92,28 @@ RawCloud read_raw(const ReadJob& job) {
     return read_text(job);
 }
 
-// Order-independent: the middle value of each axis, rounded.
-DVec3 median_origin(const std::vector<DVec3>& positions) {
+bool usable(const DVec3& p, const DVec3& origin, double limit) {
+    const DVec3 d = glm::abs(p - origin);
+    return d.x <= limit && d.y <= limit && d.z <= limit;
+}
+
+// Order-independent: the middle value of each axis, rounded, over the points with usable coordinates.
+// usable_count: gets how many those are.
+DVec3 median_origin(const std::vector<DVec3>& positions, size_t& usable_count) {
     DVec3 origin(0.0);
-    std::vector<double> values(positions.size());
+    std::vector<double> values;
+    values.reserve(positions.size());
     for (int axis = 0; axis < 3; axis++) {
-        for (size_t i = 0; i < positions.size(); i++)
-            values[i] = positions[i][axis];
+        values.clear();
+        for (const DVec3& p : positions)
+            if (usable(p, DVec3(0.0), kLargestCoordinate)) values.push_back(p[axis]);
+        if (values.empty()) break;
         const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
         std::nth_element(values.begin(), middle, values.end());
         origin[axis] = std::round(*middle) + 0.0;
     }
+    usable_count = values.size();
     return origin;
-}
-
-bool usable(const DVec3& p, const DVec3& origin, double limit) {
-    const DVec3 d = glm::abs(p - origin);
-    return d.x <= limit && d.y <= limit && d.z <= limit;
 }
 
 std::string of_points(size_t part, size_t whole) {
@@ -157,17 +162,12 @@ void convert_normals(const RawCloud& raw, PointCloud& cloud) {
 PointCloud settle(const ReadJob& job, RawCloud&& raw) {
     const size_t count = raw.positions.size();
     if (count == 0) job.fail("holds no points.");
-    std::vector<DVec3> sound;
-    sound.reserve(count);
-    for (const DVec3& p : raw.positions)
-        if (usable(p, DVec3(0.0), kLargestCoordinate)) sound.push_back(p);
-    if (sound.empty()) job.fail("has no point with finite coordinates.");
-    const DVec3 origin = median_origin(sound);
+    size_t sound_count = 0;
+    const DVec3 origin = median_origin(raw.positions, sound_count);
+    if (sound_count == 0) job.fail("has no point with finite coordinates.");
 
     PointCloud cloud;
     cloud.frame.origin = origin;
-    size_t sound_count = sound.size();
-    sound = {};
     std::vector<uint8_t> keep(count);
     cloud.positions.resize(count);
     size_t kept = 0;
