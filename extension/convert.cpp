@@ -6,7 +6,7 @@
 #include <godot_cpp/classes/mesh.hpp>
 #include <godot_cpp/variant/packed_byte_array.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
-#include <godot_cpp/variant/packed_float64_array.hpp>
+#include <godot_cpp/variant/packed_int64_array.hpp>
 #include <godot_cpp/variant/packed_vector2_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 
@@ -77,41 +77,48 @@ Array to_surface_arrays(const treerec::Mesh& p_mesh) {
     return arrays;
 }
 
+// The bits of doubles. Godot's text files print a double that a float can hold with a float's digits, which
+// would move a tree at UTM coordinates by centimetres.
+static PackedInt64Array to_bits(const std::vector<double>& p_values) {
+    return copy_values<PackedInt64Array>(p_values);
+}
+
+static std::vector<double> from_bits(const PackedInt64Array& p_bits) {
+    std::vector<double> values(size_t(p_bits.size()));
+    if (!values.empty()) {
+        std::memcpy(values.data(), p_bits.ptr(), values.size() * sizeof(double));
+    }
+    return values;
+}
+
 Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version) {
     // Depth first, so that the order of children comes back.
     const std::vector<NodeId> ids = p_tree.empty() ? std::vector<NodeId>() : p_tree.depth_first();
-    const int64_t count = int64_t(ids.size());
-    PackedInt32Array parents;
-    PackedFloat64Array positions;
-    PackedFloat64Array radii;
+    std::vector<NodeId> parents;
+    std::vector<double> positions;
+    std::vector<double> radii;
     PackedByteArray flags;
-    parents.resize(count);
-    positions.resize(3 * count);
-    radii.resize(count);
-    flags.resize(count);
-    int32_t* write_parent = parents.ptrw();
-    double* write_position = positions.ptrw();
-    double* write_radius = radii.ptrw();
+    parents.reserve(ids.size());
+    positions.reserve(3 * ids.size());
+    radii.reserve(ids.size());
+    flags.resize(int64_t(ids.size()));
     uint8_t* write_flags = flags.ptrw();
     for (const NodeId id : ids) {
         const treerec::Node& node = p_tree.node(id);
-        *write_parent++ = node.parent;
-        *write_position++ = node.position.x;
-        *write_position++ = node.position.y;
-        *write_position++ = node.position.z;
-        *write_radius++ = node.radius;
+        parents.push_back(node.parent);
+        positions.insert(positions.end(), {node.position.x, node.position.y, node.position.z});
+        radii.push_back(node.radius);
         *write_flags++ = node.flags;
     }
     const treerec::ScanFrame& frame = p_tree.frame();
     Dictionary data;
     data["format_version"] = p_format_version;
     data["ids"] = to_godot(ids);
-    data["parents"] = parents;
-    data["positions"] = positions;
-    data["radii"] = radii;
+    data["parents"] = to_godot(parents);
+    data["positions"] = to_bits(positions);
+    data["radii"] = to_bits(radii);
     data["flags"] = flags;
-    data["origin"] = PackedFloat64Array{frame.origin.x, frame.origin.y, frame.origin.z};
-    data["metres_per_unit"] = frame.metres_per_unit;
+    data["frame"] = to_bits({frame.origin.x, frame.origin.y, frame.origin.z, frame.metres_per_unit});
     data["up_axis"] = treerec::up_axis_name(frame.up);
     return data;
 }
@@ -126,69 +133,72 @@ static Variant require_entry(const Dictionary& p_data, const char* p_key, Varian
     return value;
 }
 
+// For each entry of p_parents, which names a parent by its id, the parent's place in p_ids.
+static std::vector<NodeId> places_of_parents(const PackedInt32Array& p_ids,
+                                             const PackedInt32Array& p_parents) {
+    constexpr NodeId kLargestId = 1 << 24;  // as Tree::from_arrays()
+    NodeId largest = 0;
+    for (const NodeId id : p_ids) {
+        if (id < 0 || id > kLargestId) {
+            throw treerec::Error(
+                "The saved tree is damaged: a node's id is out of range. Reconstruct the tree again.");
+        }
+        largest = std::max(largest, id);
+    }
+    std::vector<NodeId> place(size_t(largest) + 1, treerec::kNoNode);
+    NodeId next = 0;
+    for (const NodeId id : p_ids) {
+        place[size_t(id)] = next++;
+    }
+    std::vector<NodeId> places;
+    places.reserve(size_t(p_parents.size()));
+    for (const NodeId parent : p_parents) {
+        NodeId found = treerec::kNoNode;
+        if (parent != treerec::kNoNode) {
+            found = parent >= 0 && parent <= largest ? place[size_t(parent)] : treerec::kNoNode;
+            if (found == treerec::kNoNode) {
+                throw treerec::Error(
+                    "The saved tree is damaged: a node's parent is missing. Reconstruct the tree again.");
+            }
+        }
+        places.push_back(found);
+    }
+    return places;
+}
+
 treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     const PackedInt32Array ids = require_entry(p_data, "ids", Variant::PACKED_INT32_ARRAY);
     const PackedInt32Array parents = require_entry(p_data, "parents", Variant::PACKED_INT32_ARRAY);
-    const PackedFloat64Array positions = require_entry(p_data, "positions", Variant::PACKED_FLOAT64_ARRAY);
-    const PackedFloat64Array radii = require_entry(p_data, "radii", Variant::PACKED_FLOAT64_ARRAY);
+    const std::vector<double> positions =
+        from_bits(require_entry(p_data, "positions", Variant::PACKED_INT64_ARRAY));
+    const std::vector<double> radii = from_bits(require_entry(p_data, "radii", Variant::PACKED_INT64_ARRAY));
     const PackedByteArray flags = require_entry(p_data, "flags", Variant::PACKED_BYTE_ARRAY);
-    const PackedFloat64Array origin = require_entry(p_data, "origin", Variant::PACKED_FLOAT64_ARRAY);
-    const double unit = require_entry(p_data, "metres_per_unit", Variant::FLOAT);
+    const std::vector<double> place = from_bits(require_entry(p_data, "frame", Variant::PACKED_INT64_ARRAY));
     const String up = require_entry(p_data, "up_axis", Variant::STRING);
 
-    const int64_t count = ids.size();
-    if (parents.size() != count || positions.size() != 3 * count || radii.size() != count ||
-        flags.size() != count) {
+    const size_t count = size_t(ids.size());
+    if (size_t(parents.size()) != count || positions.size() != 3 * count || radii.size() != count ||
+        size_t(flags.size()) != count || place.size() != 4) {
         throw treerec::Error(
             "The saved tree is damaged: its lists differ in length. Reconstruct the tree again.");
     }
     treerec::ScanFrame frame;
-    if (origin.size() == 3) {
-        frame.origin = DVec3(origin[0], origin[1], origin[2]);
-    }
-    frame.metres_per_unit = unit;
+    frame.origin = DVec3(place[0], place[1], place[2]);
+    frame.metres_per_unit = place[3];
     frame.up = treerec::parse_up_axis(to_std(up));
-    if (origin.size() != 3 || !treerec::is_finite(frame.origin) || !std::isfinite(unit) || unit <= 0.0) {
+    if (!treerec::is_finite(frame.origin) || !std::isfinite(place[3]) || place[3] <= 0.0) {
         throw treerec::Error(
             "The saved tree is damaged: its place in the scan isn't finite. Reconstruct the tree again.");
     }
     treerec::Tree tree;
     if (count > 0) {
-        const int32_t* id = ids.ptr();
-        const int32_t* parent = parents.ptr();
-        const double* position = positions.ptr();
-        // The arrays name parents by id, Tree::from_arrays() by place in the arrays.
-        constexpr NodeId kLargestId = 1 << 24;
-        NodeId largest = 0;
-        for (int64_t i = 0; i < count; i++) {
-            if (id[i] < 0 || id[i] > kLargestId) {
-                throw treerec::Error(
-                    "The saved tree is damaged: a node's id is out of range. Reconstruct the tree again.");
-            }
-            largest = std::max(largest, id[i]);
+        std::vector<DVec3> points;
+        points.reserve(count);
+        for (size_t i = 0; i < count; i++) {
+            points.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
         }
-        std::vector<NodeId> place(size_t(largest) + 1, treerec::kNoNode);
-        for (int64_t i = 0; i < count; i++) {
-            place[size_t(id[i])] = NodeId(i);
-        }
-        std::vector<NodeId> parent_places(static_cast<size_t>(count));
-        std::vector<DVec3> points(static_cast<size_t>(count));
-        for (int64_t i = 0; i < count; i++) {
-            NodeId& parent_place = parent_places[size_t(i)];
-            parent_place = treerec::kNoNode;
-            if (parent[i] != treerec::kNoNode) {
-                parent_place =
-                    parent[i] >= 0 && parent[i] <= largest ? place[size_t(parent[i])] : treerec::kNoNode;
-                if (parent_place == treerec::kNoNode) {
-                    throw treerec::Error(
-                        "The saved tree is damaged: a node's parent is missing. Reconstruct the tree again.");
-                }
-            }
-            points[size_t(i)] = DVec3(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
-        }
-        const std::vector<NodeId> node_ids(id, id + count);
-        tree = treerec::Tree::from_arrays(parent_places, points,
-                                          std::vector<double>(radii.ptr(), radii.ptr() + count),
+        const std::vector<NodeId> node_ids(ids.begin(), ids.end());
+        tree = treerec::Tree::from_arrays(places_of_parents(ids, parents), points, radii,
                                           std::vector<uint8_t>(flags.ptr(), flags.ptr() + count), &node_ids);
     }
     tree.set_frame(frame);

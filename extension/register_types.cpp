@@ -8,6 +8,7 @@
 
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
+#include "tree_reconstructor.h"
 #endif
 
 using namespace godot;
@@ -32,6 +33,10 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
     switch (p_level) {
         case MODULE_INITIALIZATION_LEVEL_SCENE:
             GDREGISTER_CLASS(TreeReconstruction)
+#ifdef TREEREC_EDITOR
+            GDREGISTER_CLASS(
+                TreeReconstructor)  // Here, since scripts run by the editor's program use it too.
+#endif
             break;
         case MODULE_INITIALIZATION_LEVEL_EDITOR:
 #ifdef TREEREC_EDITOR

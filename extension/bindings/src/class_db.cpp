@@ -30,7 +30,9 @@ const GDExtensionPropertyInfo* Hooks::export_property_list(List<PropertyInfo>&& 
 }
 
 void Hooks::free_property_list(void*, const GDExtensionPropertyInfo* p_list, uint32_t p_count) {
-    delete static_cast<PropertyList*>(p_list[p_count].name);
+    // Read first: GCC 12 reads it again after the destructor, which has freed where it stands.
+    const PropertyList* list = static_cast<PropertyList*>(p_list[p_count].name);
+    delete list;
 }
 
 // Converts and checks the arguments, fills in defaults and calls; what is wrong goes into `r_error`.

@@ -93,21 +93,18 @@ struct Hooks {
         std::vector<GDExtensionPropertyInfo> c_form;
     };
 
+    // The engine asks each class of the extension in turn, so this is for T alone. Null if T has none.
     template <typename T>
-    static void collect_properties(void* p_instance, List<PropertyInfo>* r_list) {
-        if constexpr (T::_is_extension) {
-            collect_properties<typename T::parent_type>(p_instance, r_list);
-            if constexpr (owns<T>(&T::_get_property_list)) {
-                self<T>(p_instance)->_get_property_list(r_list);
-            }
+    static GDExtensionClassGetPropertyList get_property_list_function() {
+        if constexpr (owns<T>(&T::_get_property_list)) {
+            return [](GDExtensionClassInstancePtr p_instance, uint32_t* r_count) {
+                List<PropertyInfo> properties;
+                self<T>(p_instance)->_get_property_list(&properties);
+                return export_property_list(std::move(properties), r_count);
+            };
+        } else {
+            return nullptr;
         }
-    }
-
-    template <typename T>
-    static const GDExtensionPropertyInfo* get_property_list(void* p_instance, uint32_t* r_count) {
-        List<PropertyInfo> properties;
-        collect_properties<T>(p_instance, &properties);
-        return export_property_list(std::move(properties), r_count);
     }
     static const GDExtensionPropertyInfo* export_property_list(List<PropertyInfo>&& p_list,
                                                                uint32_t* r_count);
@@ -233,7 +230,7 @@ class ClassDB {
         info.is_runtime = p_runtime;
         info.set_func = Hooks::set<T>;
         info.get_func = Hooks::get<T>;
-        info.get_property_list_func = Hooks::get_property_list<T>;
+        info.get_property_list_func = Hooks::get_property_list_function<T>();
         info.free_property_list_func = Hooks::free_property_list;
         info.property_can_revert_func = Hooks::property_can_revert<T>;
         info.property_get_revert_func = Hooks::property_get_revert<T>;

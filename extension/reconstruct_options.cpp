@@ -1,0 +1,190 @@
+#include "reconstruct_options.h"
+
+#include <cmath>
+#include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_string_array.hpp>
+#include <string>
+
+#include "convert.h"
+#include "error.h"
+#include "foliage/leaves.h"
+#include "tree_reconstruction.h"
+
+using namespace godot;
+using Pipeline = treerec::ReconstructOptions;
+
+namespace {
+
+struct Option {
+    const char* name;
+    Variant (*read)(const ParsedOptions& p_options);
+    void (*write)(ParsedOptions& r_options, const Variant& p_value);
+    PropertyHint hint;
+    const char* hint_string;
+    const char* description;
+};
+
+// Reads and writes a plain member, such as NUMBER(skeleton.spacing, double).
+#define OPTION_MEMBER(m_member, m_type)                                                           \
+    [](const ParsedOptions& p_options) { return Variant(m_type(p_options.pipeline.m_member)); },  \
+        [](ParsedOptions& r_options, const Variant& p_value) {                                    \
+            r_options.pipeline.m_member = decltype(r_options.pipeline.m_member)(m_type(p_value)); \
+        }
+
+Variant read_up(const ParsedOptions& p_options) {
+    const std::optional<treerec::UpAxis>& up = p_options.pipeline.orient.up;
+    return up ? treerec::up_axis_name(*up) : "auto";
+}
+
+void write_up(ParsedOptions& r_options, const Variant& p_value) {
+    const std::string name = to_std(p_value);
+    r_options.pipeline.orient.up.reset();
+    if (name != "auto") {
+        r_options.pipeline.orient.up = treerec::parse_up_axis(name);
+    }
+}
+
+Variant read_scale(const ParsedOptions& p_options) {
+    return p_options.pipeline.orient.metres_per_unit.value_or(0.0);
+}
+
+void write_scale(ParsedOptions& r_options, const Variant& p_value) {
+    const double scale = p_value;
+    r_options.pipeline.orient.metres_per_unit.reset();
+    if (scale != 0.0) {
+        r_options.pipeline.orient.metres_per_unit = scale;
+    }
+}
+
+Variant read_columns(const ParsedOptions& p_options) {
+    PackedStringArray names;
+    for (const std::string& name : p_options.pipeline.read.columns) {
+        names.push_back(to_godot(name));
+    }
+    return String(",").join(names);
+}
+
+void write_columns(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.read.columns.clear();
+    const PackedStringArray names = String(p_value).split(",", false);
+    for (const String& name : names) {
+        r_options.pipeline.read.columns.push_back(to_std(name.strip_edges()));
+    }
+}
+
+Variant read_leaves(const ParsedOptions& p_options) {
+    return p_options.leaves;
+}
+
+void write_leaves(ParsedOptions& r_options, const Variant& p_value) {
+    treerec::leaf_preset(to_std(p_value));  // Throws for a name that is none.
+    r_options.leaves = p_value;
+}
+
+const Option kOptions[] = {
+    {"up", read_up, write_up, PROPERTY_HINT_ENUM, "auto,x,y,z,-x,-y,-z",
+     "The scan's axis that points to the sky; auto detects it."},
+    {"scale", read_scale, write_scale, PROPERTY_HINT_RANGE, "0,1000,0.0001,or_greater",
+     "Length of one unit of the scan in metres; 0 guesses it from the size."},
+    {"columns", read_columns, write_columns, PROPERTY_HINT_NONE, "",
+     "Text files only: the columns' names in order, such as x,y,z,r,g,b; - skips one. Empty detects them."},
+    {"remove_extreme_colors", OPTION_MEMBER(clean.remove_extreme_colors, bool), PROPERTY_HINT_NONE, "",
+     "Removes points that are nearly white or nearly black."},
+    {"white_above", OPTION_MEMBER(clean.white_above, int), PROPERTY_HINT_RANGE, "0,256,1",
+     "A point is nearly white when every channel is at least this."},
+    {"black_below", OPTION_MEMBER(clean.black_below, int), PROPERTY_HINT_RANGE, "-1,255,1",
+     "A point is nearly black when every channel is at most this."},
+    {"remove_outliers", OPTION_MEMBER(clean.remove_outliers, bool), PROPERTY_HINT_NONE, "",
+     "Removes points far from their neighbours."},
+    {"neighbours", OPTION_MEMBER(clean.neighbours, int), PROPERTY_HINT_RANGE, "2,100,1",
+     "How many neighbours of a point say whether it is an outlier."},
+    {"outlier_deviations", OPTION_MEMBER(clean.outlier_deviations, double), PROPERTY_HINT_RANGE, "0.5,20,0.1",
+     "How many standard deviations from the usual distance make an outlier."},
+    {"remove_fragments", OPTION_MEMBER(clean.remove_fragments, bool), PROPERTY_HINT_NONE, "",
+     "Removes small clusters of points far from the rest."},
+    {"remove_ground", OPTION_MEMBER(clean.remove_ground, bool), PROPERTY_HINT_NONE, "",
+     "Removes the ground that the tree stands on."},
+    {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
+     "Keeps at most one point per cell of this size; 0 chooses by the cloud."},
+    {"minimum_branch", OPTION_MEMBER(skeleton.minimum_branch, double), PROPERTY_HINT_RANGE,
+     "0,2,0.01,suffix:m", "Shorter end branches are taken for noise; 0 chooses by the tree."},
+    {"simplify_distance", OPTION_MEMBER(skeleton.simplify_distance, double), PROPERTY_HINT_RANGE,
+     "0,0.5,0.001,suffix:m", "How far a branch may be moved when nodes are saved; 0 chooses by the tree."},
+    {"fit_radii", OPTION_MEMBER(skeleton.fit_radii, bool), PROPERTY_HINT_NONE, "",
+     "Measures radii where the points allow it; without it all are inferred."},
+    {"seed", OPTION_MEMBER(skeleton.seed, int64_t), PROPERTY_HINT_NONE, "",
+     "The same scan and seed give the same tree."},
+    {"leaves", read_leaves, write_leaves, PROPERTY_HINT_ENUM, "", "The leaf preset that the tree gets."},
+};
+
+#undef OPTION_MEMBER
+
+ParsedOptions default_options() {
+    ParsedOptions options;
+    options.leaves = "generic";
+    return options;
+}
+
+// An int serves for a float, as in GDScript; nothing else stands for another type.
+bool fits(const Variant& p_value, Variant::Type p_type) {
+    const Variant::Type type = p_value.get_type();
+    return type == p_type || (type == Variant::INT && p_type == Variant::FLOAT) ||
+           (type == Variant::STRING_NAME && p_type == Variant::STRING);
+}
+
+}  // namespace
+
+ParsedOptions parse_reconstruct_options(const Dictionary& p_options) {
+    ParsedOptions options = default_options();
+    size_t used = 0;
+    for (const Option& option : kOptions) {
+        if (!p_options.has(option.name)) {
+            continue;
+        }
+        used++;
+        const Variant value = p_options[option.name];
+        const Variant::Type type = option.read(options).get_type();
+        if (!fits(value, type)) {
+            throw treerec::Error("The option \"" + std::string(option.name) + "\" must be of type " +
+                                 to_std(Variant::get_type_name(type)) + ".");
+        }
+        if (type == Variant::FLOAT && (!std::isfinite(double(value)) || double(value) < 0.0)) {
+            throw treerec::Error("The option \"" + std::string(option.name) +
+                                 "\" must be a finite number that isn't negative.");
+        }
+        option.write(options, value);
+    }
+    if (used < size_t(p_options.size())) {
+        const Array names = p_options.keys();
+        for (int64_t i = 0; i < names.size(); i++) {
+            bool known = false;
+            for (const Option& option : kOptions) {
+                known = known || String(names[i]) == String(option.name);
+            }
+            if (!known) {
+                throw treerec::Error("There is no option \"" + to_std(String(names[i])) +
+                                     "\"; TreeReconstructor.get_option_list() lists them.");
+            }
+        }
+    }
+    return options;
+}
+
+TypedArray<Dictionary> list_reconstruct_options() {
+    const ParsedOptions defaults = default_options();
+    TypedArray<Dictionary> list;
+    for (const Option& option : kOptions) {
+        const Variant value = option.read(defaults);
+        Dictionary entry;
+        entry["name"] = option.name;
+        entry["type"] = int(value.get_type());
+        entry["default"] = value;
+        entry["hint"] = int(option.hint);
+        entry["hint_string"] = option.read == read_leaves
+                                   ? String(",").join(TreeReconstruction::get_leaf_preset_names())
+                                   : String(option.hint_string);
+        entry["description"] = option.description;
+        list.push_back(entry);
+    }
+    return list;
+}

@@ -1,0 +1,235 @@
+#include "tree_reconstructor.h"
+
+#include <cmath>
+#include <cstring>
+#include <godot_cpp/classes/json.hpp>
+#include <godot_cpp/classes/project_settings.hpp>
+#include <godot_cpp/classes/time.hpp>
+#include <utility>
+
+#include "convert.h"
+#include "error.h"
+#include "exchange/tree_files.h"
+#include "pipeline/export.h"
+#include "pipeline/report.h"
+#include "reconstruct_options.h"
+
+using namespace godot;
+
+// Passes the core's progress on.
+class TreeReconstructor::Listener : public treerec::Progress {
+  public:
+    explicit Listener(TreeReconstructor* p_owner) : owner_(p_owner) {}
+    void update(double p_fraction, const char* p_stage) override {
+        owner_->_report_progress(p_fraction, p_stage);
+    }
+    bool cancelled() const override { return owner_->cancelled_; }
+
+  private:
+    TreeReconstructor* owner_;
+};
+
+static std::string file_path(const String& p_path) {
+    return to_std(ProjectSettings::get_singleton()->globalize_path(p_path));
+}
+
+void TreeReconstructor::_start() {
+    cancelled_ = false;
+    const std::lock_guard lock(mutex_);
+    fraction_ = 0.0;
+    stage_.clear();
+    error_message_.clear();
+    report_json_.clear();
+    cloud_ = treerec::PointCloud();
+    raw_ = treerec::Tree();
+}
+
+void TreeReconstructor::_report_progress(double p_fraction, const char* p_stage) {
+    constexpr int64_t kSignalEveryMs = 30;
+    const int64_t now = int64_t(Time::get_singleton()->get_ticks_msec());
+    {
+        const std::lock_guard lock(mutex_);
+        const bool new_stage = stage_ != p_stage;
+        fraction_ = p_fraction;
+        if (new_stage) {
+            stage_ = p_stage;
+        }
+        if (!new_stage && now - last_signal_ms_ < kSignalEveryMs) {
+            return;
+        }
+        last_signal_ms_ = now;
+    }
+    call_deferred("emit_signal", "progress_changed", p_fraction, String::utf8(p_stage));
+}
+
+void TreeReconstructor::_fail(const std::string& p_sentence) {
+    const std::lock_guard lock(mutex_);
+    error_message_ = p_sentence;
+}
+
+static std::string write_report(const treerec::Reconstruction& p_result, const ParsedOptions& p_options,
+                                const std::string& p_path) {
+    treerec::ReportDetails details;
+    details.scan_path = p_path;
+    details.options = p_options.pipeline;
+    details.leaves = to_std(p_options.leaves);
+    details.seed = p_options.pipeline.skeleton.seed;
+    treerec::ExportOptions look;
+    look.leaves = treerec::leaf_preset(details.leaves);
+    look.textures = details.leaves;
+    look.seed = details.seed;
+    treerec::TreeExporter counter(p_result.tree, look);
+    details.triangles = counter.triangles();
+    details.leaf_count = counter.leaves();
+    return treerec::report_json(p_result, details);
+}
+
+Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path,
+                                                            const Dictionary& p_options) {
+    ERR_FAIL_COND_V_MSG(running_.exchange(true), Ref<TreeReconstruction>(),
+                        "This TreeReconstructor is at work already. Make another one.");
+    _start();
+    Ref<TreeReconstruction> made;
+    try {
+        const ParsedOptions options = parse_reconstruct_options(p_options);
+        Listener listener(this);
+        treerec::Reconstruction result =
+            treerec::reconstruct_file(file_path(p_path), options.pipeline, &listener);
+        const std::string report = write_report(result, options, to_std(p_path));
+
+        made.instantiate();
+        made->set_seed(int64_t(options.pipeline.skeleton.seed));
+        made->set_leaf_preset(options.leaves);
+        made->set_tree(std::move(result.tree));
+        Dictionary provenance;
+        provenance["source"] = p_path;
+        provenance["options"] = p_options.duplicate();
+        provenance["report"] = JSON::parse_string(to_godot(report));
+        made->set_provenance(provenance);
+
+        const std::lock_guard lock(mutex_);
+        report_json_ = report;
+        cloud_ = std::move(result.cloud);
+        raw_ = std::move(result.raw);
+        fraction_ = 1.0;
+    } catch (const std::exception& error) {
+        made.unref();
+        _fail(error.what());
+    }
+    running_ = false;
+    return made;
+}
+
+Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path) {
+    Ref<TreeReconstruction> made;
+    _fail("");
+    try {
+        treerec::Tree tree = treerec::read_skeleton(file_path(p_path));
+        made.instantiate();
+        made->set_tree(std::move(tree));
+        Dictionary provenance;
+        provenance["source"] = p_path;
+        made->set_provenance(provenance);
+    } catch (const std::exception& error) {
+        made.unref();
+        _fail(error.what());
+    }
+    return made;
+}
+
+Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, const String& p_path) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), ERR_INVALID_PARAMETER, "There is no tree to export.");
+    _fail("");
+    try {
+        treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
+                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()));
+        return OK;
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return FAILED;
+    }
+}
+
+TypedArray<Dictionary> TreeReconstructor::get_option_list() {
+    return list_reconstruct_options();
+}
+
+void TreeReconstructor::cancel() {
+    cancelled_ = true;
+}
+
+double TreeReconstructor::get_progress() const {
+    const std::lock_guard lock(mutex_);
+    return fraction_;
+}
+
+String TreeReconstructor::get_stage() const {
+    const std::lock_guard lock(mutex_);
+    return to_godot(stage_);
+}
+
+String TreeReconstructor::get_error_message() const {
+    const std::lock_guard lock(mutex_);
+    return to_godot(error_message_);
+}
+
+String TreeReconstructor::get_report_json() const {
+    const std::lock_guard lock(mutex_);
+    return to_godot(report_json_);
+}
+
+Dictionary TreeReconstructor::get_report() const {
+    const String text = get_report_json();
+    return text.is_empty() ? Dictionary() : Dictionary(JSON::parse_string(text));
+}
+
+PackedVector3Array TreeReconstructor::get_cloud_points() const {
+    const std::lock_guard lock(mutex_);
+    PackedVector3Array points;
+    points.resize(int64_t(cloud_.size()));
+    static_assert(sizeof(treerec::Vec3) == sizeof(Vector3));
+    if (!cloud_.empty()) {
+        std::memcpy(static_cast<void*>(points.ptrw()), cloud_.positions.data(),
+                    cloud_.size() * sizeof(Vector3));
+    }
+    return points;
+}
+
+PackedColorArray TreeReconstructor::get_cloud_colors() const {
+    const std::lock_guard lock(mutex_);
+    PackedColorArray colors;
+    colors.resize(int64_t(cloud_.colors.size()));
+    Color* write = colors.ptrw();
+    for (const treerec::Color8& color : cloud_.colors) {
+        *write++ = Color(float(color[0]) / 255.0f, float(color[1]) / 255.0f, float(color[2]) / 255.0f);
+    }
+    return colors;
+}
+
+Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
+    Ref<TreeReconstruction> skeleton;
+    skeleton.instantiate();
+    const std::lock_guard lock(mutex_);
+    skeleton->set_tree(raw_);
+    return skeleton;
+}
+
+void TreeReconstructor::_bind_methods() {
+    ClassDB::bind_method(D_METHOD("reconstruct_file", "path", "options"),
+                         &TreeReconstructor::reconstruct_file, DEFVAL(Dictionary()));
+    ClassDB::bind_method(D_METHOD("import_skeleton", "path"), &TreeReconstructor::import_skeleton);
+    ClassDB::bind_method(D_METHOD("export_file", "tree", "path"), &TreeReconstructor::export_file);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
+                                &TreeReconstructor::get_option_list);
+    ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);
+    ClassDB::bind_method(D_METHOD("get_progress"), &TreeReconstructor::get_progress);
+    ClassDB::bind_method(D_METHOD("get_stage"), &TreeReconstructor::get_stage);
+    ClassDB::bind_method(D_METHOD("get_error_message"), &TreeReconstructor::get_error_message);
+    ClassDB::bind_method(D_METHOD("get_report"), &TreeReconstructor::get_report);
+    ClassDB::bind_method(D_METHOD("get_report_json"), &TreeReconstructor::get_report_json);
+    ClassDB::bind_method(D_METHOD("get_cloud_points"), &TreeReconstructor::get_cloud_points);
+    ClassDB::bind_method(D_METHOD("get_cloud_colors"), &TreeReconstructor::get_cloud_colors);
+    ClassDB::bind_method(D_METHOD("get_raw_skeleton"), &TreeReconstructor::get_raw_skeleton);
+    ADD_SIGNAL(MethodInfo("progress_changed", PropertyInfo(Variant::FLOAT, "fraction"),
+                          PropertyInfo(Variant::STRING, "stage")));
+}

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <godot_cpp/classes/ref_counted.hpp>
+#include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_color_array.hpp>
+#include <godot_cpp/variant/packed_vector3_array.hpp>
+#include <godot_cpp/variant/typed_array.hpp>
+#include <mutex>
+#include <string>
+
+#include "pipeline/reconstruct.h"
+#include "tree_reconstruction.h"
+
+// Turns scans into trees, in the editor. reconstruct_file() may run on any thread; the other methods may be
+// called from any other thread meanwhile.
+class TreeReconstructor : public godot::RefCounted {
+    GDCLASS(TreeReconstructor, godot::RefCounted)
+
+  public:
+    godot::Ref<TreeReconstruction> reconstruct_file(const godot::String& p_path,
+                                                    const godot::Dictionary& p_options);
+    godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path);
+    godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path);
+    static godot::TypedArray<godot::Dictionary> get_option_list();
+
+    void cancel();
+    double get_progress() const;
+    godot::String get_stage() const;
+    godot::String get_error_message() const;
+    godot::Dictionary get_report() const;
+    godot::String get_report_json() const;
+    godot::PackedVector3Array get_cloud_points() const;
+    godot::PackedColorArray get_cloud_colors() const;
+    godot::Ref<TreeReconstruction> get_raw_skeleton() const;
+
+  protected:
+    static void _bind_methods();
+
+  private:
+    class Listener;
+
+    void _start();
+    void _report_progress(double p_fraction, const char* p_stage);
+    void _fail(const std::string& p_sentence);
+
+    std::atomic<bool> running_ = false;
+    std::atomic<bool> cancelled_ = false;
+
+    // Guards all that follows.
+    mutable std::mutex mutex_;
+    double fraction_ = 0.0;
+    std::string stage_;
+    std::string error_message_;
+    std::string report_json_;
+    treerec::PointCloud cloud_;
+    treerec::Tree raw_;
+    int64_t last_signal_ms_ = 0;
+};
