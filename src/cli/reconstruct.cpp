@@ -116,7 +116,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     TreeExporter exporter(result.tree, exports);
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();
-        progress.update(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(outs.size()), "Write");
+        progress.update(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
         exporter.write(outs[i]);
     }
     progress.check();

@@ -57,12 +57,12 @@ void run_synth(const std::vector<std::string>& words) {
 
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    progress.update(0.0, "Grow");
+    progress.update(0.0, "Growing");
     const Tree tree = grow_tree(grow);
     SubProgress scan_progress(&progress, 0.2, 0.9);
     const VirtualScan scan = scan_tree(tree, scanning, &scan_progress);
     progress.check();
-    progress.update(0.9, "Write");
+    progress.update(0.9, "Writing");
     std::error_code failure;
     std::filesystem::create_directories(std::filesystem::path(std::u8string(folder.begin(), folder.end())),
                                         failure);

@@ -116,7 +116,7 @@ ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Pr
     const SegmentTree wood(segments_in(tree, tree.frame()));
     const bool same_frame = tree.frame() == cloud.frame;
     std::vector<double> errors(cloud.size());
-    if (progress) progress->update(0.0, "Score");
+    if (progress) progress->update(0.0, "Scoring");
     parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         for (size_t i = begin; i < end; i++)
@@ -144,7 +144,7 @@ ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Pr
     score.p95_mm = 1000.0 * at(0.95);
     score.explained_2cm = share_below(kExplained);
     score.explained_2cm_noise = share_below(kExplained + noise);
-    if (progress) progress->update(1.0, "Score");
+    if (progress) progress->update(1.0, "Scoring");
     return score;
 }
 
@@ -166,8 +166,8 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
 
     SubProgress first(progress, 0.0, 0.5);
     SubProgress second(progress, 0.5, 1.0);
-    const std::vector<Sample> found = sample_against(wood, SegmentTree(reference_wood), &first, "Precision");
-    const std::vector<Sample> wanted = sample_against(reference_wood, SegmentTree(wood), &second, "Recall");
+    const std::vector<Sample> found = sample_against(wood, SegmentTree(reference_wood), &first, "Scoring");
+    const std::vector<Sample> wanted = sample_against(reference_wood, SegmentTree(wood), &second, "Scoring");
     for (int quarter = 0; quarter <= 4; quarter++) {
         const double factor = 0.25 * quarter;
         score.by_radius.push_back(
@@ -191,7 +191,7 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
     for (double& error : errors)
         error = std::abs(error);
     score.radius_error_abs = quantile(errors, 0.5);
-    if (progress) progress->update(1.0, "Score");
+    if (progress) progress->update(1.0, "Scoring");
     return score;
 }
 

@@ -49,7 +49,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     StageClock clock(result.stages);
 
     SubProgress reading(progress, 0.0, kReadEnd);
-    reading.update(0.0, "Read");
+    reading.update(0.0, "Reading");
     result.cloud = read_cloud(path, options.read, &result.read, &reading);
     result.points_read = result.cloud.size();
     append(result.warnings, result.read.warnings);
@@ -57,14 +57,14 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     reading.check();
 
     SubProgress orienting(progress, kReadEnd, kOrientEnd);
-    orienting.update(0.0, "Orient");
+    orienting.update(0.0, "Orienting");
     result.orient = orient_cloud(result.cloud, options.orient);
     append(result.warnings, result.orient.warnings);
     clock.stop("Orient", result.cloud.size());
     orienting.check();
 
     SubProgress cleaning(progress, kOrientEnd, kCleanEnd);
-    cleaning.update(0.0, "Clean");
+    cleaning.update(0.0, "Cleaning");
     result.clean = clean_cloud(result.cloud, options.clean, &cleaning);
     append(result.warnings, result.clean.warnings);
     clock.stop("Clean", result.cloud.size());
@@ -81,7 +81,6 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     result.tree = std::move(skeleton.tree);
     if (result.tree.size() < 2)
         throw Error("No tree was found in '" + path + "': nothing in it looks like wood.");
-    if (progress) progress->update(1.0, "Done");
     rebase_cloud(result.cloud, result.tree.frame());
     return result;
 }

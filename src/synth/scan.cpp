@@ -324,7 +324,7 @@ VirtualScan scan_tree(const Tree& tree, const VirtualScanOptions& options, Progr
     double step = glm::radians(0.12);
     std::vector<View::Return> returns;
     for (int attempt = 0; attempt < 4 && returns.size() < wanted; attempt++) {
-        if (progress) progress->update(0.2 * attempt, "Scan");
+        if (progress) progress->update(0.2 * attempt, "Scanning");
         returns.clear();
         scan_all(step, returns);
         const double found = std::max<double>(1.0, static_cast<double>(returns.size()));
@@ -355,7 +355,7 @@ VirtualScan scan_tree(const Tree& tree, const VirtualScanOptions& options, Progr
             p[axis] = random.uniform(bounds.min[axis] - margin[axis], bounds.max[axis] + margin[axis]);
         add(p, kStray);
     }
-    if (progress) progress->update(1.0, "Scan");
+    if (progress) progress->update(1.0, "Scanning");
     return scan;
 }
 
