@@ -14,9 +14,13 @@ namespace {
 constexpr int kRounds = 2;            // fit, then fit again across the better axis
 constexpr size_t kWantedPoints = 16;  // per circle; the window grows until it has them
 constexpr size_t kLeastPoints = 8;
+constexpr size_t kMostPoints = 100;
 constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
-constexpr double kMostSpread = 0.2;     // median residual over radius
-constexpr double kMostInside = 0.15;    // share of points well inside: a crown, not a stem
+constexpr double kMostSpread = 0.12;    // median residual over radius
+constexpr double kMostInside = 0.08;    // share of points well inside: a crown, not a stem
+constexpr double kRingCoverage = 0.85;  // the same for closed sections that are not round
+constexpr double kRingInside = 0.04;
+constexpr double kRingSpread = 0.33;
 constexpr int kSmoothings = 3;
 
 // One limb while its axis is fitted.
@@ -47,7 +51,7 @@ class LimbFitter {
 
     std::vector<Station> run() {
         if (options_.fit_radii)
-            for (int round = 0; round < kRounds; round++) {
+            for (int round = 0; round < options_.rounds; round++) {
                 fit_all();
                 move_axis();
                 measure_arc();
@@ -118,7 +122,8 @@ class LimbFitter {
         std::vector<DVec2> flat;
         flat.reserve(begin_[last + 1] - begin_[first]);
         double extent = 0.0;
-        for (size_t m = begin_[first]; m < begin_[last + 1]; m++) {
+        const size_t stride = 1 + (begin_[last + 1] - begin_[first]) / kMostPoints;
+        for (size_t m = begin_[first]; m < begin_[last + 1]; m += stride) {
             const DVec3 offset = DVec3(points_[members_[m]]) - stations_[i].position;
             if (std::abs(glm::dot(offset, along)) > 2.0 * reach) continue;
             flat.emplace_back(glm::dot(offset, u), glm::dot(offset, v));
@@ -126,13 +131,19 @@ class LimbFitter {
         }
         if (flat.size() < kLeastPoints) return std::nullopt;
         extent /= static_cast<double>(flat.size());
-        std::optional<CircleFit> circle =
+        const auto plausible = [&](const CircleFit& circle) {
+            return circle.radius > 0.0 && glm::length(circle.centre) < 2.0 * circle.radius;
+        };
+        const std::optional<CircleFit> circle =
             fit_circle(flat, 3.0 * extent, Random(options_.seed, hash_seed(stream_, i)));
-        if (!circle || circle->coverage < kLeastCoverage || circle->inside > kMostInside ||
-            circle->spread > kMostSpread * circle->radius ||
-            glm::length(circle->centre) > 2.0 * circle->radius)
-            return std::nullopt;
-        return circle;
+        if (circle && plausible(*circle) && circle->coverage >= kLeastCoverage &&
+            circle->inside <= kMostInside && circle->spread <= kMostSpread * circle->radius)
+            return circle;
+        const std::optional<CircleFit> ring = fit_ring(flat);
+        if (ring && plausible(*ring) && ring->coverage >= kRingCoverage && ring->inside <= kRingInside &&
+            ring->spread <= kRingSpread * ring->radius && ring->radius <= options_.widest_ring)
+            return ring;
+        return std::nullopt;
     }
 
     void fit_all() {

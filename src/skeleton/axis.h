@@ -20,6 +20,8 @@ struct Station {
 struct AxisOptions {
     bool fit_radii = true;
     uint64_t seed = 1;
+    double widest_ring = 0.25;  // metres: a wider closed section is a hollow crown unless it is a circle
+    int rounds = 2;             // fit, then fit again across the better axis
 };
 
 // One list of stations per limb. The axis runs through the centres of circles fitted to the cross-sections

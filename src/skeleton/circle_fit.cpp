@@ -10,8 +10,10 @@ namespace treerec {
 namespace {
 
 constexpr int kSamples = 40;
-constexpr size_t kScored = 64;  // points looked at per sample
+constexpr size_t kScored = 64;      // points looked at per sample
+constexpr double kHopeless = 0.35;  // median residual over radius: not worth refining
 constexpr int kRefinements = 12;
+constexpr int kRingSteps = 6;
 constexpr int kSectors = 16;
 constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise
 constexpr double kMadToSigma = 1.4826;
@@ -34,6 +36,11 @@ double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+int sector_of(const DVec2& offset) {
+    const int sector = static_cast<int>((std::atan2(offset.y, offset.x) / (2.0 * kPi) + 0.5) * kSectors);
+    return std::clamp(sector, 0, kSectors - 1);
 }
 
 // Solves the symmetric 3x3 system by Cramer's rule.
@@ -67,7 +74,7 @@ std::optional<CircleFit> fit_circle(std::span<const DVec2> points, double max_ra
         trial->spread = median(residuals);
         if (!best || trial->spread < best->spread) best = trial;
     }
-    if (!best) return std::nullopt;
+    if (!best || best->spread > kHopeless * best->radius) return std::nullopt;
 
     CircleFit fit = *best;
     for (int round = 0; round < kRefinements; round++) {
@@ -107,12 +114,53 @@ std::optional<CircleFit> fit_circle(std::span<const DVec2> points, double max_ra
         residuals.push_back(std::abs(distance - fit.radius));
         if (distance < 0.7 * fit.radius) inside += 1.0;
         if (std::abs(distance - fit.radius) > 0.3 * fit.radius) continue;
-        const int sector = static_cast<int>((std::atan2(offset.y, offset.x) / (2.0 * kPi) + 0.5) * kSectors);
-        hit[std::clamp(sector, 0, kSectors - 1)] = true;
+        hit[sector_of(offset)] = true;
     }
     fit.spread = median(residuals);
     fit.inside = inside / static_cast<double>(count);
     fit.coverage = static_cast<double>(std::count(hit.begin(), hit.end(), true)) / kSectors;
+    return fit;
+}
+
+std::optional<CircleFit> fit_ring(std::span<const DVec2> points) {
+    if (points.size() < kSectors) return std::nullopt;
+    CircleFit fit;
+    for (const DVec2& p : points)
+        fit.centre += p;
+    fit.centre /= static_cast<double>(points.size());
+    std::array<DVec2, kSectors> sum;
+    std::array<double, kSectors> weight;
+    int filled = 0;
+    for (int step = 0; step < kRingSteps; step++) {
+        sum.fill(DVec2(0.0));
+        weight.fill(0.0);
+        for (const DVec2& p : points) {
+            const int sector = sector_of(p - fit.centre);
+            sum[sector] += p;
+            weight[sector] += 1.0;
+        }
+        DVec2 centre(0.0);
+        filled = 0;
+        for (int s = 0; s < kSectors; s++) {
+            if (weight[s] == 0.0) continue;
+            centre += sum[s] / weight[s];
+            filled++;
+        }
+        fit.centre = centre / static_cast<double>(filled);
+    }
+    std::vector<double> distances;
+    distances.reserve(points.size());
+    for (const DVec2& p : points)
+        distances.push_back(glm::distance(p, fit.centre));
+    fit.radius = median(distances);
+    double inside = 0.0;
+    for (double& d : distances) {
+        if (d < 0.4 * fit.radius) inside += 1.0;
+        d = std::abs(d - fit.radius);
+    }
+    fit.spread = median(distances);
+    fit.inside = inside / static_cast<double>(points.size());
+    fit.coverage = static_cast<double>(filled) / kSectors;
     return fit;
 }
 

@@ -9,10 +9,12 @@ namespace treerec {
 
 namespace {
 
-constexpr double kSurfaceFactor = 1.3;  // times the radius: still the parent's own surface
-constexpr double kSurfaceMargin = 1.0;  // and so many point spacings more: a strip's radius is too small
-constexpr double kSparseBranch = 3.0;   // point spacings that a branch must at least reach out
-constexpr int kSmoothWindow = 2;        // stations to each side
+constexpr double kSurfaceFactor = 1.3;   // times the radius: still the parent's own surface
+constexpr double kSurfaceMargin = 1.0;   // and so many point spacings more: a strip's radius is too small
+constexpr double kSparseBranch = 3.0;    // point spacings that a branch must at least reach out
+constexpr double kWoodLinearity = 0.45;  // mean linearity of a limb's points: no leaves above,
+constexpr double kLeafLinearity = 0.30;  // nothing but leaves below
+constexpr int kSmoothWindow = 2;         // stations to each side
 
 // First figures for each slice, before any fit.
 struct SliceShape {
@@ -31,6 +33,7 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     shape.longest.assign(count, 0.0);
     shape.first_child.assign(count, -1);
     shape.next_sibling.assign(count, -1);
+    std::vector<double> wood(count, 0.0);  // metres of all chains above
     for (size_t s = count; s-- > 1;) {
         double sum = 0.0;
         double spacing = 0.0;
@@ -101,6 +104,22 @@ int nearest_station(const LimbAxis& axis, int station, const DVec3& p) {
         }
     }
     return station;
+}
+
+// How long a limb along `chain` must be to count.
+double required_length(const std::vector<int32_t>& chain, const Slices& slices, const LimbOptions& options) {
+    if (options.linearity.empty() || options.leafy_branch <= options.minimum_branch)
+        return options.minimum_branch;
+    double sum = 0.0;
+    double count = 0.0;
+    for (const int32_t slice : chain)
+        for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
+            sum += options.linearity[v];
+            count += 1.0;
+        }
+    const double mean = count > 0.0 ? sum / count : kWoodLinearity;
+    const double leafy = std::clamp((kWoodLinearity - mean) / (kWoodLinearity - kLeafLinearity), 0.0, 1.0);
+    return options.minimum_branch + leafy * (options.leafy_branch - options.minimum_branch);
 }
 
 struct Candidate {
@@ -195,7 +214,7 @@ std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& poin
             length = glm::distance(slices.centre[chain[inside]], axis.position[station]) +
                      shape.longest[chain[inside]];
         }
-        if (length < options.minimum_branch) inside = chain.size();
+        if (length < required_length(chain, slices, options)) inside = chain.size();
 
         Limb& parent = limbs[candidate.limb];
         const auto cut = static_cast<ptrdiff_t>(inside);

@@ -20,13 +20,18 @@ struct Limb {
 struct LimbOptions {
     double minimum_branch = 0.05;  // metres from its parent's axis that a limb must be long
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
+    // By point, from neighbourhood_linearity(); empty: no leaves are looked for. A limb whose points lie
+    // about like leaves must be up to leafy_branch (metres) long instead.
+    std::vector<float> linearity;
+    double leafy_branch = 0.0;
 };
 
 // Splits the tree of slices at its forks; the child with the longest way to a tip continues the limb. A side
 // chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of its parent's
 // surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise (AdTree, Du et
 // al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What grows on an
-// absorbed chain is tried again as a side limb of the parent. Parents come before children.
+// absorbed chain is tried again as a side limb of the parent. What lies beyond a gap longer than all the wood
+// behind it is left out as stray. Parents come before children.
 std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
                              const LimbOptions& options);
 

@@ -11,8 +11,6 @@ constexpr double kThinnest = 0.001;      // metres
 constexpr double kTipAllowance = 0.003;  // metres: an unmeasured twig's tip
 constexpr double kSlenderness = 0.02;    // unmeasured radius over the distance to the tip, at most
 constexpr double kSoftWeight = 0.05;     // of an unmeasured station beside a measured one
-constexpr double kRingScale = 0.4;       // of the radius: the point spacing to assume on thick wood
-constexpr double kOnSurface = 1.3;       // times the radius
 constexpr int kMedianWindow = 4;         // stations to each side
 
 struct Block {
@@ -93,26 +91,6 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
             stations[i].radius = limit;
         }
     }
-}
-
-void follow_thickness(LocalScale& scale, double finer, const std::vector<std::vector<Station>>& axes,
-                      const std::vector<Limb>& limbs, const Slices& slices, const std::vector<Vec3>& points) {
-    std::vector<float> wanted(scale.spacing.size());
-    for (size_t v = 0; v < wanted.size(); v++)
-        wanted[v] = static_cast<float>(finer) * scale.spacing[v];
-    auto raise = [&](int32_t slice, const Station& station) {
-        for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
-            if (glm::distance(DVec3(points[v]), station.position) <
-                kOnSurface * station.radius + scale.spacing[v])
-                wanted[v] = std::max(wanted[v], static_cast<float>(kRingScale * station.radius));
-    };
-    for (size_t l = 0; l < limbs.size(); l++) {
-        for (size_t i = 0; i < limbs[l].slices.size(); i++)
-            raise(limbs[l].slices[i], axes[l][i]);
-        for (size_t a = 0; a < limbs[l].absorbed.size(); a++)
-            raise(limbs[l].absorbed[a], axes[l][static_cast<size_t>(limbs[l].absorbed_at[a])]);
-    }
-    scale.set_spacing(std::move(wanted));
 }
 
 }  // namespace treerec

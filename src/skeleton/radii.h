@@ -14,10 +14,4 @@ namespace treerec {
 // and length of branches are tied), and no limb is thicker than its parent where it leaves it.
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs);
 
-// Multiplies the scale by `finer` and then raises it, for the points on thick wood, to a share of the radius:
-// a slice of a stem shall be a whole ring, however finely its bark is sampled, and a slice of a twig no
-// thicker than the twig's points ask for.
-void follow_thickness(LocalScale& scale, double finer, const std::vector<std::vector<Station>>& axes,
-                      const std::vector<Limb>& limbs, const Slices& slices, const std::vector<Vec3>& points);
-
 }  // namespace treerec

@@ -3,12 +3,14 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/delaunay_graph.h"
+#include "skeleton/leafiness.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
 #include "skeleton/radii.h"
 #include "skeleton/root.h"
 #include "skeleton/skeleton.h"
 #include "skeleton/slices.h"
+#include "skeleton/thickness.h"
 #include "skeleton/thin.h"
 #include "tree/trunk.h"
 
@@ -19,7 +21,8 @@ namespace {
 constexpr size_t kLeastPoints = 10;
 constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
 constexpr double kLeastBranch = 0.05;   // metres, likewise
-constexpr double kFineScale = 0.6;      // the second cut of thin wood is that much finer
+constexpr double kWidestRing = 0.05;    // of the tree's extent
+constexpr double kLeafyShare = 0.05;    // likewise: the shortest branch among leaves
 constexpr double kRawRadius = 0.002;    // metres
 
 class StageClock {
@@ -71,18 +74,18 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     SubProgress triangulating(listener, 0.1, 0.55);
     const PointGraph graph = delaunay_graph(points, triangulating);
-    LocalScale scale = local_scale(graph, result.spacing);
+    const LocalScale first_scale = local_scale(graph, result.spacing);
     clock.stop("Triangulation", graph.neighbour.size() / 2);
 
     progress.update(0.55, "Shortest paths");
     progress.check();
-    const RootGuess root = find_root(points, graph, scale);
+    const RootGuess root = find_root(points, graph, first_scale);
     progress.check();
-    const PathTree paths = shortest_paths(graph, scale, root.seeds, progress);
+    const PathTree paths = shortest_paths(graph, first_scale, root.seeds, progress);
     result.raw = raw_tree(points, paths, root.position);
     clock.stop("Shortest paths", points.size());
 
-    progress.update(0.7, "Branches");
+    progress.update(0.6, "Thickness");
     progress.check();
     LimbOptions limb_options;
     double extent = 0.0;
@@ -93,20 +96,22 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     AxisOptions axis_options;
     axis_options.fit_radii = options.fit_radii;
     axis_options.seed = options.seed;
-    // Once to learn where the wood is thick, then again with slices that fit the thickness.
-    Slices slices = cut_slices(points, graph, scale, paths, root.position);
+    axis_options.widest_ring = kWidestRing * extent;
+    const LocalScale scale = follow_thickness(first_scale, points, graph, paths, root.position,
+                                              {limb_options, axis_options}, progress);
+    clock.stop("Thickness", points.size());
+
+    progress.update(0.7, "Branches");
+    limb_options.linearity = neighbourhood_linearity(points, graph, progress);
+    limb_options.leafy_branch = kLeafyShare * extent;
+
+    const Slices slices = cut_slices(points, graph, scale, paths, root.position);
+    progress.check();
     std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
-    std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
-    infer_radii(axes, limbs);
-    follow_thickness(scale, kFineScale, axes, limbs, slices, points);
-    progress.check();
-    slices = cut_slices(points, graph, scale, paths, root.position);
-    progress.check();
-    limbs = find_limbs(slices, points, scale, limb_options);
     clock.stop("Branches", limbs.size());
 
     progress.update(0.8, "Radii");
-    axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
+    std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     infer_radii(axes, limbs);
     clock.stop("Radii", limbs.size());
 

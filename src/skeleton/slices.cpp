@@ -8,6 +8,7 @@ namespace treerec {
 
 namespace {
 
+constexpr double kGapFactor = 3.0;  // reaches: a longer step is a gap in the scan and not just thin sampling
 constexpr double kThickness = 2.0;  // slice thickness in local point spacings
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
@@ -97,7 +98,8 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
             const uint32_t from = p < 0 ? 0 : slice_of[p];
             if (from == s) continue;
             votes.push_back(from);
-            linked = linked || p < 0 || paths.step[v] <= edge_reach(scale, v, static_cast<uint32_t>(p));
+            linked = linked || p < 0 ||
+                     paths.step[v] <= kGapFactor * edge_reach(scale, v, static_cast<uint32_t>(p));
         }
         slices.centre[s] = sum / static_cast<double>(slices.points_of(s).size());
         std::sort(votes.begin(), votes.end());

@@ -1,0 +1,78 @@
+#include "skeleton/thickness.h"
+
+#include <algorithm>
+#include <array>
+
+namespace treerec {
+
+namespace {
+
+constexpr std::array<double, 4> kTrials = {12.0, 6.0, 3.0, 1.5};  // times the scale
+constexpr double kFineScale = 0.6;                                // the final cut of thin wood
+constexpr double kRingScale = 0.4;    // of the radius: the point spacing to assume on thick wood
+constexpr double kOnSurface = 1.3;    // times the radius
+constexpr double kLeastRadius = 1.0;  // trial spacings: a thinner circle is believed to a finer trial only
+constexpr double kStretch = 6.0;      // radii: a longer stretch between two circles stays unknown
+
+// The believed radius of each station; 0 where unknown.
+std::vector<double> believed_radii(const std::vector<Station>& stations, double widest) {
+    std::vector<double> radius(stations.size(), 0.0);
+    size_t last = stations.size();
+    double arc = 0.0;
+    for (size_t i = 0; i < stations.size(); i++) {
+        if (i > 0) arc += glm::distance(stations[i].position, stations[i - 1].position);
+        if (!stations[i].measured || stations[i].radius > widest) continue;
+        radius[i] = stations[i].radius;
+        if (last < i && arc < kStretch * std::max(radius[i], radius[last]))
+            std::fill(radius.begin() + static_cast<ptrdiff_t>(last) + 1,
+                      radius.begin() + static_cast<ptrdiff_t>(i), std::min(radius[i], radius[last]));
+        last = i;
+        arc = 0.0;
+    }
+    return radius;
+}
+
+}  // namespace
+
+LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& points, const PointGraph& graph,
+                            const PathTree& paths, const DVec3& root, const ThicknessOptions& options,
+                            Progress& progress) {
+    const size_t count = points.size();
+    std::vector<float> ring(count, 0.0f);  // the spacing that thick wood asks for
+    auto scaled = [&](double factor) {
+        std::vector<float> spacing(count);
+        for (size_t v = 0; v < count; v++)
+            spacing[v] = std::max(static_cast<float>(factor) * scale.spacing[v], ring[v]);
+        LocalScale result;
+        result.set_spacing(std::move(spacing));
+        return result;
+    };
+    AxisOptions axis_options = options.axes;
+    axis_options.rounds = 1;
+    for (const double factor : kTrials) {
+        const LocalScale trial = scaled(factor);
+        const Slices slices = cut_slices(points, graph, trial, paths, root);
+        progress.check();
+        std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs);
+        const std::vector<std::vector<Station>> axes =
+            fit_axes(limbs, slices, points, trial, axis_options, progress);
+        for (size_t l = 0; l < limbs.size(); l++) {
+            const std::vector<double> radius = believed_radii(axes[l], options.axes.widest_ring);
+            auto raise = [&](int32_t slice, size_t station) {
+                const double r = radius[station];
+                for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
+                    if (r > kLeastRadius * factor * scale.spacing[v] &&
+                        glm::distance(DVec3(points[v]), axes[l][station].position) <
+                            kOnSurface * r + trial.spacing[v])
+                        ring[v] = std::max(ring[v], static_cast<float>(kRingScale * r));
+            };
+            for (size_t i = 0; i < limbs[l].slices.size(); i++)
+                raise(limbs[l].slices[i], i);
+            for (size_t a = 0; a < limbs[l].absorbed.size(); a++)
+                raise(limbs[l].absorbed[a], static_cast<size_t>(limbs[l].absorbed_at[a]));
+        }
+    }
+    return scaled(kFineScale);
+}
+
+}  // namespace treerec
