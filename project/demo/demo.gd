@@ -1,6 +1,6 @@
 extends Node3D
-## Shows the tree that ./dev demo reconstructed, with its camera turning around it. Without one it says how
-## to make it.
+## Shows the tree that ./dev demo reconstructed, with its camera turning around it. Without one it
+## says how to make it.
 
 const _TREE: String = "res://demo/tree.res"
 

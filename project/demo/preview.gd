@@ -1,8 +1,11 @@
 extends SceneTree
-## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its four sides.
+## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its four
+## sides. Needs a window (xvfb-run will do):
 ##
-## godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER [--seed N] [--leaves PRESET]
-## writes FOLDER/tree.tscn and FOLDER/preview.png. Needs a window (xvfb-run will do).
+##     godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER
+##         [--seed N] [--leaves PRESET]
+##
+## It writes FOLDER/tree.tscn and FOLDER/preview.png.
 
 const Plots: GDScript = preload("./plots.gd")
 const Sheet: GDScript = preload("./sheet.gd")
@@ -169,7 +172,8 @@ func _shape(mesh: ArrayMesh, material: ShaderMaterial, framing: Studio.Framing) 
 	return shape
 
 
-# Lines below, then the nodes by kind: leaves green, forks orange, the trunk red (papers/000, figure 3.7).
+# Lines below, then the nodes by kind: leaves green, forks orange, the trunk red (papers/000, figure
+# 3.7).
 func _pruned(framing: Studio.Framing) -> Array:
 	return [
 		_shape(Plots.segments(_tree, true), Plots.line_material(2.6), framing),

@@ -1,5 +1,6 @@
 extends RefCounted
-## A photo studio: a lit world with a backdrop and a floor, and cameras that frame what stands in it.
+## A photo studio: a lit world with a backdrop and a floor, and cameras that frame what stands in
+## it.
 
 const SKY: Shader = preload("./studio_sky.gdshader")
 const GROUND: Shader = preload("./studio_ground.gdshader")
@@ -9,7 +10,7 @@ const SUPERSAMPLING: int = 2
 const _FIELD_OF_VIEW: float = 22.0
 const _PITCH: float = deg_to_rad(-7.0)
 const _MARGIN: float = 0.9
-const _CAPTION: float = 66.0 # pixels at the top that stay free
+const _CAPTION: float = 66.0  # pixels at the top that stay free
 const _SAMPLES: int = 1500
 
 
@@ -21,8 +22,8 @@ class Framing:
 	var reach: float
 
 
-## A world of its own, holding backdrop, sun, floor and `contents`. The energies suit the Compatibility renderer, which adds
-## the light of suns with shadows after the conversion to sRGB.
+## A world of its own, holding backdrop, sun, floor and `contents`. The energies suit the
+## Compatibility renderer, which adds the light of suns with shadows after the conversion to sRGB.
 static func make_world(contents: Array, framing: Framing) -> SubViewport:
 	var viewport: SubViewport = SubViewport.new()
 	viewport.own_world_3d = true

@@ -4,9 +4,10 @@ class_name TreeInstance3D
 extends MeshInstance3D
 ## Shows a [TreeReconstruction]: its bark as this node's mesh, its leaves as a multimesh.
 ##
-## Set [member reconstruction] and the tree appears as soon as a worker thread has built it; [signal rebuilt]
-## says when. The tree is built again when the reconstruction or a property changes, at most once a frame.
-## The mesh is never saved with the scene: the reconstruction is, and the tree is built again on load.
+## Set [member reconstruction] and the tree appears as soon as a worker thread has built it; [signal
+## rebuilt] says when. The tree is built again when the reconstruction or a property changes, at
+## most once a frame. The mesh is never saved with the scene: the reconstruction is, and the tree is
+## built again on load.
 
 ## Emitted when the mesh and the leaves match the properties again.
 signal rebuilt
@@ -14,8 +15,8 @@ signal rebuilt
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.15
 
-## Whether trees are built on worker threads. Turn it off to find errors more easily: then they are built on
-## the main thread, at the end of the frame.
+## Whether trees are built on worker threads. Turn it off to find errors more easily: then they are
+## built on the main thread, at the end of the frame.
 static var threaded: bool = true
 
 ## The tree to show.
@@ -31,8 +32,8 @@ static var threaded: bool = true
 		update_configuration_warnings()
 		rebuild()
 
-## The level of detail: 0 is the finest; each further one has about a quarter of the triangles and fewer,
-## larger leaves.
+## The level of detail: 0 is the finest; each further one has about a quarter of the triangles and
+## fewer, larger leaves.
 @export_range(0, 4) var lod: int = 0:
 	set(value):
 		lod = value
@@ -70,8 +71,8 @@ var _job: BuildJob
 var _height: float = 1.0
 
 
-## Builds the tree again, once, before the next frame is drawn or as soon as a build that is under way has
-## ended. You need it only after changing something that does not say so itself.
+## Builds the tree again, once, before the next frame is drawn or as soon as a build that is under
+## way has ended. You need it only after changing something that does not say so itself.
 func rebuild() -> void:
 	if _queued:
 		return
@@ -219,8 +220,8 @@ func _material_or_preset(material: Material, part: String) -> Material:
 	return load(path) as Material
 
 
-# The values that the shaders take per instance. They are set in the server, so that scenes stay free of
-# them.
+# The values that the shaders take per instance. They are set in the server, so that scenes stay
+# free of them.
 func _update_instances() -> void:
 	if not is_inside_tree():
 		return
@@ -261,8 +262,8 @@ static func _main_loop() -> SceneTree:
 	return Engine.get_main_loop() as SceneTree
 
 
-# One build: what a worker thread needs and what it makes. The builders see the reconstruction as it was when
-# they began, so it may change meanwhile.
+# One build: what a worker thread needs and what it makes. The builders see the reconstruction as it
+# was when they began, so it may change meanwhile.
 class BuildJob:
 	extends RefCounted
 

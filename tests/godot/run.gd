@@ -1,0 +1,119 @@
+extends SceneTree
+## Runs the tests of this folder in the engine:
+##
+##     godot --headless --path project --script tests/godot/run.gd [-- --rendering]
+##
+## Suites named render_*.gd need a window and run only with --rendering, the others (test_*.gd) only
+## without. The last line is 'N passed, N failed'; the exit code is 1 if any failed.
+
+const Suite: GDScript = preload("./suite.gd")
+
+var _passed: int = 0
+var _failed: int = 0
+var _errors: ErrorCollector = ErrorCollector.new()
+
+
+## Keeps what the engine reports while a test runs.
+class ErrorCollector:
+	extends Logger
+	var _mutex: Mutex = Mutex.new()
+	var _errors: PackedStringArray = []
+
+	func _log_error(
+		function: String,
+		file: String,
+		line: int,
+		code: String,
+		rationale: String,
+		_editor_notify: bool,
+		error_type: int,
+		_backtraces: Array[ScriptBacktrace]
+	) -> void:
+		if error_type == ERROR_TYPE_WARNING:
+			return
+		_mutex.lock()
+		var text: String = rationale if not rationale.is_empty() else code
+		_errors.append("%s (%s, %s:%d)" % [text, function, file, line])
+		_mutex.unlock()
+
+	## All errors since the last call.
+	func take() -> PackedStringArray:
+		_mutex.lock()
+		var taken: PackedStringArray = _errors
+		_errors = []
+		_mutex.unlock()
+		return taken
+
+
+func _initialize() -> void:
+	_run.call_deferred()
+
+
+func _run() -> void:
+	var here: String = (get_script() as Script).resource_path.get_base_dir()
+	var prefix: String = "render_" if "--rendering" in OS.get_cmdline_user_args() else "test_"
+	var folder: String = OS.get_cache_dir().path_join(
+		"treerec_godot_tests_%d" % OS.get_process_id()
+	)
+	OS.add_logger(_errors)
+	for file: String in DirAccess.get_files_at(here):
+		if file.begins_with(prefix) and file.get_extension() == "gd":
+			await _run_file(here.path_join(file), folder)
+	OS.remove_logger(_errors)
+	_remove(folder)
+	print("%d passed, %d failed" % [_passed, _failed])
+	quit(1 if _failed > 0 or _passed == 0 else 0)
+
+
+func _run_file(path: String, folder: String) -> void:
+	var script: GDScript = load(path) as GDScript
+	if script == null or not script.can_instantiate():
+		_failed += 1
+		print("FAILED: %s does not compile." % path.get_file())
+		return
+	for method: Dictionary in script.get_script_method_list():
+		var name: String = method.name
+		if not name.begins_with("test_"):
+			continue
+		var test: Suite = script.new()
+		test.tree = self
+		test.folder = folder
+		_remove(folder)
+		DirAccess.make_dir_recursive_absolute(folder)
+		_errors.take()
+		var started: int = Time.get_ticks_msec()
+		await test.call(name)
+		_judge("%s: %s" % [path.get_file().get_basename(), name], test, started)
+		# What the test freed goes before the next one starts.
+		await process_frame
+
+
+func _judge(title: String, test: Suite, started: int) -> void:
+	var reasons: PackedStringArray = test.failures
+	var expected: PackedStringArray = test.expected_errors
+	for error: String in _errors.take():
+		var known: bool = false
+		for part: String in expected:
+			known = known or part in error
+		if not known:
+			reasons.append("The engine reported: " + error)
+		else:
+			test.seen_errors.append(error)
+	for part: String in expected:
+		if not test.has_seen(part):
+			reasons.append("No error said '%s'." % part)
+	var took: int = Time.get_ticks_msec() - started
+	if reasons.is_empty():
+		_passed += 1
+		print("ok      %s%s" % [title, "" if took < 1000 else " (%d ms)" % took])
+		return
+	_failed += 1
+	print("FAILED  %s" % title)
+	for reason: String in reasons:
+		print("        " + reason)
+
+
+func _remove(folder: String) -> void:
+	for file: String in DirAccess.get_files_at(folder):
+		DirAccess.remove_absolute(folder.path_join(file))
+	DirAccess.remove_absolute(folder)

@@ -1,0 +1,211 @@
+extends "./suite.gd"
+## TreeInstance3D: what it shows, when it builds, what it saves.
+
+const LIMIT_FRAMES: int = 2000
+
+
+func _instance(made: TreeReconstruction) -> TreeInstance3D:
+	var instance: TreeInstance3D = TreeInstance3D.new()
+	instance.reconstruction = made
+	tree.root.add_child(instance)
+	return instance
+
+
+func _settle(instance: TreeInstance3D) -> void:
+	for i: int in LIMIT_FRAMES:
+		if not instance.is_rebuilding():
+			return
+		await tree.process_frame
+	check(false, "The build did not end.")
+
+
+func _leaves_of(instance: TreeInstance3D) -> MultiMeshInstance3D:
+	for child: Node in instance.get_children(true):
+		if child is MultiMeshInstance3D:
+			return child
+	return null
+
+
+func _leaf_nodes(instance: TreeInstance3D) -> int:
+	var count: int = 0
+	for child: Node in instance.get_children(true):
+		count += 1 if child is MultiMeshInstance3D else 0
+	return count
+
+
+func test_shows_bark_and_leaves_with_and_without_threads() -> void:
+	for threads: bool in [false, true]:
+		TreeInstance3D.threaded = threads
+		var made: TreeReconstruction = grown_tree(2)
+		var instance: TreeInstance3D = _instance(made)
+		await _settle(instance)
+		check(instance.mesh != null and instance.mesh.get_surface_count() == 1, "There is no bark.")
+		check_equal(instance.get_leaf_count(), made.build_leaves().instance_count, "the leaves")
+		check(instance.get_triangle_count() > 100, "There are too few triangles.")
+		check(instance.mesh.surface_get_material(0) is ShaderMaterial, "The bark has no material.")
+		check(
+			_leaves_of(instance).material_override is ShaderMaterial, "The leaves have no material."
+		)
+		check_equal(instance.get_child_count(), 0, "the number of visible children")
+		instance.free()
+	TreeInstance3D.threaded = true
+
+
+func test_many_changes_make_one_build() -> void:
+	for threads: bool in [false, true]:
+		TreeInstance3D.threaded = threads
+		var instance: TreeInstance3D = _instance(grown_tree(2))
+		await _settle(instance)
+		var count: Array[int] = [0]
+		instance.rebuilt.connect(func() -> void: count[0] += 1)
+		for i: int in 5:
+			instance.reconstruction.seed = i
+			instance.lod = i % 2
+		check_equal(count[0], 0, "the builds before the frame ends")
+		await _settle(instance)
+		check_equal(count[0], 1, "the builds")
+		instance.free()
+	TreeInstance3D.threaded = true
+
+
+func test_a_change_during_a_build_starts_another() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2, 3000))
+	await tree.process_frame
+	var other: TreeReconstruction = grown_tree(7)
+	instance.reconstruction = other
+	await _settle(instance)
+	check_equal(
+		instance.mesh.surface_get_array_len(0),
+		other.build_mesh().surface_get_array_len(0),
+		"the vertices shown"
+	)
+	instance.free()
+
+
+func test_can_be_freed_or_removed_while_building() -> void:
+	for i: int in 10:
+		var instance: TreeInstance3D = _instance(grown_tree(i, 2000))
+		for frame: int in i % 3:
+			await tree.process_frame
+		instance.free()
+	var removed: TreeInstance3D = _instance(grown_tree(1, 2000))
+	await tree.process_frame
+	tree.root.remove_child(removed)
+	await _settle(removed)
+	check(removed.mesh != null, "A removed node was not built.")
+	tree.root.add_child(removed)
+	check(removed.get_leaf_count() > 0, "Its leaves are gone.")
+	removed.queue_free()
+	await tree.process_frame
+
+
+func test_nothing_to_show() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	await _settle(instance)
+	instance.reconstruction = null
+	await _settle(instance)
+	check(instance.mesh == null and instance.get_leaf_count() == 0, "The old tree is still there.")
+	check_equal(instance._get_configuration_warnings().size(), 1, "the warnings")
+	instance.reconstruction = TreeReconstruction.new()
+	await _settle(instance)
+	check_equal(instance.get_triangle_count(), 0, "an empty tree's triangles")
+	instance.free()
+
+
+func test_leaves_switch_and_level() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	await _settle(instance)
+	var full: int = instance.get_triangle_count()
+	instance.leaves = false
+	await _settle(instance)
+	check_equal(instance.get_leaf_count(), 0, "the leaves")
+	instance.leaves = true
+	instance.lod = 2
+	await _settle(instance)
+	check(instance.get_leaf_count() > 0, "The leaves did not come back.")
+	check(instance.get_triangle_count() < full, "Level 2 is as heavy as level 0.")
+	instance.free()
+
+
+func test_own_materials() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	var bark: StandardMaterial3D = StandardMaterial3D.new()
+	var leaf: StandardMaterial3D = StandardMaterial3D.new()
+	instance.bark_material = bark
+	instance.leaf_material = leaf
+	await _settle(instance)
+	check(instance.mesh.surface_get_material(0) == bark, "The bark has another material.")
+	check(_leaves_of(instance).material_override == leaf, "The leaves have another material.")
+	instance.bark_material = null
+	check(instance.mesh.surface_get_material(0) is ShaderMaterial, "The preset did not come back.")
+	instance.free()
+
+
+func test_every_preset_has_materials() -> void:
+	for name: String in TreeReconstruction.get_leaf_preset_names():
+		var made: TreeReconstruction = grown_tree(2)
+		made.leaf_preset = name
+		var instance: TreeInstance3D = _instance(made)
+		await _settle(instance)
+		var bark: ShaderMaterial = instance.mesh.surface_get_material(0)
+		for texture: String in ["albedo_texture", "normal_texture", "roughness_texture"]:
+			check(
+				bark.get_shader_parameter(texture) is Texture2D,
+				"%s bark has no %s." % [name, texture]
+			)
+		if _leaves_of(instance) != null:
+			var leaf: ShaderMaterial = _leaves_of(instance).material_override
+			for texture: String in ["albedo_texture", "normal_texture"]:
+				check(
+					leaf.get_shader_parameter(texture) is Texture2D,
+					"%s leaves have no %s." % [name, texture]
+				)
+		instance.free()
+
+
+func test_duplicates_do_not_double_the_leaves() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	await _settle(instance)
+	var copy: TreeInstance3D = instance.duplicate() as TreeInstance3D
+	tree.root.add_child(copy)
+	await _settle(copy)
+	check_equal(_leaf_nodes(copy), 1, "the copy's leaf nodes")
+	check_equal(copy.get_leaf_count(), instance.get_leaf_count(), "the copy's leaves")
+	copy.leaves = false
+	await _settle(copy)
+	check_equal(copy.get_leaf_count(), 0, "the copy's leaves")
+	check(instance.get_leaf_count() > 0, "The original lost its leaves.")
+	copy.free()
+	instance.free()
+
+
+func test_scenes_hold_the_tree_but_not_its_mesh() -> void:
+	var instance: TreeInstance3D = TreeInstance3D.new()
+	instance.name = "Tree"
+	instance.reconstruction = grown_tree(2)
+	tree.root.add_child(instance)
+	await _settle(instance)
+	var scene: PackedScene = PackedScene.new()
+	check_equal(scene.pack(instance), OK, "packing")
+	var path: String = folder.path_join("tree.tscn")
+	check_equal(ResourceSaver.save(scene, path), OK, "saving")
+	var text: String = FileAccess.get_file_as_string(path)
+	for word: String in ["ArrayMesh", "MultiMesh", "mesh =", "shader_parameter", "Leaves"]:
+		check(not word in text, "The scene holds %s." % word)
+	check("TreeReconstruction" in text, "The scene lacks the tree.")
+	var read: PackedScene = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE)
+	var again: TreeInstance3D = read.instantiate() as TreeInstance3D
+	tree.root.add_child(again)
+	await _settle(again)
+	check_equal(again.get_triangle_count(), instance.get_triangle_count(), "the triangles")
+	check_equal(again.get_leaf_count(), instance.get_leaf_count(), "the leaves")
+	again.free()
+	instance.free()
+
+
+func test_the_mesh_has_room_for_the_wind() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	await _settle(instance)
+	var box: AABB = instance.reconstruction.get_aabb()
+	check(instance.get_aabb().encloses(box.grow(0.05 * box.size.y)), "The box is too tight.")
+	instance.free()

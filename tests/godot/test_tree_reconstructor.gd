@@ -1,0 +1,175 @@
+extends "./suite.gd"
+## TreeReconstructor: from a scan to a tree, and everything that can be wrong with a scan.
+
+
+func test_reconstructs_a_scan() -> void:
+	var path: String = write_scan("scan.xyz")
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var made: TreeReconstruction = reconstructor.reconstruct_file(
+		path, {"seed": 3, "leaves": "oak"}
+	)
+	check(made != null, "No tree: " + reconstructor.get_error_message())
+	if made == null:
+		return
+	check_equal(reconstructor.get_error_message(), "", "the error message")
+	check_equal(reconstructor.get_progress(), 1.0, "the progress")
+	check_equal(made.leaf_preset, "oak", "the preset")
+	check_equal(made.seed, 3, "the seed")
+	check_near(made.measure()["height"], 3.5, 0.2, "the height")
+	check_near(made.measure()["dbh"], 0.137, 0.02, "the diameter")
+	check(made.get_leaves().size() >= 4, "It has %d tips." % made.get_leaves().size())
+	var cloud: PackedVector3Array = reconstructor.get_cloud_points()
+	check(cloud.size() > 1000, "The cloud has %d points." % cloud.size())
+	var box: AABB = made.get_aabb().grow(0.1)
+	var outside: int = 0
+	for point: Vector3 in cloud:
+		outside += 0 if box.has_point(point) else 1
+	check(outside * 100 < cloud.size(), "%d points lie off the tree." % outside)
+	check(
+		reconstructor.get_raw_skeleton().get_node_count() > made.get_node_count(),
+		"Nothing was pruned."
+	)
+	var report: Dictionary = reconstructor.get_report()
+	check(report.get("stages", []).size() > 3, "The report has no stages: %s" % report)
+	check_equal(made.provenance["source"], path, "the source")
+
+
+func test_the_same_seed_gives_the_same_tree() -> void:
+	var path: String = write_scan("scan.xyz")
+	var trees: Array[TreeReconstruction] = []
+	for i: int in 2:
+		trees.append(TreeReconstructor.new().reconstruct_file(path, {"seed": 5}))
+	check_equal(trees[0].skeleton, trees[1].skeleton, "the skeleton")
+
+
+func test_bad_files_get_a_sentence() -> void:
+	var garbage: PackedByteArray = []
+	for i: int in 5000:
+		garbage.append((i * 7919 + i / 13) % 256)
+	var contents: Dictionary[String, Variant] = {
+		"empty.xyz": "",
+		"empty.ply": "",
+		"words.txt": "this is not\na point cloud\n",
+		"one.xyz": "1 2 3\n",
+		"three.xyz": "0 0 0\n0 0 1\n0 0 2\n",
+		"nan.xyz": "nan nan nan\n".repeat(100),
+		"garbage.ply": garbage,
+		"garbage.las": garbage,
+		"garbage.xyz": garbage,
+		"cut.ply": "ply\nformat ascii 1.0\nelement vertex 1000\nproperty float x\n",
+		"scan.unknown": "0 0 0\n",
+	}
+	for name: String in contents:
+		var path: String = folder.path_join(name)
+		var file: FileAccess = FileAccess.open(path, FileAccess.WRITE)
+		if contents[name] is String:
+			file.store_string(contents[name])
+		else:
+			file.store_buffer(contents[name])
+		file.close()
+		_check_refusal(path)
+	_check_refusal(folder.path_join("missing.ply"))
+	_check_refusal(folder)
+
+
+func _check_refusal(path: String) -> void:
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var made: TreeReconstruction = reconstructor.reconstruct_file(path)
+	check(made == null, "%s became a tree." % path.get_file())
+	check_sentence(reconstructor.get_error_message(), path.get_file())
+
+
+func test_bad_options_get_a_sentence() -> void:
+	var path: String = write_scan("scan.xyz", 200)
+	for options: Dictionary in [
+		{"leaves": "no such leaf"},
+		{"no such option": 1},
+		{"spacing": NAN},
+		{"spacing": -1.0},
+		{"up": "sideways"},
+		{"seed": "seven"},
+		{"scale": -3.0},
+	]:
+		var reconstructor: TreeReconstructor = TreeReconstructor.new()
+		var made: TreeReconstruction = reconstructor.reconstruct_file(path, options)
+		check(made == null, "%s was accepted." % options)
+		check_sentence(reconstructor.get_error_message(), str(options))
+
+
+func test_can_be_cancelled() -> void:
+	var path: String = write_scan("scan.xyz", 40000)
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var made: Array[TreeReconstruction] = [TreeReconstruction.new()]
+	var task: int = WorkerThreadPool.add_task(
+		func() -> void: made[0] = reconstructor.reconstruct_file(path)
+	)
+	while reconstructor.get_progress() <= 0.0 and not WorkerThreadPool.is_task_completed(task):
+		await tree.process_frame
+	reconstructor.cancel()
+	WorkerThreadPool.wait_for_task_completion(task)
+	check(made[0] == null, "It went on to the end.")
+	check_sentence(reconstructor.get_error_message(), "the message")
+	await tree.process_frame
+
+
+func test_reports_progress() -> void:
+	var path: String = write_scan("scan.xyz")
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var fractions: PackedFloat64Array = []
+	var stages: Dictionary[String, bool] = {}
+	reconstructor.progress_changed.connect(
+		func(fraction: float, stage: String) -> void:
+			fractions.append(fraction)
+			stages[stage] = true
+	)
+	var task: int = WorkerThreadPool.add_task(func() -> void: reconstructor.reconstruct_file(path))
+	while not WorkerThreadPool.is_task_completed(task):
+		await tree.process_frame
+	WorkerThreadPool.wait_for_task_completion(task)
+	await tree.process_frame
+	await tree.process_frame
+	check(fractions.size() >= 3, "It told of progress %d times." % fractions.size())
+	check(stages.size() >= 3, "It named these stages: %s" % [stages.keys()])
+	for i: int in range(1, fractions.size()):
+		check(fractions[i] >= fractions[i - 1], "The progress went back.")
+
+
+func test_exports_and_reads_back() -> void:
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var made: TreeReconstruction = grown_tree(3)
+	for extension: String in ["glb", "gltf", "obj", "ply", "txt", "csv"]:
+		var path: String = folder.path_join("tree." + extension)
+		check_equal(
+			reconstructor.export_file(made, path),
+			OK,
+			"%s (%s)" % [extension, reconstructor.get_error_message()]
+		)
+		check(FileAccess.get_file_as_bytes(path).size() > 1000, "%s is too small." % extension)
+	for extension: String in ["ply", "txt"]:
+		var read: TreeReconstruction = reconstructor.import_skeleton(
+			folder.path_join("tree." + extension)
+		)
+		check(read != null, "%s: %s" % [extension, reconstructor.get_error_message()])
+		if read != null:
+			check_equal(read.get_node_count(), made.get_node_count(), "the nodes from " + extension)
+	check_equal(reconstructor.export_file(made, folder.path_join("tree.blend")), FAILED, "a .blend")
+	check_sentence(reconstructor.get_error_message(), "the message for .blend")
+	check(
+		reconstructor.import_skeleton(folder.path_join("nowhere.txt")) == null, "It read nothing."
+	)
+	check_sentence(reconstructor.get_error_message(), "the message for a missing file")
+
+
+func test_options_are_described() -> void:
+	var options: Array[Dictionary] = TreeReconstructor.get_option_list()
+	check(options.size() > 8, "There are %d options." % options.size())
+	for option: Dictionary in options:
+		check_sentence(option.get("description", ""), str(option.get("name")))
+		check(option.has("default"), "%s has no default." % option.get("name"))
+	var path: String = write_scan("scan.xyz")
+	var defaults: Dictionary = {}
+	for option: Dictionary in options:
+		defaults[option["name"]] = option["default"]
+	var plain: TreeReconstruction = TreeReconstructor.new().reconstruct_file(path)
+	var spelt_out: TreeReconstruction = TreeReconstructor.new().reconstruct_file(path, defaults)
+	check_equal(spelt_out.skeleton, plain.skeleton, "the tree with all defaults spelt out")
