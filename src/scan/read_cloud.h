@@ -24,15 +24,16 @@ struct ReadCloudReport {
 };
 
 // Reads the cloud at `path` (UTF-8). The format is sniffed from the contents first, the extension second. The
-// frame's origin is a whole number of units near the median point and independent of the points' order; scale
-// 1, axes as in the file. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no
-// finite point, …).
+// frame's origin is the median of each axis, rounded to whole units, and independent of the points' order;
+// scale 1, axes as in the file. Points without finite coordinates are left out and counted in a warning; a
+// file that is cut off is an Error wherever that can be known. Throws Error with a sentence (missing, empty,
+// truncated, not a point cloud, no finite point, …).
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options = {},
                       ReadCloudReport* report = nullptr, Progress* progress = nullptr);
 
-// Writes by extension: .ply (binary little endian; doubles in scan coordinates, colours and normals where
-// present), .xyz/.txt/.asc (text), .las (1.2). Scan coordinates and units. Writes beside and renames. Throws
-// Error.
+// Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
+// there are colours or normals), .las (1.2; without normals). Scan coordinates, axes and units, to 1e-8 of
+// the cloud's extent. Writes beside and renames. Throws Error.
 void write_cloud(const std::string& path, const PointCloud& cloud);
 
 }  // namespace treerec

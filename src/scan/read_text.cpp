@@ -202,6 +202,17 @@ struct Sample {
         }
         return rows ? static_cast<double>(good) / static_cast<double>(rows) : 0.0;
     }
+
+    // How far the three columns from `column` differ within a row, summed over the rows.
+    double spread_of(size_t column) const {
+        double sum = 0.0;
+        for (size_t i = 0; i < columns[column].size(); i++) {
+            const auto [low, high] =
+                std::minmax({columns[column][i], columns[column + 1][i], columns[column + 2][i]});
+            if (high > low) sum += high - low;
+        }
+        return sum;
+    }
 };
 
 Sample take_sample(const std::vector<std::string_view>& lines, char separator) {
@@ -241,7 +252,7 @@ bool is_fraction_color(const double* v) {
 }
 
 // Guesses the columns' roles from what is in them.
-std::vector<int8_t> roles_from_values(const Sample& sample, bool pts) {
+std::vector<int8_t> roles_from_values(const Sample& sample) {
     const size_t width = sample.columns.size();
     std::vector<int8_t> roles(width, kNoRole);
     size_t first = 0;
@@ -266,20 +277,21 @@ std::vector<int8_t> roles_from_values(const Sample& sample, bool pts) {
         give(c, kRoleNx);
         break;
     }
-    // A .pts file has an intensity before the colours.
-    std::vector<size_t> candidates;
-    for (size_t c = first + 3; c + 3 <= width; c++)
-        candidates.push_back(c);
-    if (pts && candidates.size() > 1)
-        std::rotate(candidates.begin(), candidates.begin() + 1, candidates.end());
+    // Where an intensity or an opacity stands beside the colours, the three that differ least are the
+    // colours.
     for (const auto& fits : {is_whole_color, is_fraction_color}) {
-        for (const size_t c : candidates) {
-            if (has_role(roles, kRoleR) || !free_triple(c)) continue;
+        size_t best = width;
+        double best_spread = std::numeric_limits<double>::max();
+        for (size_t c = first + 3; c + 3 <= width; c++) {
+            if (has_role(roles, kRoleR) || !free_triple(c) || sample.share(c, 3, fits) < 0.99) continue;
             const double flat =
                 sample.share(c, 3, [](const double* v) { return v[0] <= 1 && v[1] <= 1 && v[2] <= 1; });
-            if (sample.share(c, 3, fits) < 0.99 || (fits == is_whole_color && flat > 0.9)) continue;
-            give(c, kRoleR);
+            const double spread = sample.spread_of(c);
+            if ((fits == is_whole_color && flat > 0.9) || !(spread < best_spread)) continue;
+            best = c;
+            best_spread = spread;
         }
+        if (best < width) give(best, kRoleR);
     }
     return roles;
 }
@@ -345,8 +357,7 @@ Layout find_layout(const ReadJob& job) {
                 layout.roles = roles;
         }
         if (layout.roles.empty()) {
-            layout.roles =
-                roles_from_values(sample, layout.promised_points.has_value() || job.path.ends_with(".pts"));
+            layout.roles = roles_from_values(sample);
             if (!header.empty() && !is_comment(trimmed(header.back())))
                 job.report.warnings.emplace_back(
                     "The header names no x, y and z; the columns were told apart by their values.");
