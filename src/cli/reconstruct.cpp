@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
@@ -38,6 +39,22 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
     return options;
+}
+
+void require_safe_target(const std::string& target, const std::string& scan,
+                         const std::vector<std::string>& targets) {
+    namespace fs = std::filesystem;
+    const auto path_of = [](const std::string& utf8) {
+        return fs::path(std::u8string(utf8.begin(), utf8.end()));
+    };
+    std::error_code failure;
+    if (std::count(targets.begin(), targets.end(), target) > 1)
+        throw UsageError(target + " would be written twice.");
+    if (fs::equivalent(path_of(target), path_of(scan), failure))
+        throw UsageError(target + " is the scan itself; it would be overwritten.");
+    const fs::path folder = path_of(target).parent_path();
+    if (!folder.empty() && !fs::is_directory(folder, failure))
+        throw UsageError(target + " cannot be written: there is no folder '" + folder.string() + "'.");
 }
 
 void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds) {
@@ -102,11 +119,13 @@ void run_reconstruct(const std::vector<std::string>& words) {
     exports.seed = options.skeleton.seed;
     set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
     // Before the long work, not after it.
-    for (const std::string& out : outs) {
+    for (const std::string& out : outs)
         as_usage([&] { require_writable_format(out); });
-        if (std::count(outs.begin(), outs.end(), out) > 1) throw UsageError(out + " would be written twice.");
-        if (out == scan) throw UsageError(out + " is the scan itself; it would be overwritten.");
-    }
+    const std::string report = arguments.text("--report", "");
+    std::vector<std::string> targets = outs;
+    if (arguments.has("--report")) targets.push_back(report);
+    for (const std::string& target : targets)
+        require_safe_target(target, scan, targets);
 
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");
@@ -123,14 +142,13 @@ void run_reconstruct(const std::vector<std::string>& words) {
     if (arguments.has("--report")) {
         details.triangles = exporter.triangles();
         details.leaf_count = exporter.leaves();
-        outs.push_back(arguments.text("--report", ""));
-        write_file(outs.back(), report_json(result, details));
+        write_file(report, report_json(result, details));
     }
     progress.clear();
     for (const std::string& warning : result.warnings)
         std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!quiet) print_summary(result, outs, seconds);
+    if (!quiet) print_summary(result, targets, seconds);
 }
 
 }  // namespace treerec

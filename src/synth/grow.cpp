@@ -203,6 +203,8 @@ class Grower {
             if (i > 1 && crowd_.nearest(next, habit.clearance, axis, bud.parent_axis, away)) {
                 heading = glm::normalize(heading + 0.6 * normalized_or(away, DVec3(0, 1, 0)));
                 next = position + step * heading;
+                // Room was made until the branch turned back: it would curl.
+                if (glm::dot(heading, bud.direction) < 0.0) break;
                 if (bud.order > 0 && crowd_.nearest(next, 0.6 * habit.clearance, axis, bud.parent_axis, away))
                     break;
             }

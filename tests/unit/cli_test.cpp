@@ -166,6 +166,7 @@ TEST_F(Cli, HelpAndVersionExitWithZero) {
 
 TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
     put("c.xyz", "1 2 3\n");
+    put("c.txt", "1 2 3\n");
     for (const char* words : {"",
                               "reconstrct",
                               "--nonsense",
@@ -175,6 +176,9 @@ TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
                               "reconstruct c.xyz -o out/a.fbx",
                               "reconstruct c.xyz -o none/a.glb",
                               "reconstruct c.xyz -o c.xyz",
+                              "reconstruct c.txt -o ./c.txt",
+                              "reconstruct c.xyz -o out/a.txt --report c.xyz",
+                              "reconstruct c.xyz -o out/a.txt --report none/a.json",
                               "reconstruct c.xyz -o out/a.glb --sed 3",
                               "reconstruct c.xyz -o out/a.glb --seed three",
                               "reconstruct c.xyz -o out/a.glb --seed -1",
@@ -199,6 +203,7 @@ TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
         EXPECT_EQ(outcome.code, 2) << words;
         EXPECT_FALSE(outcome.error.empty()) << words;
         EXPECT_TRUE(out_is_empty()) << words;
+        EXPECT_EQ(get("c.xyz") + get("c.txt"), "1 2 3\n1 2 3\n") << words;
     }
     EXPECT_NE(run("reconstruct c.xyz -o out/a.glb --sed 3").error.find("--seed"), std::string::npos);
     EXPECT_NE(run("reconstrct").error.find("'reconstruct'"), std::string::npos);
@@ -334,9 +339,8 @@ TEST_F(Cli, AGoodTreeInAnOddFileIsStillFound) {
     };
     for (const Case& c : cases) {
         put(std::string(c.name) + ".xyz", xyz(c.points));
-        const Outcome outcome =
-            run("reconstruct " + std::string(c.name) + ".xyz -o out/a.txt -o out/a.glb --report " +
-                "out/a.json --quiet " + c.options);
+        const Outcome outcome = run("reconstruct " + std::string(c.name) +
+                                    ".xyz -o out/a.txt --report out/a.json --quiet " + c.options);
         ASSERT_EQ(outcome.code, 0) << c.name << ": " << outcome.error;
         const auto report = nlohmann::json::parse(get("out/a.json"));
         EXPECT_NEAR(report["height_m"].get<double>(), kSmallTree, 0.15 * kSmallTree) << c.name;
