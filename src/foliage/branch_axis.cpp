@@ -6,8 +6,8 @@ namespace treerec {
 
 namespace {
 
-constexpr double kBendPerPoint = 0.20;  // radians
-constexpr int kMostPieces = 6;
+constexpr double kBendPerPoint = 0.14;  // radians
+constexpr int kMostPieces = 8;
 
 struct Knot {
     DVec3 position;

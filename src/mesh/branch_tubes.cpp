@@ -17,7 +17,11 @@ constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood w
 constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
 constexpr double kCollarRadius = 0.008;    // metres; thinner branches get no collar of their own
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
-constexpr double kBendPerRing = 0.26;      // radians between rings at level 0
+constexpr double kThinBendPerRing = 0.30;  // radians between rings at level 0, on twigs
+constexpr double kThickBendPerRing = 0.2;  // and where the eye rests
+constexpr double kThickRadius = 0.015;     // metres
+constexpr double kAxisSlack = 0.2;         // how far rings may leave out a bend, over the radius
+constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
 constexpr size_t kBranchesPerChunk = 256;  // of parallel work
 
 struct Ring {
@@ -57,14 +61,32 @@ struct Builder {
     const TubeOptions& options;
     const BranchList list;
     const Crown crown;
-    const double least;  // metres: the smallest radius and half the smallest ring distance
+    const double least;                    // metres: the smallest radius and half the smallest ring distance
+    std::vector<Tube> tubes;               // by branch
+    std::vector<std::vector<Ring>> rings;  // by chunk of branches
+    std::vector<uint8_t> drawn;            // by branch: not too thin, or bearing one that is not
+    std::vector<float> node_along;         // by node id: metres along its branch's axis
 
     Builder(const Tree& t, const TubeOptions& o)
         : tree(t),
           options(o),
           list(list_branches(t)),
           crown(measure_crown(t)),
-          least(kLeastShare * crown.coordinate) {}
+          least(kLeastShare * crown.coordinate),
+          tubes(list.branches.size()),
+          rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
+          drawn(list.branches.size(), 0),
+          node_along(static_cast<size_t>(t.id_end()), 0.0f) {
+        for (size_t i = list.branches.size(); i-- > 0;) {
+            if (!drawn[i] && too_thin(list.branches[i])) continue;
+            drawn[i] = 1;
+            if (list.branches[i].parent >= 0) drawn[static_cast<size_t>(list.branches[i].parent)] = 1;
+        }
+    }
+
+    const Ring* rings_of(size_t branch) const {
+        return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
+    }
 
     // The largest radius that a ring about `attach` may have and still hide in its parent's tube: the parent
     // is a prism, and thins towards its next node.
@@ -82,12 +104,12 @@ struct Builder {
         return 0.92 * std::cos(kPi / sides_of(thickest, options)) * radius;
     }
 
-    void plan_rings(const Branch& branch, std::vector<AxisPoint>& points, std::vector<Ring>& rings,
-                    Tube& tube) const;
+    void plan(size_t index, std::vector<AxisPoint>& points);
+    void seat(size_t index);
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
-                    std::vector<Ring>& rings) const;
-    void emit(const Branch& branch, const Tube& tube, const Ring* rings, Mesh& mesh) const;
+                    std::vector<Ring>& out) const;
+    void emit(size_t index, Mesh& mesh) const;
     bool too_thin(const Branch& branch) const;
 };
 
@@ -114,7 +136,6 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
     if (options.level == 0 && own >= kCollarRadius && own < 0.98 * hidden) {
         // Rings at the bark, and two more where the collar has run out.
         size_t hint = 0;
-        std::vector<AxisPoint>::iterator at;
         for (double along : {0.85 * tube.exit, tube.exit + 0.8 * own, tube.exit + 2.2 * own}) {
             if (along >= length) break;
             const AxisPoint point = axis_at(points, along, hint);
@@ -144,14 +165,30 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
 
 // As few rings as show the axis' bends and the radius' changes.
 void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
-                         std::vector<Ring>& rings) const {
+                         std::vector<Ring>& out) const {
     const int level = std::clamp(options.level, 0, 8);
-    const double bend_limit = std::cos(std::min(kBendPerRing * (1 + level), 1.2));
+    const double bend_per_ring = points.front().radius >= kThickRadius ? kThickBendPerRing : kThinBendPerRing;
+    const double bend_limit = std::cos(std::min(bend_per_ring * (1 + level), 1.2));
     const double change_limit = 0.30 * (1 + level);
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
+    const double slack = kAxisSlack * (1 << level);
+    const double least_slack = 4e-4 * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
-        rings.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
+        out.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
+    };
+    // Whether the straight way from one point to another passes by a point between.
+    const auto misses = [&](size_t from, size_t to) {
+        const DVec3 chord = points[to].position - points[from].position;
+        const double square = glm::dot(chord, chord);
+        for (size_t i = from + 1; i < to; i++) {
+            const DVec3 offset = points[i].position - points[from].position;
+            const double t = square > 0.0 ? std::clamp(glm::dot(offset, chord) / square, 0.0, 1.0) : 0.0;
+            const DVec3 off = offset - chord * t;
+            const double limit = std::max(slack * points[i].radius, least_slack);
+            if (glm::dot(off, off) > limit * limit) return true;
+        }
+        return false;
     };
     size_t last = 0;
     add(points[0]);
@@ -159,21 +196,23 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
         const AxisPoint& from = points[last];
         size_t best = last + 1;
         const double gap = std::max(closeness * from.radius, 2.0 * least);
+        const bool collar_begins = tube.exit > 0.0 && level == 0;
         for (size_t next = last + 1; next < points.size(); next++) {
             const AxisPoint& to = points[next];
-            const bool far = to.along - from.along > spacing_limit;
+            const bool near = points[best].along - from.along < gap;
+            const bool far = to.along - from.along > spacing_limit || next - last > kMostLeftOut;
             const bool bent = glm::dot(from.direction, to.direction) < bend_limit;
             const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
-            if ((far || bent || changed) && points[best].along - from.along >= gap) break;
+            if (!near && (far || bent || changed || misses(last, next))) break;
             best = next;
-            const bool collar = level == 0 && to.along < tube.exit + 2.5 * to.radius && tube.exit > 0.0 &&
-                                to.radius >= kCollarRadius;
+            const bool collar =
+                collar_begins && to.radius >= kCollarRadius && to.along < tube.exit + 2.5 * to.radius;
             if (collar && to.along - from.along >= gap) break;
         }
         // A last ring right above another only makes slivers.
         if (best + 1 == points.size() && last > 0 &&
             points[best].along - from.along < std::max(0.15 * from.radius, least))
-            rings.pop_back();
+            out.pop_back();
         add(points[best]);
         last = best;
     }
@@ -199,12 +238,22 @@ void limit_tilt(Ring* rings, size_t count) {
     }
 }
 
-void Builder::plan_rings(const Branch& branch, std::vector<AxisPoint>& points, std::vector<Ring>& rings,
-                         Tube& tube) const {
-    tube.first_ring = static_cast<uint32_t>(rings.size());
-    if (too_thin(branch)) return;
+void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
+    const Branch& branch = list.branches[index];
+    Tube& tube = tubes[index];
+    std::vector<Ring>& out = rings[index / kBranchesPerChunk];
+    tube.first_ring = static_cast<uint32_t>(out.size());
+    if (!drawn[index]) return;
     sample_axis(tree, list, branch, 2.0 * least, points);
     if (points.size() < 2) return;
+    size_t nearest = 0;
+    for (NodeId id : list.nodes_of(branch)) {
+        const DVec3 position = tree.node(id).position;
+        const auto distance = [&](size_t i) { return glm::distance(points[i].position, position); };
+        while (nearest + 1 < points.size() && distance(nearest + 1) <= distance(nearest))
+            nearest++;
+        node_along[id] = static_cast<float>(points[nearest].along);
+    }
     if (branch.attach != kNoNode) {
         // A stub that ends within its parent is never seen.
         const double end = glm::distance(points.back().position, points.front().position);
@@ -213,26 +262,64 @@ void Builder::plan_rings(const Branch& branch, std::vector<AxisPoint>& points, s
             return;
         add_collar(branch, points, tube);
     }
-    pick_rings(branch, points, tube, rings);
-    tube.rings = static_cast<uint32_t>(rings.size()) - tube.first_ring;
-    limit_tilt(rings.data() + tube.first_ring, tube.rings);
+    pick_rings(branch, points, tube, out);
+    tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
+    limit_tilt(out.data() + tube.first_ring, tube.rings);
     double thickest = 0.0;
-    for (size_t i = tube.first_ring; i < rings.size(); i++)
-        thickest = std::max(thickest, rings[i].radius);
+    for (size_t i = tube.first_ring; i < out.size(); i++)
+        thickest = std::max(thickest, out[i].radius);
     tube.sides = sides_of(thickest, options);
-    tube.round_tip = options.level == 0 && rings.back().radius >= kRoundTipRadius;
+    tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
 }
 
-void Builder::emit(const Branch& branch, const Tube& tube, const Ring* rings, Mesh& mesh) const {
+// Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.
+void Builder::seat(size_t index) {
+    const Branch& branch = list.branches[index];
+    if (tubes[index].rings == 0 || branch.attach == kNoNode) return;
+    const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
+    const Tube& parent = tubes[host];
+    if (parent.rings < 2) return;
+    const Ring* begin = rings_of(host);
+    const Ring* end = begin + parent.rings;
+    const auto above = [&](double along) {
+        const Ring* ring =
+            std::upper_bound(begin, end, along, [](double a, const Ring& b) { return a < b.along; });
+        return std::clamp(ring, begin + 1, end - 1);
+    };
+    const double along = node_along[branch.attach];
+    const Ring* upper = above(along);
+    const Ring* lower = upper - 1;
+    const DVec3 chord = upper->centre - lower->centre;
+    const DVec3 position = tree.node(branch.attach).position;
+    const double t = std::clamp(
+        glm::dot(position - lower->centre, chord) / std::max(glm::dot(chord, chord), 1e-60), 0.0, 1.0);
+    double radius = lower->radius + (upper->radius - lower->radius) * t;
+    const double reach = radius;
+    for (double side : {along - reach, along + reach}) {
+        const Ring* over = above(side);
+        const Ring* under = over - 1;
+        const double f =
+            std::clamp((side - under->along) / std::max(over->along - under->along, 1e-30), 0.0, 1.0);
+        radius = std::min(radius, under->radius + (over->radius - under->radius) * f);
+    }
+    const double hidden = 0.92 * std::cos(kPi / parent.sides) * radius;
+    Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
+    start.centre = lower->centre + chord * t;
+    start.radius = std::max(std::min(start.radius, hidden), least);
+}
+
+void Builder::emit(size_t index, Mesh& mesh) const {
+    const Branch& branch = list.branches[index];
+    const Tube& tube = tubes[index];
+    const Ring* const run = rings_of(index);
     const uint32_t sides = tube.sides;
     const size_t count = tube.rings;
-    const Ring& last_ring = rings[count - 1];
+    const Ring& last_ring = run[count - 1];
     const double length = last_ring.along;
-    const double repeats = std::max(
-        1.0, std::round(2.0 * kPi * rings[count > 1 ? 1 : 0].radius / std::max(options.bark_width, 1e-6)));
+    const double repeats =
+        std::max(1.0, std::round(2.0 * kPi * run[1].radius / std::max(options.bark_width, 1e-6)));
     const float phase = static_cast<float>(branch_phase(list.nodes[branch.end - 1]));
-    const DVec3 pivot = rings[0].centre;
-    const Vec4 custom0(Vec3(pivot), static_cast<float>(branch.order));
+    const Vec4 custom0(Vec3(run[0].centre), static_cast<float>(branch.order));
     DVec2 circle[65];
     for (uint32_t j = 0; j <= sides; j++) {
         const double angle = 2.0 * kPi * (j % sides) / sides;
@@ -256,23 +343,23 @@ void Builder::emit(const Branch& branch, const Tube& tube, const Ring* rings, Me
             const double t = std::clamp((along - tube.exit) / (1.5 * tube.parent_radius), 0.0, 1.0);
             light *= 0.6 + 0.4 * t;
         } else {
-            light *= 0.75 + 0.25 * std::clamp(along / (4.0 * rings[0].radius), 0.0, 1.0);
+            light *= 0.75 + 0.25 * std::clamp(along / (4.0 * run[0].radius), 0.0, 1.0);
         }
         return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
                     phase, static_cast<float>(light));
     };
-    DVec3 normal = rings[0].normal;
+    DVec3 normal = run[0].normal;
     DVec3 x = any_perpendicular(normal);
     for (size_t i = 0; i < count; i++) {
-        const Ring& ring = rings[i];
+        const Ring& ring = run[i];
         // Parallel transport: the smallest turn that takes the last ring's normal to this one's.
         const double turn = 1.0 + glm::dot(normal, ring.normal);
         if (turn > 1e-9) x -= (normal + ring.normal) * (glm::dot(x, ring.normal) / turn);
         normal = ring.normal;
         x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
         const DVec3 y = glm::cross(normal, x);
-        const Ring& before = rings[i > 0 ? i - 1 : 0];
-        const Ring& after = rings[std::min(i + 1, count - 1)];
+        const Ring& before = run[i > 0 ? i - 1 : 0];
+        const Ring& after = run[std::min(i + 1, count - 1)];
         const double slope = std::clamp(
             (after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0, 1.0);
         const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
@@ -301,20 +388,20 @@ void Builder::emit(const Branch& branch, const Tube& tube, const Ring* rings, Me
         const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
         put(apex, normal, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius, color);
     }
-    size_t index = tube.first_index;
+    size_t at = tube.first_index;
     const uint32_t base = static_cast<uint32_t>(tube.first_vertex), stride = sides + 1;
     const uint32_t spans = static_cast<uint32_t>(tube.all_rings()) - 1;
     for (uint32_t i = 0; i < spans; i++) {
         for (uint32_t j = 0; j < sides; j++) {
             const uint32_t a = base + i * stride + j, b = a + 1, c = a + stride, d = c + 1;
             for (uint32_t corner : {a, b, d, a, d, c})
-                mesh.indices[index++] = corner;
+                mesh.indices[at++] = corner;
         }
     }
     for (uint32_t j = 0; j < sides; j++) {
         const uint32_t a = base + spans * stride + j;
         for (uint32_t corner : {a, a + 1, base + (spans + 1) * stride + j})
-            mesh.indices[index++] = corner;
+            mesh.indices[at++] = corner;
     }
 }
 
@@ -324,19 +411,19 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
     Mesh mesh;
     if (tree.size() < 2) return mesh;
     if (options.maximum_sides > 64) throw Error("A branch can have at most 64 sides.");
-    const Builder builder(tree, options);
+    Builder builder(tree, options);
     if (!(builder.crown.coordinate < kLargestTree))
         throw Error("The tree reaches beyond 1000 km; check the scan's units.");
-    const std::vector<Branch>& branches = builder.list.branches;
-    std::vector<Tube> tubes(branches.size());
-    std::vector<std::vector<Ring>> rings((branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk);
-    parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
+    const size_t branches = builder.tubes.size();
+    parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
         std::vector<AxisPoint> points;
         for (size_t i = begin; i < end; i++)
-            builder.plan_rings(branches[i], points, rings[begin / kBranchesPerChunk], tubes[i]);
+            builder.plan(i, points);
     });
+    for (size_t i = 0; i < branches; i++)  // parents before children
+        builder.seat(i);
     size_t vertices = 0, indices = 0;
-    for (Tube& tube : tubes) {
+    for (Tube& tube : builder.tubes) {
         tube.first_vertex = vertices;
         tube.first_index = indices;
         vertices += tube.vertices();
@@ -350,11 +437,9 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
     mesh.colors.resize(vertices);
     mesh.custom0.resize(vertices);
     mesh.indices.resize(indices);
-    parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
+    parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++)
-            if (tubes[i].rings > 0)
-                builder.emit(branches[i], tubes[i],
-                             rings[begin / kBranchesPerChunk].data() + tubes[i].first_ring, mesh);
+            if (builder.tubes[i].rings > 0) builder.emit(i, mesh);
     });
     return mesh;
 }
