@@ -96,7 +96,8 @@ const Command& score_command() {
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
          {"--columns", "LIST", "names of a text scan's columns, such as x,y,z,r,g,b; - skips one"},
          {"--quiet", "", "no progress"}},
-        "MODEL: a tree file (.txt), a skeleton (.ply) or a table of nodes (.csv), as 'reconstruct' writes "
+        "MODEL: a tree file (.txt), a skeleton (.ply) or a table of nodes or of cylinders (.csv), as "
+        "'reconstruct' writes "
         "them.\n"
         "REFERENCE: a point cloud, or a skeleton in any of these formats, in the same coordinates.\n"
         "Against a scan: how far the points lie from the nearest bark (each segment a cylinder).\n"

@@ -8,42 +8,9 @@ namespace treerec {
 
 namespace {
 
-constexpr int kStampVersion = 1;
-constexpr std::string_view kStampWord = "treerec ";
 constexpr double kLeastRadius = 1e-4;  // metres
 
 }  // namespace
-
-std::string stamp_text(const ScanFrame& frame) {
-    std::string text(kStampWord);
-    append_number(text, int64_t{kStampVersion});
-    text += " up ";
-    text += up_axis_name(frame.up);
-    text += " metres_per_unit ";
-    append_number(text, frame.metres_per_unit);
-    return text;
-}
-
-bool read_stamp(std::string_view comment, FileStamp& stamp, const std::string& path) {
-    const size_t at = comment.find(kStampWord);
-    if (at == std::string_view::npos) return false;
-    std::vector<std::string_view> words;
-    for (size_t i = at; i < comment.size();) {
-        const size_t end = std::min(comment.find(' ', i), comment.size());
-        if (end > i) words.push_back(comment.substr(i, end - i));
-        i = end + 1;
-    }
-    if (words.size() < 6 || words[2] != "up" || words[4] != "metres_per_unit") return false;
-    const std::optional<double> version = parse_number(words[1]);
-    const std::optional<double> unit = parse_number(words[5]);
-    if (!version || !unit) return false;
-    if (*version > kStampVersion)
-        throw Error("'" + path + "' was written by a newer version of this program; update to open it.");
-    if (!(*unit > 1e-12) || !(*unit < 1e12)) return false;
-    stamp.up = parse_up_axis(words[3]);
-    stamp.metres_per_unit = *unit;
-    return true;
-}
 
 SkeletonTable table_of(const Tree& tree) {
     SkeletonTable table;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <charconv>
+#include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +47,11 @@ inline std::optional<std::string_view> next_line(std::string_view& text) {
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     return line;
 }
+
+// The fields of a line, split at commas, semicolons and blanks, in lower case and without quotes.
+std::vector<std::string> split_fields(std::string_view line);
+// The place in `fields` of the first of `names` that is there, or -1.
+int find_field(const std::vector<std::string>& fields, std::initializer_list<const char*> names);
 
 // What our own files say in a comment about how they lie in space: "treerec 1 up z metres_per_unit 1".
 struct FileStamp {

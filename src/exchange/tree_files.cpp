@@ -8,34 +8,10 @@
 #include "error.h"
 #include "exchange/skeleton_table.h"
 #include "scan/file_bytes.h"
-#include "tree/branches.h"
 
 namespace treerec {
 
 namespace {
-
-std::vector<std::string> split_fields(std::string_view line) {
-    std::vector<std::string> fields;
-    std::string field;
-    for (char c : line) {
-        if (c == ',' || c == ' ' || c == '\t' || c == ';') {
-            if (!field.empty()) fields.push_back(field);
-            field.clear();
-        } else if (c != '"' && c != '\r') {
-            field += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        }
-    }
-    if (!field.empty()) fields.push_back(field);
-    return fields;
-}
-
-int find_field(const std::vector<std::string>& fields, std::initializer_list<const char*> names) {
-    for (const char* name : names) {
-        const auto at = std::find(fields.begin(), fields.end(), name);
-        if (at != fields.end()) return static_cast<int>(at - fields.begin());
-    }
-    return -1;
-}
 
 // Where the values of one node lie in its tuple; -1 where they are missing.
 struct Columns {
@@ -166,39 +142,6 @@ Tree read_treefile(const std::string& path, UpAxis up) {
     return tree_of(largest, stamp, path);
 }
 
-void write_qsm_csv(const std::string& path, const Tree& tree) {
-    std::string text =
-        "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent_1based,branch,order,measured\n";
-    text.reserve(text.size() + 160 * tree.size());
-    const BranchList list = list_branches(tree);
-    const ScanFrame& frame = tree.frame();
-    std::vector<int32_t> cylinder(static_cast<size_t>(tree.id_end()), 0);
-    int32_t count = 0;
-    for (size_t b = 0; b < list.branches.size(); b++) {
-        for (NodeId id : list.nodes_of(list.branches[b])) {
-            const Node& node = tree.node(id);
-            if (node.parent == kNoNode) continue;
-            const DVec3 start = frame.to_scan(tree.node(node.parent).position);
-            const DVec3 along = frame.to_scan(node.position) - start;
-            const double length = glm::length(along);
-            const DVec3 axis = normalized_or(along, frame.turn_to_scan(DVec3(0.0, 1.0, 0.0)));
-            cylinder[id] = ++count;
-            for (double value : {frame.length_to_scan(node.radius), length, start.x, start.y, start.z, axis.x,
-                                 axis.y, axis.z}) {
-                append_number(text, value);
-                text += ',';
-            }
-            append_number(text, int64_t{cylinder[node.parent]});
-            text += ',';
-            append_number(text, static_cast<int64_t>(b + 1));
-            text += ',';
-            append_number(text, int64_t{list.branches[b].order});
-            text += node.is_measured() ? ",1\n" : ",0\n";
-        }
-    }
-    write_file(path, text);
-}
-
 Tree read_node_csv(const std::string& path, UpAxis up) {
     const FileBytes bytes = read_file(path);
     std::string_view rest = bytes.view();
@@ -244,7 +187,7 @@ Tree read_node_csv(const std::string& path, UpAxis up) {
 
 namespace {
 
-enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv };
+enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv };
 
 // From the file's first 4 kB.
 SkeletonFormat sniff(const std::string& path) {
@@ -269,6 +212,8 @@ SkeletonFormat sniff(const std::string& path) {
     while (const std::optional<std::string_view> line = next_line(rest)) {
         if (line->empty() || line->front() == '#') continue;
         const std::vector<std::string> fields = split_fields(*line);
+        if (find_field(fields, {"start_x"}) >= 0 && find_field(fields, {"axis_x"}) >= 0)
+            return SkeletonFormat::kQsmCsv;
         const Columns columns(fields);
         if (!columns.has_node() || columns.parent < 0) return SkeletonFormat::kNone;
         // A node table names its parent column plainly or has ids; a tree file has neither.
@@ -292,12 +237,14 @@ Tree read_skeleton(const std::string& path, UpAxis up) {
             return read_skeleton_ply(path, up);
         case SkeletonFormat::kNodeCsv:
             return read_node_csv(path, up);
+        case SkeletonFormat::kQsmCsv:
+            return read_qsm_csv(path, up);
         case SkeletonFormat::kNone:
             break;
     }
-    throw Error(
-        "'" + path +
-        "' is no skeleton that can be read: a tree file (.txt), a skeleton PLY or a table of nodes (.csv).");
+    throw Error("'" + path +
+                "' is no skeleton that can be read: a tree file (.txt), a skeleton PLY, a table of nodes or "
+                "of cylinders (.csv).");
 }
 
 }  // namespace treerec

@@ -24,6 +24,9 @@ Tree read_treefile(const std::string& path, UpAxis up = UpAxis::kZ);
 // One cylinder per segment, parents first, with TreeQSM's columns: radius, length, start_x.., axis_x..,
 // parent_1based (0: none), branch (from 1), order (trunk 0), and measured (1: the radius was fitted).
 void write_qsm_csv(const std::string& path, const Tree& tree);
+// Reads these columns in any order, with or without order and measured. Each cylinder ends in a node and
+// hangs on its parent's end, so that a gap between the two is bridged.
+Tree read_qsm_csv(const std::string& path, UpAxis up = UpAxis::kZ);
 
 // Vertices (x y z radius: double, flags: uchar), edges (vertex1 the parent, vertex2 the child: int); binary
 // little endian. Read in any of PLY's three encodings, with more properties or elements.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -214,6 +216,37 @@ TEST_F(TreeFiles, QsmCylindersJoinUp) {
     }
     EXPECT_EQ(ends.size(), tree.size());
     EXPECT_GT(length, 1.0);
+}
+
+TEST_F(TreeFiles, QsmCylindersReadBackAsTheTree) {
+    const Tree tree = random_tree(9, 200, utm_frame());
+    write_qsm_csv(path("q.csv"), tree);
+    EXPECT_TRUE(is_skeleton_file(path("q.csv")));
+    const Tree read = read_skeleton(path("q.csv"));
+    EXPECT_EQ(read.check().value_or("sound"), "sound");
+    ASSERT_EQ(read.size(), tree.size());
+    // Branches come one after the other in the file: compare places, not the order.
+    const auto places = [](const Tree& t) {
+        std::vector<std::array<double, 4>> rows;
+        for (NodeId id : t.depth_first()) {
+            if (t.node(id).parent == kNoNode) continue;
+            const DVec3 p = t.frame().to_scan(t.node(id).position);
+            rows.push_back({p.x, p.y, p.z, t.node(id).radius});
+        }
+        std::sort(rows.begin(), rows.end());
+        return rows;
+    };
+    const auto a = places(tree), b = places(read);
+    for (size_t i = 0; i < a.size(); i++)
+        for (int k = 0; k < 4; k++)
+            EXPECT_NEAR(a[i][k], b[i][k], 2e-9 * std::abs(a[i][k]) + 1e-9);
+    EXPECT_THROW(read_qsm_csv(put("a.csv", "radius,length\n1,2\n")), Error);
+    const std::string head = "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent_1based\n";
+    EXPECT_THROW(read_qsm_csv(put("b.csv", head)), Error);
+    EXPECT_THROW(read_qsm_csv(put("c.csv", head + "1,1,0,0,0,0,0,1,1\n")), Error);
+    EXPECT_THROW(read_qsm_csv(put("d.csv", head + "1,1,0,0,0,0,0,1,0\n1,1,0,0,0,0,0,1,7\n")), Error);
+    EXPECT_THROW(read_qsm_csv(put("e.csv", head + "1,1,0,0,0,0,0,1\n")), Error);
+    EXPECT_EQ(read_qsm_csv(put("f.csv", head + "1,1,0,0,0,0,0,1,0\n1,1,0,0,1,0,0,1,1\n")).size(), 3u);
 }
 
 TEST_F(TreeFiles, HostileTextGetsASentence) {
