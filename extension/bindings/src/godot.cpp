@@ -84,9 +84,10 @@ Object* get_singleton(const StringName& p_name) {
     if (owner == nullptr) {
         return nullptr;
     }
+    Object* singleton = get_object_instance_binding(owner);  // Not under the lock, which intern() takes too.
     const std::lock_guard lock(cache_mutex);
     singletons.push_back(owner);
-    return get_object_instance_binding(owner);
+    return singleton;
 }
 
 }  // namespace internal
