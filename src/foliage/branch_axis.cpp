@@ -19,6 +19,28 @@ DVec3 direction_between(const DVec3& before, double before_length, const DVec3& 
     return normalized_or(before * after_length + after * before_length, after);
 }
 
+// How a branch leaves its parent. A stout one first goes the parent's way and then bends off, as limbs of a
+// fork do; a thin one grows straight out.
+struct Departure {
+    DVec3 direction{0.0};
+    double share = 0.0;  // how much of `direction` the branch takes, 0..1
+    double reach = 0.0;  // metres: how far it is felt
+};
+
+Departure departure_of(const Tree& tree, const BranchList& list, const Branch& branch, const DVec3& chord) {
+    Departure departure;
+    if (branch.attach == kNoNode) return departure;
+    const Node& attach = tree.node(branch.attach);
+    if (attach.parent == kNoNode) return departure;
+    departure.direction =
+        normalized_or(attach.position - tree.node(attach.parent).position, DVec3(0.0, 1.0, 0.0));
+    const double stoutness = tree.node(list.nodes[branch.begin]).radius / attach.radius;
+    const double agreement = glm::dot(departure.direction, chord);
+    departure.share = glm::smoothstep(0.25, 0.7, stoutness) * glm::smoothstep(-0.1, 0.5, agreement);
+    departure.reach = 4.0 * attach.radius;
+    return departure;
+}
+
 }  // namespace
 
 void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch, double least,
@@ -48,6 +70,7 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
     double length = glm::length(chord);
     chord /= length;
     DVec3 start_direction = chord;
+    const Departure departure = departure_of(tree, list, branch, chord);
     double along = 0.0;
     bool first = true;
     while (true) {
@@ -63,7 +86,13 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
         DVec3 end_direction = more ? direction_between(chord, length, next_chord, next_length)
                                    : normalized_or(1.5 * chord - 0.5 * start_direction, chord);
         if (first) start_direction = normalized_or(1.5 * chord - 0.5 * end_direction, chord);
-        if (first) points.push_back({from.position, start_direction, from.radius, 0.0});
+        double start_speed = length;
+        if (first) {
+            start_direction = normalized_or(
+                start_direction + (departure.direction - start_direction) * departure.share, chord);
+            start_speed += (std::min(length, departure.reach) - length) * departure.share;
+            points.push_back({from.position, start_direction, from.radius, 0.0});
+        }
         first = false;
         const double bend = std::acos(std::clamp(glm::dot(start_direction, chord), -1.0, 1.0)) +
                             std::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
@@ -72,7 +101,7 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
             AxisPoint point{to.position, end_direction, to.radius, 0.0};
             if (i < pieces) {
                 const double t = static_cast<double>(i) / pieces, t2 = t * t, t3 = t2 * t;
-                const DVec3 m0 = start_direction * length, m1 = end_direction * length;
+                const DVec3 m0 = start_direction * start_speed, m1 = end_direction * length;
                 point.position = (2.0 * t3 - 3.0 * t2 + 1.0) * from.position + (t3 - 2.0 * t2 + t) * m0 +
                                  (3.0 * t2 - 2.0 * t3) * to.position + (t3 - t2) * m1;
                 point.direction =
