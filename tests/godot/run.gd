@@ -114,6 +114,8 @@ func _judge(title: String, test: Suite, started: int) -> void:
 
 
 func _remove(folder: String) -> void:
+	if not DirAccess.dir_exists_absolute(folder):
+		return
 	for file: String in DirAccess.get_files_at(folder):
 		DirAccess.remove_absolute(folder.path_join(file))
 	DirAccess.remove_absolute(folder)

@@ -76,13 +76,17 @@ static func skeleton(nodes: Array[Array]) -> Dictionary:
 		"format_version": TreeReconstruction.FORMAT_VERSION,
 		"ids": ids,
 		"parents": parents,
-		"positions": positions,
-		"radii": radii,
+		"positions": bits(positions),
+		"radii": bits(radii),
 		"flags": flags,
-		"origin": PackedFloat64Array([443210.25, 5431234.5, 312.125]),
-		"metres_per_unit": 1.0,
+		"frame": bits(PackedFloat64Array([443210.25, 5431234.5, 312.125, 1.0])),
 		"up_axis": "z",
 	}
+
+
+## Doubles as a skeleton stores them.
+static func bits(numbers: PackedFloat64Array) -> PackedInt64Array:
+	return numbers.to_byte_array().to_int64_array()
 
 
 ## A random tree that forks, about 4 m tall, with some `count` nodes.

@@ -80,8 +80,15 @@ func test_refuses_damaged_skeletons() -> void:
 		spoilt.append(bad)
 	for number: float in [NAN, INF, -1.0, 0.0]:
 		var bad: Dictionary = good.duplicate(true)
-		bad["radii"] = PackedFloat64Array([0.1, number, 0.1])
+		bad["radii"] = bits(PackedFloat64Array([0.1, number, 0.1]))
 		spoilt.append(bad)
+	for place: int in 4:
+		for number: float in [NAN, INF, -INF]:
+			var bad: Dictionary = good.duplicate(true)
+			var frame: PackedFloat64Array = [0.0, 0.0, 0.0, 1.0]
+			frame[place] = number
+			bad["frame"] = bits(frame)
+			spoilt.append(bad)
 	expect_error(".")
 	for bad: Dictionary in spoilt:
 		var made: TreeReconstruction = TreeReconstruction.new()
