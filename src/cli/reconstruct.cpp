@@ -67,6 +67,8 @@ void print_summary(const Reconstruction& result, const std::vector<std::string>&
     else
         std::printf("no stem at breast height, ");
     std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
+    std::printf("%.0f %% of the points lie within 2 cm of the bark, half within %.1f mm\n",
+                100.0 * result.fit.explained_2cm, result.fit.median_mm);
     for (const std::string& out : outs)
         std::printf("wrote %s\n", out.c_str());
     std::printf("%.1f s\n", seconds);

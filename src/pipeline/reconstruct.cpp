@@ -1,6 +1,8 @@
 #include "pipeline/reconstruct.h"
 
 #include <chrono>
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "error.h"
@@ -13,10 +15,15 @@ namespace {
 constexpr double kReadEnd = 0.10;
 constexpr double kOrientEnd = 0.15;
 constexpr double kCleanEnd = 0.30;
+constexpr double kSkeletonEnd = 0.97;
+
+// Below this share of explained points the user is told.
+constexpr double kLeastExplained = 0.25;
 
 class StageClock {
   public:
     explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
+    void restart() { start_ = Clock::now(); }
     void stop(const char* name, size_t count) {
         const Clock::time_point now = Clock::now();
         stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
@@ -70,7 +77,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     clock.stop("Clean", result.cloud.size());
     cleaning.check();
 
-    SubProgress growing(progress, kCleanEnd, 1.0);
+    SubProgress growing(progress, kCleanEnd, kSkeletonEnd);
     SkeletonResult skeleton = skeletonize(result.cloud, options.skeleton, &growing);
     growing.check();
     append(result.warnings, skeleton.warnings);
@@ -82,6 +89,16 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     if (result.tree.size() < 2)
         throw Error("No tree was found in '" + path + "': nothing in it looks like wood.");
     rebase_cloud(result.cloud, result.tree.frame());
+
+    clock.restart();
+    SubProgress scoring(progress, kSkeletonEnd, 1.0);
+    result.fit = score_scan(result.tree, result.cloud, 0.0, &scoring);
+    if (result.fit.explained_2cm < kLeastExplained)
+        result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
+                                  " % of the points lie within 2 cm of the wood that was found. Is it a "
+                                  "single tree, without leaves, "
+                                  "and are its units right?");
+    clock.stop("Score", result.cloud.size());
     return result;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "foliage/leaves.h"
+#include "fidelity/score.h"
 #include "pipeline/export.h"
 #include "progress.h"
 #include "scan/clean_cloud.h"
@@ -25,7 +25,7 @@ struct ReconstructOptions {
 };
 
 struct StageTime {
-    std::string name;  // "Read", "Orient", "Clean", and the skeletonizer's own
+    std::string name;  // "Read", "Orient", "Clean", the skeletonizer's own, "Score"
     double milliseconds = 0.0;
     size_t count = 0;  // points or nodes after the stage
 };
@@ -39,6 +39,7 @@ struct Reconstruction {
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;
+    ScanScore fit;  // of the tree to the cleaned cloud
     std::vector<StageTime> stages;
     std::vector<std::string> warnings;  // of all stages, in order
 };

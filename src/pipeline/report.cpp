@@ -111,6 +111,10 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     add_measurements(json, result.tree);
     json["triangles"] = details.triangles;
     json["leaves"] = details.leaf_count;
+    json["fit"] = {{"median_mm", result.fit.median_mm},
+                   {"mean_mm", result.fit.mean_mm},
+                   {"p95_mm", result.fit.p95_mm},
+                   {"explained_2cm", result.fit.explained_2cm}};
     json["warnings"] = result.warnings;
     return dump(json);
 }

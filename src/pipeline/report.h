@@ -24,6 +24,7 @@ struct ReportDetails {
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
 //   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null if there is no wood at breast
 //   height), stems, crown_radius_m, crown_base_m, length_m, volume_m3, measured_share, triangles, leaves
+//   fit {median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark (fidelity/score.h)
 //   warnings [sentence]
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
