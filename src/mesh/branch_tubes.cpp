@@ -37,8 +37,9 @@ struct Tube {
     uint32_t rings = 0;  // 0: not drawn
     uint32_t sides = 0;
     bool round_tip = false;
-    double exit = 0.0;           // metres along, where it leaves its parent's bark; 0 for the trunk
-    double parent_radius = 0.0;  // metres, 0 for the trunk
+    double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
+    double parent_radius = 0.0;   // metres, 0 for the trunk
+    DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
     size_t first_vertex = 0;
     size_t first_index = 0;
 
@@ -305,6 +306,7 @@ void Builder::seat(size_t index) {
     const double hidden = 0.92 * std::cos(kPi / parent.sides) * radius;
     Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
     start.centre = lower->centre + chord * t;
+    tubes[index].parent_direction = normalized_or(chord, DVec3(0.0, 1.0, 0.0));
     start.radius = std::max(std::min(start.radius, hidden), least);
 }
 
@@ -348,6 +350,12 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
                     phase, static_cast<float>(light));
     };
+    // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.
+    const auto blend_at = [&](const Ring& ring) {
+        if (tube.parent_radius <= 0.0 || options.level > 0 || run[1].radius < kCollarRadius) return 0.0;
+        const double past = (ring.along - tube.exit) / (1.5 * run[1].radius);
+        return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
+    };
     DVec3 normal = run[0].normal;
     DVec3 x = any_perpendicular(normal);
     for (size_t i = 0; i < count; i++) {
@@ -364,11 +372,19 @@ void Builder::emit(size_t index, Mesh& mesh) const {
             (after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0, 1.0);
         const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
         const Vec4 color = color_at(ring.centre, ring.along);
+        const double blend = i == 0 ? 0.0 : blend_at(ring);
         for (uint32_t j = 0; j <= sides; j++) {
             const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            const DVec3 tangent = y * circle[j].x - x * circle[j].y;
-            put(ring.centre + radial * ring.radius, (radial - normal * slope) * scale, tangent,
-                repeats * j / sides, ring.along, color);
+            const DVec3 position = ring.centre + radial * ring.radius;
+            DVec3 tangent = y * circle[j].x - x * circle[j].y;
+            DVec3 outward = (radial - normal * slope) * scale;
+            if (blend > 0.0) {
+                const DVec3 from = position - run[0].centre;
+                const DVec3 bark = from - tube.parent_direction * glm::dot(from, tube.parent_direction);
+                outward = normalized_or(outward + normalized_or(bark, outward) * blend, outward);
+                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
+            }
+            put(position, outward, tangent, repeats * j / sides, ring.along, color);
         }
     }
     // The tip: a dome, or a point as high as the tip is wide.
