@@ -27,7 +27,7 @@ struct Departure {
     double reach = 0.0;  // metres: how far it is felt
 };
 
-Departure departure_of(const Tree& tree, const BranchList& list, const Branch& branch, const DVec3& chord) {
+Departure departure_of(const Tree& tree, const BranchList& list, const Branch& branch) {
     Departure departure;
     if (branch.attach == kNoNode) return departure;
     const Node& attach = tree.node(branch.attach);
@@ -35,7 +35,8 @@ Departure departure_of(const Tree& tree, const BranchList& list, const Branch& b
     departure.direction =
         normalized_or(attach.position - tree.node(attach.parent).position, DVec3(0.0, 1.0, 0.0));
     const double stoutness = tree.node(list.nodes[branch.begin]).radius / attach.radius;
-    const double agreement = glm::dot(departure.direction, chord);
+    const DVec3 own = tree.node(list.nodes[branch.begin]).position - attach.position;
+    const double agreement = glm::dot(departure.direction, normalized_or(own, departure.direction));
     departure.share = glm::smoothstep(0.25, 0.7, stoutness) * glm::smoothstep(-0.1, 0.5, agreement);
     departure.reach = 4.0 * attach.radius;
     return departure;
@@ -47,6 +48,9 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
                  std::vector<AxisPoint>& points) {
     points.clear();
     const std::span<const NodeId> nodes = list.nodes_of(branch);
+    const Departure departure = departure_of(tree, list, branch);
+    // The bend of a stout branch needs room: the first knot lies out of the parent's wood.
+    double room = 0.3 * departure.share * departure.reach;
     const NodeId start = branch.attach != kNoNode ? branch.attach : nodes[0];
     size_t next_node = branch.attach != kNoNode ? 0 : 1;
     Knot from{tree.node(start).position, tree.node(nodes[0]).radius}, to{};
@@ -54,12 +58,13 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
     const auto next_knot = [&](const Knot& last_knot, Knot& knot) {
         while (next_node < nodes.size()) {
             const Node& node = tree.node(nodes[next_node++]);
-            const double apart = std::max(0.25 * std::min(last_knot.radius, node.radius), least);
+            const double apart = std::max({0.25 * std::min(last_knot.radius, node.radius), room, least});
             const bool last = next_node == nodes.size();
             if (glm::distance(node.position, last_knot.position) <= (last ? least : apart)) continue;
             // Just below the tip, the tip stands for both.
             if (!last && glm::distance(node.position, tip) <= apart) continue;
             knot = {node.position, node.radius};
+            room = 0.0;
             return true;
         }
         return false;
@@ -70,7 +75,6 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
     double length = glm::length(chord);
     chord /= length;
     DVec3 start_direction = chord;
-    const Departure departure = departure_of(tree, list, branch, chord);
     double along = 0.0;
     bool first = true;
     while (true) {
