@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kBendPerPoint = 0.14;  // radians
 constexpr int kMostPieces = 8;
+constexpr double kTwigRadius = 0.015;  // metres; below it nobody sees how a twig leaves another
 
 struct Knot {
     DVec3 position;
@@ -31,7 +32,7 @@ Departure departure_of(const Tree& tree, const BranchList& list, const Branch& b
     Departure departure;
     if (branch.attach == kNoNode) return departure;
     const Node& attach = tree.node(branch.attach);
-    if (attach.parent == kNoNode) return departure;
+    if (attach.parent == kNoNode || attach.radius < kTwigRadius) return departure;
     departure.direction =
         normalized_or(attach.position - tree.node(attach.parent).position, DVec3(0.0, 1.0, 0.0));
     const double stoutness = tree.node(list.nodes[branch.begin]).radius / attach.radius;
