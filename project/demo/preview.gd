@@ -112,7 +112,7 @@ func _draw(instance: TreeInstance3D) -> bool:
 			stages
 		),
 		Studio.make_world(
-			[_shape(Plots.segments(raw, false), Plots.line_material(1.6), stages)], stages
+			[_shape(Plots.segments(raw, false), Plots.line_material(1.3), stages)], stages
 		),
 		Studio.make_world(_pruned(stages), stages),
 		Studio.make_world([_bark_of(instance)], stages),
@@ -166,7 +166,7 @@ func _shape(mesh: ArrayMesh, material: ShaderMaterial, framing: Studio.Framing) 
 	shape.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
 	# What is further away is paler, which tells near twigs from far ones.
 	material.set_shader_parameter(&"fade", 0.45)
-	material.set_shader_parameter(&"fade_color", Color(0.78, 0.81, 0.83))
+	material.set_shader_parameter(&"fade_color", Color(0.68, 0.72, 0.745))
 	var near: float = framing.distance - framing.reach * 0.6
 	material.set_shader_parameter(&"fade_range", Vector2(near, near + framing.reach * 1.2))
 	return shape

@@ -46,7 +46,7 @@ static func make_world(contents: Array, framing: Framing) -> SubViewport:
 	var fill: DirectionalLight3D = DirectionalLight3D.new()
 	fill.rotation_degrees = Vector3(-15.0, -110.0, 0.0)
 	fill.light_color = Color(0.82, 0.89, 1.0)
-	fill.light_energy = 0.1
+	fill.light_energy = 0.28
 	viewport.add_child(fill)
 	var floor_mesh: PlaneMesh = PlaneMesh.new()
 	floor_mesh.size = Vector2.ONE * framing.reach * 5.0
@@ -127,7 +127,7 @@ static func _environment() -> Environment:
 	environment.sky = sky
 	environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
 	environment.ambient_light_color = Color(0.80, 0.86, 0.95)
-	environment.ambient_light_energy = 0.36
+	environment.ambient_light_energy = 0.4
 	environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
 	environment.tonemap_mode = Environment.TONE_MAPPER_LINEAR
 	return environment

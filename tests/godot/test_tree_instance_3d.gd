@@ -207,5 +207,8 @@ func test_the_mesh_has_room_for_the_wind() -> void:
 	var instance: TreeInstance3D = _instance(grown_tree(2))
 	await _settle(instance)
 	var box: AABB = instance.reconstruction.get_aabb()
-	check((instance.mesh as ArrayMesh).custom_aabb.encloses(box.grow(0.05 * box.size.y)), "The box is too tight.")
+	check(
+		(instance.mesh as ArrayMesh).custom_aabb.encloses(box.grow(0.05 * box.size.y)),
+		"The box is too tight."
+	)
 	instance.free()
