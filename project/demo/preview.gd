@@ -1,6 +1,6 @@
 extends SceneTree
-## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its four
-## sides. Needs a window (xvfb-run will do):
+## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its
+## four sides. Needs a window (xvfb-run will do):
 ##
 ##     godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER
 ##         [--seed N] [--leaves PRESET]
