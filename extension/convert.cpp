@@ -197,7 +197,7 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
         for (size_t i = 0; i < count; i++) {
             points.emplace_back(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
         }
-        const std::vector<NodeId> node_ids(ids.begin(), ids.end());
+        const std::vector<NodeId> node_ids(ids.ptr(), ids.ptr() + count);
         tree = treerec::Tree::from_arrays(places_of_parents(ids, parents), points, radii,
                                           std::vector<uint8_t>(flags.ptr(), flags.ptr() + count), &node_ids);
     }
