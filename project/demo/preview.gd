@@ -14,6 +14,7 @@ const Studio: GDScript = preload("./studio.gd")
 const _WIDTH: int = 2000
 const _STAGE_HEIGHT: int = 600
 const _VIEW_HEIGHT: int = 640
+const _BREAST_HEIGHT: float = 1.3
 const _YAWS: Array[float] = [PI / 2, 0.0, -PI / 2, PI]
 const _VIEW_NAMES: Array[String] = ["+X", "+Z", "−X", "−Z"]
 
@@ -201,20 +202,23 @@ func _bark_of(instance: TreeInstance3D) -> MeshInstance3D:
 	return bark
 
 
+# Bases and tips of some leaves.
 func _leaf_places(instance: TreeInstance3D) -> PackedVector3Array:
 	var places: PackedVector3Array = PackedVector3Array()
 	if instance.get_leaf_count() == 0:
 		return places
 	var buffer: PackedFloat32Array = _tree.build_leaf_buffer(0)
-	for i: int in range(0, buffer.size(), 20 * 16):
-		places.append(Vector3(buffer[i + 3], buffer[i + 7], buffer[i + 11]))
+	for i: int in range(0, buffer.size(), 20 * 4):
+		var base: Vector3 = Vector3(buffer[i + 3], buffer[i + 7], buffer[i + 11])
+		places.append(base)
+		places.append(base + Vector3(buffer[i + 1], buffer[i + 5], buffer[i + 9]))
 	return places
 
 
 func _heading(measures: Dictionary, instance: TreeInstance3D) -> String:
 	var parts: PackedStringArray = []
 	parts.append("%.1f m tall" % measures["height"])
-	if measures["dbh"] > 0.0:
+	if measures["dbh"] > 0.0 and measures["height"] > _BREAST_HEIGHT:
 		parts.append("%.1f cm at breast height" % (measures["dbh"] * 100.0))
 	parts.append("%s triangles" % _grouped(instance.get_triangle_count()))
 	parts.append("rendered by Godot %s" % Engine.get_version_info()["string"].get_slice("-", 0))
