@@ -17,10 +17,14 @@ constexpr size_t kLeastPoints = 8;
 constexpr size_t kMostPoints = 100;
 constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
 constexpr double kMostSpread = 0.12;    // median residual over radius
+constexpr double kLeastArc = 0.31;      // the same for one that is seen from one side
+constexpr double kArcSpread = 0.03;
 constexpr double kMostInside = 0.08;    // share of points well inside: a crown, not a stem
 constexpr double kRingCoverage = 0.85;  // the same for closed sections that are not round
 constexpr double kRingInside = 0.04;
 constexpr double kRingSpread = 0.33;
+constexpr double kEndCut = 1.5;      // radii: so near to an end, no circle is whole
+constexpr double kEndStretch = 3.0;  // radii: so far a fitted stretch is continued to an end
 constexpr int kSmoothings = 3;
 
 // One limb while its axis is fitted.
@@ -28,7 +32,12 @@ class LimbFitter {
   public:
     LimbFitter(const Limb& limb, const Slices& slices, const std::vector<Vec3>& points,
                const LocalScale& scale, const AxisOptions& options, uint64_t stream)
-        : slices_(slices), points_(points), options_(options), stream_(stream), count_(limb.slices.size()) {
+        : slices_(slices),
+          points_(points),
+          options_(options),
+          stream_(stream),
+          is_first_(limb.parent < 0),
+          count_(limb.slices.size()) {
         collect(limb);
         start_.resize(count_);
         spacing_.assign(count_, 0.0);
@@ -57,6 +66,7 @@ class LimbFitter {
                 measure_arc();
             }
         soft_radii();
+        finish_ends();
         return std::move(stations_);
     }
 
@@ -136,9 +146,12 @@ class LimbFitter {
         };
         const std::optional<CircleFit> circle =
             fit_circle(flat, 3.0 * extent, Random(options_.seed, hash_seed(stream_, i)));
-        if (circle && plausible(*circle) && circle->coverage >= kLeastCoverage &&
-            circle->inside <= kMostInside && circle->spread <= kMostSpread * circle->radius)
-            return circle;
+        // The less of a circle is seen, the closer the points must keep to it.
+        if (circle && plausible(*circle) && circle->inside <= kMostInside) {
+            const double spread = circle->spread / circle->radius;
+            if (circle->coverage >= kLeastCoverage && spread <= kMostSpread) return circle;
+            if (circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
+        }
         const std::optional<CircleFit> ring = fit_ring(flat);
         if (ring && plausible(*ring) && ring->coverage >= kRingCoverage && ring->inside <= kRingInside &&
             ring->spread <= kRingSpread * ring->radius && ring->radius <= options_.widest_ring)
@@ -166,7 +179,7 @@ class LimbFitter {
                 fitted++;
                 if (std::abs(stations_[j].radius - stations_[i].radius) < 0.25 * stations_[i].radius) alike++;
             }
-            stations_[i].measured = fitted >= 1 && 2 * alike >= fitted;
+            stations_[i].measured = alike >= options_.confirmations && 2 * alike >= fitted;
         }
         for (size_t i = 0; i < count_; i++)
             if (!stations_[i].measured) centres_[i].reset();
@@ -204,11 +217,13 @@ class LimbFitter {
             stations_[i].position = position[i];
     }
 
-    static void smooth(std::vector<DVec3>& line) {
+    // Evens out what chance did to the slices; ends and both sides of a gap stay where they are.
+    void smooth(std::vector<DVec3>& line) const {
         std::vector<DVec3> next = line;
         for (int round = 0; round < kSmoothings; round++) {
             for (size_t i = 1; i + 1 < line.size(); i++)
-                next[i] = 0.25 * line[i - 1] + 0.5 * line[i] + 0.25 * line[i + 1];
+                if (!stations_[i].bridged && !stations_[i + 1].bridged)
+                    next[i] = 0.25 * line[i - 1] + 0.5 * line[i] + 0.25 * line[i + 1];
             line.swap(next);
             next = line;
         }
@@ -233,10 +248,59 @@ class LimbFitter {
         }
     }
 
+    // The slices at the ends of a limb are cut off: half rings, whose centres lie beside the axis. So the
+    // ends continue the nearest fitted stretch straight on, and a tip reaches as far as its points do.
+    void finish_ends() {
+        measure_arc();
+        size_t first = 0;
+        while (first < count_ &&
+               !(stations_[first].measured && arc_[first] >= kEndCut * stations_[first].radius))
+            first++;
+        if (first < count_ && is_first_) straighten(first, -1);
+        size_t last = count_;
+        while (last > 0 && !(stations_[last - 1].measured &&
+                             arc_[count_ - 1] - arc_[last - 1] >= kEndCut * stations_[last - 1].radius))
+            last--;
+        if (last > 0) straighten(last - 1, 1);
+        if (count_ < 2) return;
+        Station& tip = stations_[count_ - 1];
+        measure_arc();
+        const DVec3 ahead = direction(count_ - 1, std::max(2.0 * tip.radius, 4.0 * spacing_[count_ - 1]));
+        double reach = 0.0;
+        for (size_t m = begin_[count_ - 1]; m < own_[count_ - 1]; m++)
+            reach = std::max(reach, glm::dot(DVec3(points_[members_[m]]) - tip.position, ahead));
+        tip.position += reach * ahead;
+    }
+
+    // Lays the stations from `end` outward (step 1: to the tip, -1: to the base) on the line through the
+    // fitted stretch before, if they are near.
+    void straighten(size_t end, int step) {
+        const Station anchor = stations_[end];
+        const size_t outermost = step > 0 ? count_ - 1 : 0;
+        if (end == outermost || std::abs(arc_[outermost] - arc_[end]) > kEndStretch * anchor.radius) return;
+        size_t back = end;
+        while (back != count_ - 1 - outermost &&
+               std::abs(arc_[back] - arc_[end]) < 2.0 * kEndStretch * anchor.radius &&
+               stations_[back].measured)
+            back = static_cast<size_t>(static_cast<ptrdiff_t>(back) - step);
+        const DVec3 outward = normalized_or(anchor.position - stations_[back].position, DVec3(0.0));
+        // A base beside this line is shared with other stems.
+        const DVec3 aside = start_[outermost] - anchor.position;
+        if (glm::length(aside - glm::dot(aside, outward) * outward) > 1.5 * anchor.radius) return;
+        double reach = 0.0;
+        for (size_t i = end; i != outermost;) {
+            i = static_cast<size_t>(static_cast<ptrdiff_t>(i) + step);
+            reach = std::max(reach, glm::dot(start_[i] - anchor.position, outward));
+            stations_[i].position = anchor.position + reach * outward;
+            stations_[i].radius = anchor.radius;
+        }
+    }
+
     const Slices& slices_;
     const std::vector<Vec3>& points_;
     const AxisOptions& options_;
     uint64_t stream_;
+    bool is_first_;
     size_t count_;
     std::vector<size_t> begin_;  // members_ of station i: begin_[i] .. begin_[i + 1]
     std::vector<size_t> own_;    // the part before own_[i] is the station's own slice

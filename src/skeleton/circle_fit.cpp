@@ -24,7 +24,7 @@ std::optional<CircleFit> circle_through(const DVec2& a, const DVec2& b, const DV
     const double cross = u.x * v.y - u.y * v.x;
     const double uu = glm::dot(u, u);
     const double vv = glm::dot(v, v);
-    if (std::abs(cross) < 1e-9 * (uu + vv)) return std::nullopt;
+    if (!(std::abs(cross) > 1e-9 * (uu + vv))) return std::nullopt;
     const DVec2 offset = DVec2(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / (2.0 * cross);
     CircleFit fit;
     fit.centre = a + offset;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <numeric>
+#include <queue>
+#include <span>
+#include <utility>
 
 namespace treerec {
 
@@ -14,6 +16,8 @@ constexpr double kSurfaceMargin = 1.0;   // and so many point spacings more: a s
 constexpr double kSparseBranch = 3.0;    // point spacings that a branch must at least reach out
 constexpr double kWoodLinearity = 0.45;  // mean linearity of a limb's points: no leaves above,
 constexpr double kLeafLinearity = 0.30;  // nothing but leaves below
+constexpr double kStrayWood = 0.2;       // of a gap: with less wood beyond it, that is stray points
+constexpr int kSameFork = 5;             // stations
 constexpr int kSmoothWindow = 2;         // stations to each side
 
 // First figures for each slice, before any fit.
@@ -45,8 +49,10 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
         shape.radius[s] = sum / members;
         shape.spacing[s] = spacing / members;
         const size_t p = static_cast<size_t>(slices.parent[s]);
-        shape.longest[p] =
-            std::max(shape.longest[p], shape.longest[s] + glm::distance(slices.centre[s], slices.centre[p]));
+        const double step = glm::distance(slices.centre[s], slices.centre[p]);
+        if (slices.bridged[s] && wood[s] < kStrayWood * step) continue;  // stray points
+        wood[p] += wood[s] + step;
+        shape.longest[p] = std::max(shape.longest[p], shape.longest[s] + step);
         shape.next_sibling[s] = shape.first_child[p];
         shape.first_child[p] = static_cast<int32_t>(s);
     }
@@ -107,7 +113,7 @@ int nearest_station(const LimbAxis& axis, int station, const DVec3& p) {
 }
 
 // How long a limb along `chain` must be to count.
-double required_length(const std::vector<int32_t>& chain, const Slices& slices, const LimbOptions& options) {
+double required_length(std::span<const int32_t> chain, const Slices& slices, const LimbOptions& options) {
     if (options.linearity.empty() || options.leafy_branch <= options.minimum_branch)
         return options.minimum_branch;
     double sum = 0.0;
@@ -122,113 +128,182 @@ double required_length(const std::vector<int32_t>& chain, const Slices& slices, 
     return options.minimum_branch + leafy * (options.leafy_branch - options.minimum_branch);
 }
 
+// A chain that may become a limb.
 struct Candidate {
+    double length;  // metres from its first slice to its tip
     int32_t slice;
     int32_t limb;
     int32_t station;
+
+    // The longest comes first, so that a strip of bark meets the limb it belongs to.
+    bool operator<(const Candidate& other) const {
+        return length != other.length ? length < other.length : slice > other.slice;
+    }
 };
 
-}  // namespace
+// A chain laid along a limb's axis.
+struct Fit {
+    std::vector<int32_t> stations;  // of the limb, nearest to each slice of the chain
+    size_t inside = 0;              // so many slices from the chain's base lie on the limb's own surface
+    bool starts_on = false;         // the first slice lies on the limb's surface
+    bool grows_out = false;
+    int32_t attach = 0;
+};
 
-std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
-                             const LimbOptions& options) {
-    const SliceShape shape = measure_slices(slices, points, scale);
-    auto main_child = [&](int32_t slice) {
+class LimbFinder {
+  public:
+    LimbFinder(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
+               const LimbOptions& options)
+        : slices_(slices), options_(options), shape_(measure_slices(slices, points, scale)) {}
+
+    std::vector<Limb> run() {
+        Limb first;
+        first.slices = chain_from(0);
+        add_limb(std::move(first));
+        while (!waiting_.empty()) {
+            const Candidate candidate = waiting_.top();
+            waiting_.pop();
+            place(candidate);
+        }
+        return std::move(limbs_);
+    }
+
+  private:
+    int32_t main_child(int32_t slice) const {
         int32_t best = -1;
         double best_length = -1.0;
-        for (int32_t c = shape.first_child[slice]; c >= 0; c = shape.next_sibling[c]) {
-            const double length = shape.longest[c] + glm::distance(slices.centre[c], slices.centre[slice]);
+        for (int32_t c = shape_.first_child[slice]; c >= 0; c = shape_.next_sibling[c]) {
+            const double length = shape_.longest[c] + glm::distance(slices_.centre[c], slices_.centre[slice]);
             if (length > best_length) {
                 best_length = length;
                 best = c;
             }
         }
         return best;
-    };
-    auto chain_from = [&](int32_t slice) {
+    }
+
+    std::vector<int32_t> chain_from(int32_t slice) const {
         std::vector<int32_t> chain;
         for (; slice >= 0; slice = main_child(slice))
             chain.push_back(slice);
         return chain;
-    };
+    }
 
-    std::vector<Limb> limbs;
-    std::deque<Candidate> waiting;
-    // Puts the side chains of chain[begin..end) on the waiting list of `limb`.
-    auto side_chains = [&](const std::vector<int32_t>& chain, size_t begin, size_t end, int32_t limb,
-                           const std::vector<int32_t>& at) {
-        for (size_t i = begin; i < end; i++) {
+    // Puts the side chains of the chain's first `end` slices on the waiting list of `limb`.
+    void await_sides(std::span<const int32_t> chain, size_t end, int32_t limb,
+                     const std::vector<int32_t>& stations) {
+        for (size_t i = 0; i < end; i++) {
             const int32_t next = i + 1 < chain.size() ? chain[i + 1] : -1;
-            for (int32_t c = shape.first_child[chain[i]]; c >= 0; c = shape.next_sibling[c])
-                if (c != next) waiting.push_back({c, limb, at[i]});
+            for (int32_t c = shape_.first_child[chain[i]]; c >= 0; c = shape_.next_sibling[c])
+                if (c != next) waiting_.push({shape_.longest[c], c, limb, stations[i]});
         }
-    };
-    std::vector<LimbAxis> axes;
-    std::vector<int32_t> stations;
-    std::vector<double> escapes;
-    auto add_limb = [&](Limb limb) {
-        axes.push_back(smooth_axis(limb, slices, shape));
-        stations.resize(limb.slices.size());
-        std::iota(stations.begin(), stations.end(), 0);
-        limbs.push_back(std::move(limb));
-        side_chains(limbs.back().slices, 0, stations.size(), static_cast<int32_t>(limbs.size()) - 1,
-                    stations);
-    };
-    Limb first;
-    first.slices = chain_from(0);
-    add_limb(std::move(first));
+    }
 
-    while (!waiting.empty()) {
-        const Candidate candidate = waiting.front();
-        waiting.pop_front();
-        const std::vector<int32_t> chain = chain_from(candidate.slice);
-        const LimbAxis& axis = axes[candidate.limb];
-        int station = candidate.station;
+    // Makes the chain's first `end` slices part of the limb.
+    void absorb(std::span<const int32_t> chain, size_t end, int32_t limb,
+                const std::vector<int32_t>& stations) {
+        Limb& into = limbs_[limb];
+        const auto cut = static_cast<ptrdiff_t>(end);
+        into.absorbed.insert(into.absorbed.end(), chain.begin(), chain.begin() + cut);
+        into.absorbed_at.insert(into.absorbed_at.end(), stations.begin(), stations.begin() + cut);
+        await_sides(chain, end, limb, stations);
+    }
+
+    void add_limb(Limb limb) {
+        const int32_t index = static_cast<int32_t>(limbs_.size());
+        axes_.push_back(smooth_axis(limb, slices_, shape_));
+        sides_.emplace_back();
+        if (limb.parent >= 0) sides_[static_cast<size_t>(limb.parent)].push_back(index);
+        std::vector<int32_t> stations(limb.slices.size());
+        std::iota(stations.begin(), stations.end(), 0);
+        await_sides(limb.slices, stations.size(), index, stations);
+        limbs_.push_back(std::move(limb));
+    }
+
+    Fit lay_along(std::span<const int32_t> chain, int32_t limb, int32_t station) const {
+        const LimbAxis& axis = axes_[limb];
+        Fit fit;
+        fit.attach = station;
+        std::vector<double> escapes;
         double spacing = 0.0;
         double farthest = 0.0;
-        stations.clear();
-        escapes.clear();
         for (const int32_t slice : chain) {
-            const DVec3& centre = slices.centre[slice];
+            const DVec3& centre = slices_.centre[slice];
             station = nearest_station(axis, station, centre);
-            stations.push_back(station);
+            fit.stations.push_back(station);
             escapes.push_back(glm::distance(centre, axis.position[station]) - axis.surface[station]);
             farthest = std::max(farthest, escapes.back());
-            spacing += shape.spacing[slice];
+            spacing += shape_.spacing[slice];
         }
-        spacing /= static_cast<double>(chain.size());
-        const double least_escape = std::max(options.least_escape, kSparseBranch * spacing);
-        const bool grows_out = farthest >= least_escape;
-        // The part of the chain that still lies on the parent's surface belongs to the parent.
-        size_t inside = chain.size();
-        if (grows_out) {
-            inside = 0;
-            while (escapes[inside] < least_escape)
-                inside++;
-            while (inside > 0 && escapes[inside - 1] > 0.0)
-                inside--;
-        }
-        double length = 0.0;
-        if (grows_out) {
-            station = inside > 0 ? stations[inside - 1] : candidate.station;
-            length = glm::distance(slices.centre[chain[inside]], axis.position[station]) +
-                     shape.longest[chain[inside]];
-        }
-        if (length < required_length(chain, slices, options)) inside = chain.size();
-
-        Limb& parent = limbs[candidate.limb];
-        const auto cut = static_cast<ptrdiff_t>(inside);
-        parent.absorbed.insert(parent.absorbed.end(), chain.begin(), chain.begin() + cut);
-        parent.absorbed_at.insert(parent.absorbed_at.end(), stations.begin(), stations.begin() + cut);
-        side_chains(chain, 0, inside, candidate.limb, stations);
-        if (inside == chain.size()) continue;
-        Limb limb;
-        limb.parent = candidate.limb;
-        limb.attach = station;
-        limb.slices.assign(chain.begin() + cut, chain.end());
-        add_limb(std::move(limb));
+        fit.starts_on = escapes.front() <= 0.0;
+        const double least_escape =
+            std::max(options_.least_escape, kSparseBranch * spacing / static_cast<double>(chain.size()));
+        fit.grows_out = farthest >= least_escape;
+        fit.inside = chain.size();
+        if (!fit.grows_out) return fit;
+        fit.inside = 0;
+        while (escapes[fit.inside] < least_escape)
+            fit.inside++;
+        while (fit.inside > 0 && escapes[fit.inside - 1] > 0.0)
+            fit.inside--;
+        if (fit.inside > 0) fit.attach = fit.stations[fit.inside - 1];
+        return fit;
     }
-    return limbs;
+
+    void place(const Candidate& candidate) {
+        const std::vector<int32_t> whole = chain_from(candidate.slice);
+        std::span<const int32_t> chain = whole;
+        int32_t limb = candidate.limb;
+        int32_t station = candidate.station;
+        Fit fit;
+        for (;;) {
+            fit = lay_along(chain, limb, station);
+            absorb(chain, fit.inside, limb, fit.stations);
+            chain = chain.subspan(fit.inside);
+            if (chain.empty()) return;
+            // What leaves the limb may be a strip of another limb that leaves it at the same place.
+            const int32_t side = side_under(chain, limb, fit.attach);
+            if (side < 0) break;
+            limb = side;
+            station = 0;
+        }
+        const double length = glm::distance(slices_.centre[chain[0]], axes_[limb].position[fit.attach]) +
+                              shape_.longest[chain[0]];
+        if (length < required_length(chain, slices_, options_)) {
+            fit.stations.erase(fit.stations.begin(),
+                               fit.stations.begin() + static_cast<ptrdiff_t>(fit.inside));
+            absorb(chain, chain.size(), limb, fit.stations);
+            return;
+        }
+        Limb next;
+        next.parent = limb;
+        next.attach = fit.attach;
+        next.slices.assign(chain.begin(), chain.end());
+        add_limb(std::move(next));
+    }
+
+    // The side limb of `limb`, near station `attach`, on whose surface the chain starts; -1 for none.
+    int32_t side_under(std::span<const int32_t> chain, int32_t limb, int32_t attach) const {
+        for (const int32_t side : sides_[limb])
+            if (std::abs(limbs_[side].attach - attach) <= kSameFork && lay_along(chain, side, 0).starts_on)
+                return side;
+        return -1;
+    }
+
+    const Slices& slices_;
+    const LimbOptions& options_;
+    SliceShape shape_;
+    std::vector<Limb> limbs_;
+    std::vector<LimbAxis> axes_;
+    std::vector<std::vector<int32_t>> sides_;  // the limbs on each limb
+    std::priority_queue<Candidate> waiting_;
+};
+
+}  // namespace
+
+std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
+                             const LimbOptions& options) {
+    return LimbFinder(slices, points, scale, options).run();
 }
 
 }  // namespace treerec

@@ -30,8 +30,8 @@ struct LimbOptions {
 // chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of its parent's
 // surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise (AdTree, Du et
 // al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What grows on an
-// absorbed chain is tried again as a side limb of the parent. What lies beyond a gap longer than all the wood
-// behind it is left out as stray. Parents come before children.
+// absorbed chain is tried again as a side limb of the parent. What lies beyond a gap five times as long as
+// all the wood behind it is left out as stray. Parents come before children.
 std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
                              const LimbOptions& options);
 

@@ -40,10 +40,10 @@ std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& s
     return leader;
 }
 
-uint32_t farthest(const PathTree& paths) {
-    uint32_t best = 0;
-    for (uint32_t v = 1; v < paths.along.size(); v++)
-        if (paths.along[v] > paths.along[best]) best = v;
+uint32_t farthest(const PathTree& paths, const std::vector<uint8_t>& wood) {
+    uint32_t best = paths.order.front();
+    for (uint32_t v = 0; v < paths.along.size(); v++)
+        if (wood[v] && paths.along[v] > paths.along[best]) best = v;
     return best;
 }
 
@@ -71,12 +71,13 @@ double end_width(const std::vector<Vec3>& points, const DVec3& centre, double ra
     return std::sqrt(std::max(0.0, trace - glm::dot(axis, covariance * axis)) / count);
 }
 
-RootGuess root_at_end(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                      double diagonal) {
+RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood,
+                      const PointGraph& graph, const LocalScale& scale, double diagonal) {
     SubProgress silent(nullptr, 0.0, 1.0);
-    const uint32_t first = farthest(shortest_paths(graph, scale, {{0, 0.0}}, silent));
+    const uint32_t start = static_cast<uint32_t>(std::find(wood.begin(), wood.end(), 1) - wood.begin());
+    const uint32_t first = farthest(shortest_paths(graph, scale, {{start, 0.0}}, silent), wood);
     const PathTree from_first = shortest_paths(graph, scale, {{first, 0.0}}, silent);
-    const uint32_t second = farthest(from_first);
+    const uint32_t second = farthest(from_first, wood);
     const double radius = 0.04 * diagonal;
     const bool take_first =
         end_width(points, DVec3(points[first]), radius) >= end_width(points, DVec3(points[second]), radius);
@@ -103,26 +104,28 @@ RootGuess root_at_end(const std::vector<Vec3>& points, const PointGraph& graph, 
 }  // namespace
 
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale) {
-    std::vector<float> heights(points.size());
-    Bounds bounds;
-    for (size_t i = 0; i < points.size(); i++) {
-        heights[i] = points[i].y;
-        bounds.add(DVec3(points[i]));
-    }
-    const DVec3 size = bounds.size();
-    if (size.y < kLyingRatio * std::max(size.x, size.z))
-        return root_at_end(points, graph, scale, bounds.diagonal());
-
     const std::vector<uint32_t> group = linked_groups(graph, scale);
     std::vector<size_t> members(points.size(), 0);
+    std::vector<float> heights(points.size());
     std::vector<float> lowest(points.size(), std::numeric_limits<float>::max());
     for (size_t v = 0; v < points.size(); v++) {
+        heights[v] = points[v].y;
         members[group[v]]++;
         lowest[group[v]] = std::min(lowest[group[v]], heights[v]);
     }
     size_t wanted =
         std::max(kGroupLeast, static_cast<size_t>(kGroupShare * static_cast<double>(points.size())));
     wanted = std::min(wanted, *std::max_element(members.begin(), members.end()));
+    std::vector<uint8_t> wood(points.size());
+    Bounds bounds;
+    for (size_t v = 0; v < points.size(); v++) {
+        wood[v] = members[group[v]] >= wanted;
+        if (wood[v]) bounds.add(DVec3(points[v]));
+    }
+    const DVec3 size = bounds.size();
+    if (size.y < kLyingRatio * std::max(size.x, size.z))
+        return root_at_end(points, wood, graph, scale, bounds.diagonal());
+
     size_t base_group = points.size();
     for (size_t g = 0; g < points.size(); g++)
         if (members[g] >= wanted && (base_group == points.size() || lowest[g] < lowest[base_group]))
@@ -132,9 +135,7 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
     const double base = lowest[base_group];
     double slab = kSlabShare * size.y;
     // The first slab that has points enough to give a centre.
-    auto in_slab = [&](size_t v) {
-        return members[group[v]] >= wanted && heights[v] >= base && heights[v] <= base + slab;
-    };
+    auto in_slab = [&](size_t v) { return wood[v] && heights[v] >= base && heights[v] <= base + slab; };
     DVec3 centre(0.0);
     for (int widen = 0; widen < 8; widen++, slab *= 1.5) {
         centre = DVec3(0.0);

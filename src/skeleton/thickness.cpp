@@ -12,7 +12,9 @@ constexpr double kFineScale = 0.6;                                // the final c
 constexpr double kRingScale = 0.4;    // of the radius: the point spacing to assume on thick wood
 constexpr double kOnSurface = 1.3;    // times the radius
 constexpr double kLeastRadius = 1.0;  // trial spacings: a thinner circle is believed to a finer trial only
-constexpr double kStretch = 6.0;      // radii: a longer stretch between two circles stays unknown
+constexpr size_t kConfirmations = 3;
+constexpr double kBeyond = 1.0;   // radii
+constexpr double kStretch = 6.0;  // radii: a longer stretch between two circles stays unknown
 
 // The believed radius of each station; 0 where unknown.
 std::vector<double> believed_radii(const std::vector<Station>& stations, double widest) {
@@ -29,6 +31,22 @@ std::vector<double> believed_radii(const std::vector<Station>& stations, double 
         last = i;
         arc = 0.0;
     }
+    // A stem's cut ends show no whole rings, so the outermost circles count a little beyond themselves.
+    auto extend = [&](size_t from, ptrdiff_t step, size_t to) {
+        const double known = radius[from];
+        for (double way = 0.0; from != to; from = static_cast<size_t>(static_cast<ptrdiff_t>(from) + step)) {
+            const size_t next = static_cast<size_t>(static_cast<ptrdiff_t>(from) + step);
+            way += glm::distance(stations[from].position, stations[next].position);
+            if (way > kBeyond * known) return;
+            radius[next] = known;
+        }
+    };
+    size_t first = 0;
+    while (first < radius.size() && radius[first] == 0.0)
+        first++;
+    if (first == radius.size()) return radius;
+    extend(first, -1, 0);
+    extend(last, 1, radius.size() - 1);
     return radius;
 }
 
@@ -49,6 +67,7 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
     };
     AxisOptions axis_options = options.axes;
     axis_options.rounds = 1;
+    axis_options.confirmations = kConfirmations;
     for (const double factor : kTrials) {
         const LocalScale trial = scaled(factor);
         const Slices slices = cut_slices(points, graph, trial, paths, root);
