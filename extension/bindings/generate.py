@@ -404,8 +404,7 @@ class Generator:
         if name in self.singletons:
             head.append(f"\tstatic {name} *get_singleton();")
             body.append(f"{name} *{name}::get_singleton() {{\n"
-                        f"\tstatic Object *const singleton = internal::get_singleton(get_class_static());\n"
-                        f"\treturn static_cast<{name} *>(singleton);\n}}")
+                        f"\treturn static_cast<{name} *>(internal::get_singleton(get_class_static()));\n}}")
         if name == "Object":
             head.append(
                 "\t// Null unless the object is a T.\n"

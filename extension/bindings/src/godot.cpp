@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace godot {
 
@@ -19,10 +20,11 @@ GDExtensionBinding::Callback initializer = nullptr;
 GDExtensionBinding::Callback terminator = nullptr;
 GDExtensionInitializationLevel minimum_level = GDEXTENSION_INITIALIZATION_CORE;
 
-// What must be released while the engine is still there, at the end of its core level.
+// What must be released while the engine is still there. The names stay where they are, and get their text
+// back if the library is initialized again without having been unloaded.
 std::mutex cache_mutex;
 std::unordered_map<std::string, std::unique_ptr<StringName>> interned_names;
-std::vector<void*> singletons;
+std::unordered_set<void*> singletons;
 
 // See Wrapped::announce().
 struct Construction {
@@ -86,7 +88,7 @@ Object* get_singleton(const StringName& p_name) {
     }
     Object* singleton = get_object_instance_binding(owner);  // Not under the lock, which intern() takes too.
     const std::lock_guard lock(cache_mutex);
-    singletons.push_back(owner);
+    singletons.insert(owner);
     return singleton;
 }
 
@@ -150,6 +152,11 @@ void PropertyInfo::_update(GDExtensionPropertyInfo* p_info) const {
 
 void GDExtensionBinding::initialize_level(void*, GDExtensionInitializationLevel p_level) {
     ClassDB::current_level = p_level;
+    if (p_level == internal::minimum_level) {
+        for (auto& [text, name] : internal::interned_names) {
+            *name = StringName(text.c_str());
+        }
+    }
     if (internal::initializer != nullptr) {
         internal::initializer(ModuleInitializationLevel(p_level));
     }
@@ -168,7 +175,9 @@ void GDExtensionBinding::deinitialize_level(void*, GDExtensionInitializationLeve
         api.object_free_instance_binding(singleton, api.library);
     }
     internal::singletons.clear();
-    internal::interned_names.clear();
+    for (auto& [text, name] : internal::interned_names) {
+        *name = StringName();
+    }
 }
 
 GDExtensionBinding::InitObject::InitObject(GDExtensionInterfaceGetProcAddress p_get_proc_address,
