@@ -9,7 +9,7 @@
 #include "pipeline/export.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 
 namespace treerec {
 

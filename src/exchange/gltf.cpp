@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "error.h"
+#include "file_bytes.h"
 
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
@@ -229,8 +230,8 @@ void write_parts(const std::string& path, const std::string& glb) {
             const auto& view = json["bufferViews"][image["bufferView"].get<size_t>()];
             const size_t offset = view.value("byteOffset", size_t{0});
             const std::string name = stem + "_" + image["name"].get<std::string>() + ".png";
-            write_file((target.parent_path() / name).string(), bytes + offset,
-                       view["byteLength"].get<size_t>());
+            write_file((target.parent_path() / name).string(),
+                       {bytes + offset, view["byteLength"].get<size_t>()});
             geometry = std::min(geometry, offset);
             image.erase("bufferView");
             image.erase("mimeType");
@@ -238,11 +239,10 @@ void write_parts(const std::string& path, const std::string& glb) {
         }
         auto& views = json["bufferViews"];
         views.erase(views.end() - static_cast<std::ptrdiff_t>(json["images"].size()), views.end());
-        write_file((target.parent_path() / (stem + ".bin")).string(), bytes, geometry);
+        write_file((target.parent_path() / (stem + ".bin")).string(), {bytes, geometry});
         json["buffers"][0] = {{"byteLength", geometry}, {"uri", percent_encoded(stem + ".bin")}};
     }
-    const std::string text = json.dump(1, '\t');
-    write_file(path, text.data(), text.size());
+    write_file(path, json.dump(1, '\t'));
 }
 
 }  // namespace
@@ -258,7 +258,7 @@ void write_gltf(const std::string& path, const ModelFile& file) {
         throw Error("Cannot put together the glTF model for '" + path + "'.");
     const std::string glb = std::move(stream).str();
     if (extension == ".glb")
-        write_file(path, glb.data(), glb.size());
+        write_file(path, glb);
     else
         write_parts(path, glb);
 }

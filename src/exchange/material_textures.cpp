@@ -1,10 +1,9 @@
 #include "exchange/material_textures.h"
 
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "error.h"
+#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "mesh/textures.h"
 
@@ -60,30 +59,9 @@ std::vector<std::string> write_pictures(const std::string& directory, const std:
     std::vector<std::string> paths;
     for (const NamedPicture& picture : make_pictures(preset, size, seed)) {
         paths.push_back((std::filesystem::path(directory) / (preset + "_" + picture.name + ".png")).string());
-        write_file(paths.back(), picture.png.data(), picture.png.size());
+        write_file(paths.back(), picture.bytes());
     }
     return paths;
-}
-
-void write_file(const std::string& path, const void* data, size_t size) {
-    const std::string beside = path + ".tmp";
-    std::error_code failure;
-    {
-        std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-        if (!file) throw Error("Cannot write '" + path + "'. Check that its folder exists and is writable.");
-        file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-        file.close();
-        if (!file) {
-            std::filesystem::remove(beside, failure);
-            throw Error("Cannot finish writing '" + path + "'. Is the disk full?");
-        }
-    }
-    std::filesystem::rename(beside, path, failure);
-    if (failure) {
-        const std::string reason = failure.message();
-        std::filesystem::remove(beside, failure);
-        throw Error("Cannot write '" + path + "': " + reason + ".");
-    }
 }
 
 }  // namespace treerec

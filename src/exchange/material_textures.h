@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mesh/image.h"
@@ -16,6 +17,8 @@ std::vector<uint8_t> encode_png(const Image& image);
 struct NamedPicture {
     std::string name;  // "bark_albedo", "bark_normal", "bark_roughness", "leaf_albedo" or "leaf_normal"
     std::vector<uint8_t> png;
+
+    std::string_view bytes() const { return {reinterpret_cast<const char*>(png.data()), png.size()}; }
 };
 
 // The five pictures of a preset, in the order of the list above.
@@ -25,9 +28,5 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uin
 // Error, naming the path, where it cannot write.
 std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset, int size,
                                         uint64_t seed);
-
-// Writes `size` bytes beside `path` and renames them into place, so that no reader sees half a file. Throws
-// Error, naming the path.
-void write_file(const std::string& path, const void* data, size_t size);
 
 }  // namespace treerec

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "error.h"
+#include "file_bytes.h"
 #include "geometry/parallel.h"
 
 namespace treerec {
@@ -129,7 +130,7 @@ void write_obj(const std::string& path, const ModelFile& model) {
             const bool used = picture.name.rfind("bark", 0) == 0 ? bark : leaves;
             if (!used) continue;
             const std::string name = stem + "_" + picture.name + ".png";
-            write_file((target.parent_path() / name).string(), picture.png.data(), picture.png.size());
+            write_file((target.parent_path() / name).string(), picture.bytes());
         }
     }
     if (bark) {
@@ -143,9 +144,8 @@ void write_obj(const std::string& path, const ModelFile& model) {
                      "_leaf_normal.png\nmap_Bump " + stem + "_leaf_normal.png\n";
         append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1);
     }
-    if (!materials.empty())
-        write_file((target.parent_path() / (stem + ".mtl")).string(), materials.data(), materials.size());
-    write_file(path, out.data(), out.size());
+    if (!materials.empty()) write_file((target.parent_path() / (stem + ".mtl")).string(), materials);
+    write_file(path, out);
 }
 
 }  // namespace treerec

@@ -4,7 +4,7 @@
 #include "exchange/skeleton_table.h"
 #include "exchange/text_scan.h"
 #include "exchange/tree_files.h"
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 #include "tree/branches.h"
 
 namespace treerec {

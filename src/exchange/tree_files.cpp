@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "exchange/skeleton_table.h"
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 
 namespace treerec {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {

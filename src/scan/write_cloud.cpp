@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "geometry/bounds.h"
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {

@@ -1,4 +1,4 @@
-#include "scan/file_bytes.h"
+#include "file_bytes.h"
 
 #include <filesystem>
 #include <fstream>
