@@ -28,6 +28,7 @@ PointGraph delaunay_graph(const std::vector<Vec3>& points, Progress& progress);
 struct LocalScale {
     std::vector<float> spacing;  // metres between neighbouring samples, smoothed over the neighbours
     std::vector<float> reach;    // metres; an edge longer than this crosses a gap
+    std::vector<float> radius;   // metres, of the wood a point lies on, where that is known; else 0, or empty
 
     // Takes new spacings; the reach follows.
     void set_spacing(std::vector<float> values);

@@ -16,6 +16,8 @@ constexpr double kSurfaceMargin = 1.0;   // and so many point spacings more: a s
 constexpr double kSparseBranch = 3.0;    // point spacings that a branch must at least reach out
 constexpr double kWoodLinearity = 0.45;  // mean linearity of a limb's points: no leaves above,
 constexpr double kLeafLinearity = 0.30;  // nothing but leaves below
+constexpr double kStrip = 0.6;           // of the known radius: what spreads less is a strip of bark
+constexpr double kStub = 0.6;            // surface radii that a branch must reach out, likewise
 constexpr double kStrayWood = 0.2;       // of a gap: with less wood beyond it, that is stray points
 constexpr int kSameFork = 5;             // stations
 constexpr int kSmoothWindow = 2;         // stations to each side
@@ -24,6 +26,7 @@ constexpr int kSmoothWindow = 2;         // stations to each side
 struct SliceShape {
     std::vector<double> radius;   // mean distance of the points from their centre
     std::vector<double> spacing;  // mean local spacing of the points
+    std::vector<double> known;    // mean known radius of the wood they lie on, 0 where unknown
     std::vector<double> longest;  // metres to the farthest tip above
     std::vector<int32_t> first_child;
     std::vector<int32_t> next_sibling;
@@ -34,6 +37,7 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     SliceShape shape;
     shape.radius.assign(count, 0.0);
     shape.spacing.assign(count, 0.0);
+    shape.known.assign(count, 0.0);
     shape.longest.assign(count, 0.0);
     shape.first_child.assign(count, -1);
     shape.next_sibling.assign(count, -1);
@@ -44,10 +48,12 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
         for (const uint32_t v : slices.points_of(s)) {
             sum += glm::distance(DVec3(points[v]), slices.centre[s]);
             spacing += scale.spacing[v];
+            if (!scale.radius.empty()) shape.known[s] += scale.radius[v];
         }
         const double members = static_cast<double>(slices.points_of(s).size());
         shape.radius[s] = sum / members;
         shape.spacing[s] = spacing / members;
+        shape.known[s] /= members;
         const size_t p = static_cast<size_t>(slices.parent[s]);
         const double step = glm::distance(slices.centre[s], slices.centre[p]);
         if (slices.bridged[s] && wood[s] < kStrayWood * step) continue;  // stray points
@@ -76,7 +82,9 @@ LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& s
         DVec3 sum(0.0);
         double radius = 0.0;
         double weight = 0.0;
-        const int reach = std::min({kSmoothWindow, i, count - 1 - i});
+        // The root's own slice has no points and may stand between several stems.
+        const int own = i > 0 && limb.slices[0] == 0 ? i - 1 : i;
+        const int reach = std::min({kSmoothWindow, own, count - 1 - i});
         for (int j = i - reach; j <= i + reach; j++) {
             sum += slices.centre[limb.slices[j]];
             weight += 1.0;
@@ -88,8 +96,11 @@ LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& s
             members += n;
         }
         axis.position[i] = sum / weight;
-        axis.surface[i] = kSurfaceFactor * (members > 0.0 ? radius / members : 0.0) +
-                          kSurfaceMargin * shape.spacing[limb.slices[i]];
+        const double seen = members > 0.0 ? radius / members : 0.0;
+        const double known = shape.known[limb.slices[i]];
+        // A strip of thick wood runs on its bark, and other strips of it may lie right across.
+        const double around = seen < kStrip * known ? 2.0 * known : std::max(seen, known);
+        axis.surface[i] = kSurfaceFactor * around + kSurfaceMargin * shape.spacing[limb.slices[i]];
     }
     return axis;
 }
@@ -146,7 +157,6 @@ struct Fit {
     std::vector<int32_t> stations;  // of the limb, nearest to each slice of the chain
     size_t inside = 0;              // so many slices from the chain's base lie on the limb's own surface
     bool starts_on = false;         // the first slice lies on the limb's surface
-    bool grows_out = false;
     int32_t attach = 0;
 };
 
@@ -222,28 +232,26 @@ class LimbFinder {
 
     Fit lay_along(std::span<const int32_t> chain, int32_t limb, int32_t station) const {
         const LimbAxis& axis = axes_[limb];
+        double spacing = 0.0;
+        for (const int32_t slice : chain)
+            spacing += shape_.spacing[slice];
+        const double least_escape =
+            std::max(options_.least_escape, kSparseBranch * spacing / static_cast<double>(chain.size()));
         Fit fit;
         fit.attach = station;
         std::vector<double> escapes;
-        double spacing = 0.0;
-        double farthest = 0.0;
-        for (const int32_t slice : chain) {
-            const DVec3& centre = slices_.centre[slice];
+        size_t out = chain.size();  // the first slice that is clearly off the surface
+        for (size_t i = 0; i < chain.size(); i++) {
+            const DVec3& centre = slices_.centre[chain[i]];
             station = nearest_station(axis, station, centre);
             fit.stations.push_back(station);
             escapes.push_back(glm::distance(centre, axis.position[station]) - axis.surface[station]);
-            farthest = std::max(farthest, escapes.back());
-            spacing += shape_.spacing[slice];
+            if (out == chain.size() && escapes[i] >= std::max(least_escape, kStub * axis.surface[station]))
+                out = i;
         }
         fit.starts_on = escapes.front() <= 0.0;
-        const double least_escape =
-            std::max(options_.least_escape, kSparseBranch * spacing / static_cast<double>(chain.size()));
-        fit.grows_out = farthest >= least_escape;
-        fit.inside = chain.size();
-        if (!fit.grows_out) return fit;
-        fit.inside = 0;
-        while (escapes[fit.inside] < least_escape)
-            fit.inside++;
+        fit.inside = out;
+        if (out == chain.size()) return fit;
         while (fit.inside > 0 && escapes[fit.inside - 1] > 0.0)
             fit.inside--;
         if (fit.inside > 0) fit.attach = fit.stations[fit.inside - 1];

@@ -7,13 +7,13 @@ namespace treerec {
 
 namespace {
 
-constexpr std::array<double, 4> kTrials = {12.0, 6.0, 3.0, 1.5};  // times the scale
-constexpr double kFineScale = 0.6;                                // the final cut of thin wood
+constexpr std::array<double, 5> kTrials = {12.0, 6.0, 3.0, 1.5, 0.75};  // times the scale
+constexpr double kFineScale = 0.6;                                      // the final cut of thin wood
 constexpr double kRingScale = 0.4;    // of the radius: the point spacing to assume on thick wood
 constexpr double kOnSurface = 1.3;    // times the radius
 constexpr double kLeastRadius = 1.0;  // trial spacings: a thinner circle is believed to a finer trial only
 constexpr size_t kConfirmations = 3;
-constexpr double kBeyond = 1.0;   // radii
+constexpr double kBeyond = 2.0;   // radii
 constexpr double kStretch = 6.0;  // radii: a longer stretch between two circles stays unknown
 
 // The believed radius of each station; 0 where unknown.
@@ -91,7 +91,11 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
                 raise(limbs[l].absorbed[a], static_cast<size_t>(limbs[l].absorbed_at[a]));
         }
     }
-    return scaled(kFineScale);
+    LocalScale result = scaled(kFineScale);
+    result.radius.resize(count);
+    for (size_t v = 0; v < count; v++)
+        result.radius[v] = ring[v] / static_cast<float>(kRingScale);
+    return result;
 }
 
 }  // namespace treerec
