@@ -117,9 +117,7 @@ class Generator:
             return f"BitField<{self.enum_type(rest)}>"
         if kind == "typedarray":
             element = rest.split(":")[-1]
-            if element in self.classes:
-                return f"TypedArray<{element}>"
-            if element in MATH_TYPES or element in OPAQUE_TYPES:
+            if element in self.classes or element in MATH_TYPES or element in OPAQUE_TYPES:
                 return f"TypedArray<{element}>"
             raise Skip
         if type_name in self.classes:
@@ -272,7 +270,7 @@ class Generator:
         return "\n".join(head), "\n\n".join(body) + "\n"
 
     def builtin_method(self, name, number, method, head, body):
-        if method["name"] in CPP_KEYWORDS or (name == "String" and method["name"] == "format" and method["is_vararg"]):
+        if method["name"] in CPP_KEYWORDS:
             return
         try:
             result, arguments = self.signature(method)
@@ -366,7 +364,7 @@ class Generator:
         function = method["name"]
         if method["is_virtual"]:
             unnamed = ", ".join(t for t, _, _ in arguments)
-            given = "" if result == "void" else " return {}; " 
+            given = "" if result == "void" else " return {}; "
             head.append(f"\tvirtual {self.join_type(result, function)}({unnamed}){const} {{{given}}}")
             virtuals.append(
                 f"\t\tif constexpr (!std::is_same_v<decltype(&B::{function}), decltype(&T::{function})>) {{\n"
@@ -376,10 +374,9 @@ class Generator:
         if method["is_vararg"]:
             head.append(self.vararg(result, function, arguments, const))
             end = "" if result == "void" else "return "
-            convert = "" if result in ("void", "Variant") else f".operator {result}()"
-            call = f"method.call_variants(_owner, p_args, p_count){convert}"
-            if result not in ("void", "Variant", "Ref<"):
-                call = f"internal::TypeInfo<{result}>::from_variant(method.call_variants(_owner, p_args, p_count))"
+            call = "method.call_variants(_owner, p_args, p_count)"
+            if result not in ("void", "Variant"):
+                call = f"internal::TypeInfo<{result}>::from_variant({call})"
             body.append(f"{result} {name}::_{function}_variants(const Variant **p_args, int64_t p_count){const} {{\n"
                         f"\t{cached}\n\t{end}{call};\n}}")
             return
