@@ -13,18 +13,45 @@ constexpr double kRingScale = 0.4;    // of the radius: the point spacing to ass
 constexpr double kOnSurface = 1.3;    // times the radius
 constexpr double kLeastRadius = 1.0;  // trial spacings: a thinner circle is believed to a finer trial only
 constexpr size_t kConfirmations = 3;
-constexpr double kBeyond = 2.0;   // radii
-constexpr double kStretch = 6.0;  // radii: a longer stretch between two circles stays unknown
+constexpr size_t kReference = 5;   // circles
+constexpr double kSwelling = 1.5;  // times the radius below
+constexpr double kBeyond = 2.0;    // radii
+constexpr double kStretch = 6.0;   // radii: a longer stretch between two circles stays unknown
 
-// The believed radius of each station; 0 where unknown.
-std::vector<double> believed_radii(const std::vector<Station>& stations, double widest) {
-    std::vector<double> radius(stations.size(), 0.0);
+// The median of the last kReference values; 0 where there are fewer.
+double recent_median(const std::vector<double>& values) {
+    if (values.size() < kReference) return 0.0;
+    std::array<double, kReference> recent;
+    std::copy(values.end() - kReference, values.end(), recent.begin());
+    std::nth_element(recent.begin(), recent.begin() + kReference / 2, recent.end());
+    return recent[kReference / 2];
+}
+
+// The radii of one limb.
+struct Belief {
+    std::vector<double> radius;  // by station; 0 where unknown
+    std::vector<double> limit;   // what wood below the station allows; 0 where unknown
+};
+
+// Wood does not grow thicker outward, so a circle much wider than those below it goes round several branches.
+// limit: at the limb's base, 0 where unknown.
+Belief believed_radii(const std::vector<Station>& stations, double widest, double limit) {
+    Belief belief;
+    belief.limit.resize(stations.size());
+    belief.radius.assign(stations.size(), 0.0);
+    std::vector<double>& radius = belief.radius;
+    std::vector<double> seen;
     size_t last = stations.size();
     double arc = 0.0;
     for (size_t i = 0; i < stations.size(); i++) {
         if (i > 0) arc += glm::distance(stations[i].position, stations[i - 1].position);
+        belief.limit[i] = limit;
         if (!stations[i].measured || stations[i].radius > widest) continue;
+        if (limit > 0.0 && stations[i].radius > kSwelling * limit) continue;
         radius[i] = stations[i].radius;
+        seen.push_back(radius[i]);
+        if (const double median = recent_median(seen); median > 0.0) limit = median;
+        belief.limit[i] = limit;
         if (last < i && arc < kStretch * std::max(radius[i], radius[last]))
             std::fill(radius.begin() + static_cast<ptrdiff_t>(last) + 1,
                       radius.begin() + static_cast<ptrdiff_t>(i), std::min(radius[i], radius[last]));
@@ -44,10 +71,10 @@ std::vector<double> believed_radii(const std::vector<Station>& stations, double 
     size_t first = 0;
     while (first < radius.size() && radius[first] == 0.0)
         first++;
-    if (first == radius.size()) return radius;
+    if (first == radius.size()) return belief;
     extend(first, -1, 0);
     extend(last, 1, radius.size() - 1);
-    return radius;
+    return belief;
 }
 
 }  // namespace
@@ -75,8 +102,12 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
         std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs);
         const std::vector<std::vector<Station>> axes =
             fit_axes(limbs, slices, points, trial, axis_options, progress);
+        std::vector<Belief> beliefs(limbs.size());
         for (size_t l = 0; l < limbs.size(); l++) {
-            const std::vector<double> radius = believed_radii(axes[l], options.axes.widest_ring);
+            const int32_t parent = limbs[l].parent;
+            beliefs[l] = believed_radii(axes[l], options.axes.widest_ring,
+                                        parent < 0 ? 0.0 : beliefs[parent].limit[limbs[l].attach]);
+            const std::vector<double>& radius = beliefs[l].radius;
             auto raise = [&](int32_t slice, size_t station) {
                 const double r = radius[station];
                 for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
