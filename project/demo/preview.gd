@@ -3,7 +3,7 @@ extends SceneTree
 ## four sides. Needs a window (xvfb-run will do):
 ##
 ##     godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER
-##         [--seed N] [--leaves PRESET]
+##         [--title TEXT] [options of 'treerec reconstruct']
 ##
 ## It writes FOLDER/tree.tscn and FOLDER/preview.png.
 
@@ -18,9 +18,28 @@ const _BREAST_HEIGHT: float = 1.3
 const _YAWS: Array[float] = [PI / 2, 0.0, -PI / 2, PI]
 const _VIEW_NAMES: Array[String] = ["+X", "+Z", "−X", "−Z"]
 
-var _arguments: Dictionary[String, String] = {
-	"--scan": "", "--out": "", "--seed": "1", "--leaves": "generic"
+# The reconstructor's options by their names on the command line, and the switches.
+const _OPTIONS: Dictionary[String, String] = {
+	"--seed": "seed",
+	"--leaves": "leaves",
+	"--up": "up",
+	"--scale": "scale",
+	"--spacing": "spacing",
+	"--columns": "columns",
 }
+const _SWITCHES: Dictionary[String, Array] = {
+	"--no-clean": ["remove_extreme_colors", "remove_outliers", "remove_fragments", "remove_ground"],
+	"--no-clean-colors": ["remove_extreme_colors"],
+	"--no-clean-outliers": ["remove_outliers"],
+	"--no-clean-fragments": ["remove_fragments"],
+	"--no-clean-ground": ["remove_ground"],
+	"--quiet": [],
+}
+
+var _arguments: Dictionary[String, String] = {
+	"--scan": "", "--out": "", "--title": "", "--threads": ""
+}
+var _options: Dictionary[String, Variant] = {}
 var _reconstructor: TreeReconstructor
 var _tree: TreeReconstruction
 var _started: int
@@ -39,10 +58,7 @@ func _work() -> bool:
 	if not _read_arguments():
 		return false
 	_reconstructor = TreeReconstructor.new()
-	_tree = _reconstructor.reconstruct_file(
-		_arguments["--scan"],
-		{"seed": _arguments["--seed"].to_int(), "leaves": _arguments["--leaves"]}
-	)
+	_tree = _reconstructor.reconstruct_file(_arguments["--scan"], _options)
 	if _tree == null:
 		printerr(_reconstructor.get_error_message())
 		return false
@@ -66,11 +82,25 @@ func _read_arguments() -> bool:
 	var given: PackedStringArray = OS.get_cmdline_user_args()
 	var i: int = 0
 	while i < given.size():
-		if not _arguments.has(given[i]) or i + 1 == given.size():
-			printerr("preview.gd: unknown option or no value: %s" % given[i])
+		var name: String = given[i]
+		i += 1
+		if _SWITCHES.has(name):
+			for option: String in _SWITCHES[name]:
+				_options[option] = false
+			continue
+		if i == given.size() or not (_arguments.has(name) or _OPTIONS.has(name)):
+			printerr("preview.gd: unknown option or no value: %s" % name)
 			return false
-		_arguments[given[i]] = given[i + 1]
-		i += 2
+		var value: String = given[i]
+		i += 1
+		if _arguments.has(name):
+			_arguments[name] = value
+		elif name == "--seed":
+			_options["seed"] = value.to_int()
+		elif name in ["--scale", "--spacing"]:
+			_options[_OPTIONS[name]] = value.to_float()
+		else:
+			_options[_OPTIONS[name]] = value
 	if _arguments["--scan"].is_empty() or _arguments["--out"].is_empty():
 		printerr("preview.gd: --scan FILE and --out FOLDER are needed.")
 		return false
@@ -141,7 +171,10 @@ func _draw(instance: TreeInstance3D) -> bool:
 		Studio.place_camera(view, view_size, views, _YAWS[i])
 		row.append([view, "From %s" % _VIEW_NAMES[i], ""])
 	sheet.add_row(row, _VIEW_HEIGHT)
-	sheet.set_heading(_arguments["--scan"].get_file().get_basename(), _heading(measures, instance))
+	var title: String = _arguments["--title"]
+	if title.is_empty():
+		title = _arguments["--scan"].get_file().get_basename()
+	sheet.set_heading(title, _heading(measures, instance))
 	_say("arranged")
 
 	root.disable_3d = true

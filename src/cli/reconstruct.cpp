@@ -5,11 +5,11 @@
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
+#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "pipeline/export.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
-#include "file_bytes.h"
 
 namespace treerec {
 

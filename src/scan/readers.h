@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/vec.h"
 #include "file_bytes.h"
+#include "geometry/vec.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {

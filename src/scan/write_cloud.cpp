@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "error.h"
-#include "geometry/bounds.h"
 #include "file_bytes.h"
+#include "geometry/bounds.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
