@@ -18,13 +18,14 @@ enum class LeafArrangement { kAlternate, kOpposite };
 struct LeafRules {
     bool enabled = true;
     LeafArrangement arrangement = LeafArrangement::kAlternate;
-    double internode = 0.05;       // distance between sprays along a twig; pairs stand twice as far apart
-    double twig_length = 0.6;      // how far from its tip a branch bears leaves
-    double maximum_radius = 0.02;  // thicker wood bears none, but for the tips
-    double leaf_size = 0.25;       // length of a spray
-    double size_variation = 0.3;   // share
-    double angle = 55.0;           // between the twig and the spray
-    double droop = 20.0;           // towards the ground
+    double internode = 0.05;   // distance between sprays along a twig; pairs stand twice as far apart
+    double twig_length = 0.6;  // how far from its tip a branch bears leaves
+    double maximum_radius =
+        0.02;  // thicker wood bears none, but for the tips; nor do stubs on wood twice as thick
+    double leaf_size = 0.25;      // length of a spray
+    double size_variation = 0.3;  // share
+    double angle = 55.0;          // between the twig and the spray
+    double droop = 20.0;          // towards the ground
     double angle_variation = 20.0;
     int maximum_leaves = 60000;  // beyond it fewer, larger leaves cover the same area
 };
