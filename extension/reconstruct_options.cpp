@@ -65,11 +65,7 @@ Variant read_columns(const ParsedOptions& p_options) {
 }
 
 void write_columns(ParsedOptions& r_options, const Variant& p_value) {
-    r_options.pipeline.read.columns.clear();
-    const PackedStringArray names = String(p_value).split(",", false);
-    for (const String& name : names) {
-        r_options.pipeline.read.columns.push_back(to_std(name.strip_edges()));
-    }
+    r_options.pipeline.read.columns = treerec::parse_columns(to_std(p_value));
 }
 
 Variant read_leaves(const ParsedOptions& p_options) {
@@ -96,7 +92,7 @@ const Option kOptions[] = {
      "A point is nearly black when every channel is at most this."},
     {"remove_outliers", OPTION_MEMBER(clean.remove_outliers, bool), PROPERTY_HINT_NONE, "",
      "Removes points far from their neighbours."},
-    {"neighbours", OPTION_MEMBER(clean.neighbours, int), PROPERTY_HINT_RANGE, "2,100,1",
+    {"neighbours", OPTION_MEMBER(clean.neighbours, int), PROPERTY_HINT_RANGE, "2,64,1",
      "How many neighbours of a point say whether it is an outlier."},
     {"outlier_deviations", OPTION_MEMBER(clean.outlier_deviations, double), PROPERTY_HINT_RANGE, "0.5,20,0.1",
      "How many standard deviations from the usual distance make an outlier."},

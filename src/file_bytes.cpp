@@ -1,6 +1,5 @@
 #include "file_bytes.h"
 
-#include <filesystem>
 #include <fstream>
 #include <new>
 #include <system_error>
@@ -10,14 +9,6 @@
 namespace treerec {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-fs::path path_of(const std::string& utf8) {
-    return fs::path(std::u8string(utf8.begin(), utf8.end()));
-}
-
-}  // namespace
 
 FileBytes read_file(const std::string& path) {
     if (path.empty()) throw Error("No file was named.");
@@ -46,27 +37,104 @@ FileBytes read_file(const std::string& path) {
     return bytes;
 }
 
-void write_file(const std::string& path, std::string_view bytes) {
+namespace {
+
+// Pipes, terminals, /dev/stdout: nothing can be renamed onto them.
+bool is_special(const fs::path& path) {
+    std::error_code code;
+    const fs::file_status status = fs::status(path, code);
+    return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+bool write_stream(const fs::path& path, std::string_view bytes) {
+    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    return !stream.fail();
+}
+
+// Where the bytes go in the end: for a link, what it points to.
+fs::path target_of(const std::string& path) {
     const fs::path target = path_of(path);
     std::error_code code;
-    if (fs::is_directory(target, code)) throw Error("'" + path + "' is a folder; name a file to write.");
-    const fs::path beside = path_of(path + ".part");
-    bool written = false;
-    {
-        std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
-        if (!stream)
-            throw Error("'" + path +
-                        "' cannot be written; check that its folder exists and is yours to write.");
-        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        stream.close();
-        written = !stream.fail();
+    if (!fs::is_symlink(target, code)) return target;
+    const fs::path pointed_to = fs::canonical(target, code);
+    return code ? target : pointed_to;
+}
+
+fs::path part_of(fs::path target) {
+    return target += ".part";
+}
+
+}  // namespace
+
+void write_file(const std::string& path, std::string_view bytes) {
+    require_writable(path);
+    const Error failed("'" + path + "' could not be written; check the disk's free space and the rights.");
+    if (is_special(path_of(path))) {
+        if (!write_stream(path_of(path), bytes)) throw failed;
+        return;
     }
+    const fs::path target = target_of(path);
+    const fs::path beside = part_of(target);
+    std::error_code code;
+    const bool written = write_stream(beside, bytes);
     if (written) fs::rename(beside, target, code);
     if (!written || code) {
         std::error_code ignored;
         fs::remove(beside, ignored);
-        throw Error("'" + path + "' could not be written; check the disk's free space and the rights.");
+        throw failed;
     }
+}
+
+void require_writable(const std::string& path) {
+    if (path.empty()) throw Error("No file to write was named.");
+    if (path.find('\0') != std::string::npos) throw Error("The file's name contains a null character.");
+    std::error_code code;
+    if (fs::is_directory(path_of(path), code)) throw Error("'" + path + "' is a folder; name a file in it.");
+    if (is_special(path_of(path))) return;
+    const fs::path target = target_of(path);
+    const fs::path folder = target.parent_path();
+    if (!folder.empty() && !fs::is_directory(folder, code))
+        throw Error("'" + path + "' cannot be written: there is no folder '" + utf8_of(folder) + "'.");
+    const fs::path beside = part_of(target);
+    const bool writable = static_cast<bool>(std::ofstream(beside, std::ios::binary | std::ios::trunc));
+    fs::remove(beside, code);
+    if (!writable)
+        throw Error("'" + path +
+                    "' cannot be written; check its name and that its folder is yours to write.");
+}
+
+void make_folder(const std::string& path) {
+    std::error_code failure;
+    fs::create_directories(path_of(path), failure);
+    if (failure) throw Error("The folder '" + path + "' cannot be made: " + failure.message() + ".");
+}
+
+fs::path path_of(const std::string& utf8) {
+    return fs::path(std::u8string(utf8.begin(), utf8.end()));
+}
+
+std::string utf8_of(const fs::path& path) {
+    const std::u8string utf8 = path.u8string();
+    return {utf8.begin(), utf8.end()};
+}
+
+std::string extension_of(const std::string& path) {
+    const size_t dot = path.find_last_of("./\\");
+    if (dot == std::string::npos || path[dot] != '.') return {};
+    std::string extension = path.substr(dot + 1);
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return extension;
+}
+
+std::string stem_of(const std::string& path) {
+    return utf8_of(path_of(path).stem());
+}
+
+std::string sibling_of(const std::string& path, const std::string& name) {
+    return utf8_of(path_of(path).parent_path() / path_of(name));
 }
 
 }  // namespace treerec

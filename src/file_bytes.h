@@ -1,6 +1,7 @@
-// Whole files in and out of memory.
+// Whole files in and out of memory, and their names. Paths are UTF-8 throughout.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,10 +16,29 @@ struct FileBytes {
     std::string_view view() const { return {data.get(), size}; }
 };
 
-// path: UTF-8. Throws Error where the file is missing, a folder, unreadable, or too large for memory.
+// Throws Error where the file is missing, a folder, unreadable, or too large for memory.
 FileBytes read_file(const std::string& path);
 
-// Writes beside `path` and renames, so that a failure leaves the old file as it was. Throws Error.
+// Writes beside `path` and renames, so that a failure leaves the old file as it was. A link stays a link;
+// what is no plain file (a pipe, a device) is written to straight. Throws Error.
 void write_file(const std::string& path, std::string_view bytes);
+
+// Throws Error if a file at `path` could not be written: its folder is not there or not ours to write, or it
+// is a folder itself. To be asked before the long work.
+void require_writable(const std::string& path);
+
+// Makes the folder and those above it. Throws Error.
+void make_folder(const std::string& path);
+
+// To what the operating system takes, and back.
+std::filesystem::path path_of(const std::string& utf8);
+std::string utf8_of(const std::filesystem::path& path);
+
+// What follows the last dot of the file's name, in lower case: "ply". Empty without a dot.
+std::string extension_of(const std::string& path);
+// The file's name without folder and extension.
+std::string stem_of(const std::string& path);
+// The file called `name` in the folder of `path`.
+std::string sibling_of(const std::string& path, const std::string& name);
 
 }  // namespace treerec

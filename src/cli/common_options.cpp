@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "scan/read_cloud.h"
 
 namespace treerec {
 
@@ -11,15 +12,7 @@ UpAxis up_axis_from(const Arguments& arguments) {
 }
 
 std::vector<std::string> columns_from(const Arguments& arguments) {
-    if (!arguments.has("--columns")) return {};
-    std::vector<std::string> columns(1);
-    for (char c : arguments.text("--columns", "")) {
-        if (c == ',')
-            columns.emplace_back();
-        else if (c != ' ')
-            columns.back() += c;
-    }
-    return columns;
+    return parse_columns(arguments.text("--columns", ""));
 }
 
 }  // namespace treerec

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "fidelity/segment_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/quantile.h"
 
 namespace treerec {
 
@@ -45,15 +46,6 @@ double total_volume(const std::vector<WoodSegment>& segments) {
     for (const WoodSegment& segment : segments)
         sum += kPi * segment.radius * segment.radius * glm::distance(segment.from, segment.to);
     return sum;
-}
-
-// Reorders values.
-double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return 0.0;
-    const size_t at =
-        std::min(values.size() - 1, static_cast<size_t>(share * static_cast<double>(values.size())));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-    return values[at];
 }
 
 struct Sample {
@@ -187,10 +179,10 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
     for (const Sample& sample : wanted)
         if (sample.distance <= std::max(kMatch, sample.radius))
             errors.push_back(sample.other_radius / sample.radius - 1.0);
-    score.radius_error = quantile(errors, 0.5);
+    if (!errors.empty()) score.radius_error = quantile(errors, 0.5);
     for (double& error : errors)
         error = std::abs(error);
-    score.radius_error_abs = quantile(errors, 0.5);
+    if (!errors.empty()) score.radius_error_abs = quantile(errors, 0.5);
     if (progress) progress->update(1.0, "Scoring");
     return score;
 }

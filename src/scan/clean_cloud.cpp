@@ -1,6 +1,7 @@
 #include "scan/clean_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nanoflann.hpp>
 
@@ -14,6 +15,8 @@ namespace {
 
 constexpr size_t kMostSamples = 400000;
 constexpr int kMostNeighbours = 64;
+// Fragments that are a larger share of the points than this may be a tree.
+constexpr double kRemarkable = 0.2;
 // A point's neighbour distance must be this many times that of its neighbours.
 constexpr double kLocalContrast = 2.5;
 
@@ -68,8 +71,8 @@ class Cleaning {
         return points;
     }
 
-    // goes: by index into points().
-    void take(const char* name, const std::vector<uint8_t>& goes) {
+    // goes: by index into points(). Returns the share of the points that were taken.
+    double take(const char* name, const std::vector<uint8_t>& goes) {
         size_t removed = 0;
         size_t all = 0;
         for (size_t i = 0; i < alive_.size(); i++) {
@@ -88,6 +91,7 @@ class Cleaning {
             alive_.resize(kept);
         }
         report_.steps.push_back({name, removed});
+        return all > 0 ? static_cast<double>(removed) / static_cast<double>(all) : 0.0;
     }
 
     void apply() {
@@ -232,7 +236,13 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     // Before the fragments, which the ground would hold together.
     if (options.remove_ground) cleaning.take("Ground", find_ground(cleaning.points()));
     step(0.8);
-    if (options.remove_fragments) cleaning.take("Fragments", find_fragments(cleaning.points(), spacing));
+    if (options.remove_fragments) {
+        const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing));
+        if (share > kRemarkable)
+            report.warnings.push_back(std::to_string(std::lround(100.0 * share)) +
+                                      " % of the points stand well apart from the rest and were left out. If "
+                                      "they are a tree of their own, give each tree a file of its own.");
+    }
     step(0.9);
     cleaning.apply();
     step(1.0);

@@ -1,4 +1,5 @@
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -148,27 +149,35 @@ UpAxis detect_up(const PointCloud& cloud, bool& sure) {
     return y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
 }
 
+// Four digits.
+std::string short_number(double value) {
+    char text[32];
+    const bool whole = value >= 1000.0 && value < 1e15;
+    const std::to_chars_result end =
+        whole ? std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, 0)
+              : std::to_chars(text, text + sizeof(text), value, std::chars_format::general, 4);
+    return {text, end.ptr};
+}
+
 struct Unit {
-    const char* name;
+    std::string name;
     double metres;
 };
 
-// The unit that makes the tree closest to a typical one.
+// Metres if that makes a tree of it, else the unit that does and comes closest to a typical one; where none
+// does, the scan has no scale, and a power of ten makes it about as high as a typical tree.
 Unit guess_unit(double height) {
-    if (height >= kShortestTree && height <= kTallestTree) return {"metres", 1.0};
-    Unit best{"metres", 1.0};
-    for (const Unit unit :
-         {Unit{"centimetres", 0.01}, Unit{"millimetres", 0.001}, Unit{"kilometres", 1000.0}}) {
-        auto error = [&](double metres) { return std::abs(std::log(height * metres / kTypicalTree)); };
-        if (error(unit.metres) < error(best.metres)) best = unit;
-    }
-    return best;
-}
-
-std::string short_number(double value) {
-    std::string text = std::to_string(value);
-    text.resize(std::min(text.size(), text.find('.') + 3));
-    return text;
+    const auto is_tree = [&](double metres) {
+        return height * metres >= kShortestTree && height * metres <= kTallestTree;
+    };
+    const auto error = [&](double metres) { return std::abs(std::log(height * metres / kTypicalTree)); };
+    if (is_tree(1.0) || !(height > 0.0)) return {"metres", 1.0};
+    const bool centimetres = is_tree(0.01);
+    const bool millimetres = is_tree(0.001);
+    if (centimetres && !(millimetres && error(0.001) < error(0.01))) return {"centimetres", 0.01};
+    if (millimetres) return {"millimetres", 0.001};
+    const double metres = std::pow(10.0, std::round(std::log10(kTypicalTree / height)));
+    return {short_number(metres) + " m each", metres};
 }
 
 size_t axis_of(UpAxis up) {

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "error.h"
+#include "file_bytes.h"
 #include "scan/readers.h"
 
 namespace treerec {
@@ -48,15 +49,6 @@ constexpr Magic kForeign[] = {
     {"\xFF\xFE", "text in UTF-16; save it as UTF-8"},
     {"\xFE\xFF", "text in UTF-16; save it as UTF-8"},
 };
-
-std::string extension_of(const std::string& path) {
-    const size_t dot = path.find_last_of("./\\");
-    if (dot == std::string::npos || path[dot] != '.') return {};
-    std::string extension = path.substr(dot + 1);
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return extension;
-}
 
 // Text has no control characters but blanks and line ends.
 bool looks_binary(std::string_view bytes) {
@@ -193,6 +185,18 @@ PointCloud settle(const ReadJob& job, RawCloud&& raw) {
 }
 
 }  // namespace
+
+std::vector<std::string> parse_columns(std::string_view text) {
+    if (text.empty()) return {};
+    std::vector<std::string> columns(1);
+    for (const char c : text) {
+        if (c == ',')
+            columns.emplace_back();
+        else if (c != ' ')
+            columns.back() += c;
+    }
+    return columns;
+}
 
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options, ReadCloudReport* report,
                       Progress* progress) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "progress.h"
@@ -14,6 +15,9 @@ struct ReadCloudOptions {
     // detect.
     std::vector<std::string> columns;
 };
+
+// "x, y, z, r, -" as columns; none for an empty text.
+std::vector<std::string> parse_columns(std::string_view text);
 
 // What the reader had to decide or leave out, as sentences for the user ("3 of 4000 points had no finite
 // position.").

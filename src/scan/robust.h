@@ -7,18 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "geometry/quantile.h"
 #include "geometry/vec.h"
 
 namespace treerec {
-
-// The value below which the share q (0..1) lies; values must not be empty and gets reordered.
-template <typename T>
-T quantile(std::vector<T>& values, double q) {
-    const size_t index =
-        std::min(values.size() - 1, static_cast<size_t>(q * static_cast<double>(values.size())));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index), values.end());
-    return values[index];
-}
 
 struct Range {
     double low = 0.0;

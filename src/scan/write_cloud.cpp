@@ -167,21 +167,16 @@ std::string to_las(const PointCloud& cloud) {
     return writer.bytes();
 }
 
-bool ends_with(const std::string& path, std::string_view extension) {
-    if (path.size() < extension.size()) return false;
-    return std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
-                      [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-}
-
 }  // namespace
 
 void write_cloud(const std::string& path, const PointCloud& cloud) {
     if (cloud.empty()) throw Error("'" + path + "' was not written: the cloud has no points.");
-    if (ends_with(path, ".ply")) {
+    const std::string extension = extension_of(path);
+    if (extension == "ply") {
         write_file(path, to_ply(cloud));
-    } else if (ends_with(path, ".las")) {
+    } else if (extension == "las") {
         write_file(path, to_las(cloud));
-    } else if (ends_with(path, ".xyz") || ends_with(path, ".txt") || ends_with(path, ".asc")) {
+    } else if (extension == "xyz" || extension == "txt" || extension == "asc") {
         write_file(path, to_text(cloud));
     } else {
         throw Error("'" + path + "' was not written: use the extension .ply, .las, .xyz, .txt or .asc.");

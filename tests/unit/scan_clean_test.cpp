@@ -122,6 +122,17 @@ TEST(ScanOrient, StraysAndGroundDoNotConfuseIt) {
     }
 }
 
+TEST(ScanOrient, AScanWithoutAScaleBecomesAsHighAsATree) {
+    for (const double unit : {1e-7, 100.0, 1e5}) {
+        SCOPED_TRACE(unit);
+        PointCloud cloud = as_scanned(tree_points(4), UpAxis::kZ, unit, DVec3(0.0));
+        const OrientReport report = orient_cloud(cloud, {});
+        EXPECT_NEAR(report.metres_per_unit / unit, 1.0, 1e-9);
+        ASSERT_EQ(report.warnings.size(), 1U);
+        EXPECT_NE(report.warnings[0].find(" m each"), std::string::npos) << report.warnings[0];
+    }
+}
+
 TEST(ScanOrient, SurvivesWhatIsNoTree) {
     Random random(4);
     for (const size_t count : {1U, 2U, 5U, 100U}) {
@@ -176,6 +187,18 @@ TEST(ScanClean, TakesStrayPoints) {
     for (const Vec3& s : strays)
         EXPECT_FALSE(left.contains({s.x, s.y, s.z})) << s.x << " " << s.y << " " << s.z;
     EXPECT_GE(cloud.size(), tree.size() - tree.size() / 500);
+}
+
+TEST(ScanClean, SaysThatItLeftOutASecondTree) {
+    std::vector<Vec3> points = tree_points(3);
+    for (const Vec3& p : tree_points(4))
+        points.push_back(p + Vec3(15.0F, 0.0F, 0.0F));
+    PointCloud cloud = as_scanned(points, UpAxis::kY, 1.0, DVec3(0.0));
+    orient_cloud(cloud, {UpAxis::kY, 1.0});
+    const CleanReport report = clean_cloud(cloud, {});
+    EXPECT_GT(removed_by(report, "Fragments"), points.size() / 3);
+    ASSERT_EQ(report.warnings.size(), 1U);
+    EXPECT_NE(report.warnings[0].find("apart"), std::string::npos) << report.warnings[0];
 }
 
 TEST(ScanClean, TakesFarFragmentsAndKeepsNearParts) {
