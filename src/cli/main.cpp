@@ -86,7 +86,9 @@ int run(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
     treerec::listen_for_interrupt();
     try {
-        return treerec::run({argv + 1, argv + argc});
+        const int code = treerec::run({argv + 1, argv + argc});
+        if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+        std::fputs("The output could not be written.\n", stderr);
     } catch (const treerec::Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
     } catch (const std::bad_alloc&) {

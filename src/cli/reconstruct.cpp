@@ -43,18 +43,12 @@ ReconstructOptions options_from(const Arguments& arguments) {
 
 void require_safe_target(const std::string& target, const std::string& scan,
                          const std::vector<std::string>& targets) {
-    namespace fs = std::filesystem;
-    const auto path_of = [](const std::string& utf8) {
-        return fs::path(std::u8string(utf8.begin(), utf8.end()));
-    };
-    std::error_code failure;
     if (std::count(targets.begin(), targets.end(), target) > 1)
         throw UsageError(target + " would be written twice.");
-    if (fs::equivalent(path_of(target), path_of(scan), failure))
+    std::error_code failure;
+    if (std::filesystem::equivalent(path_of(target), path_of(scan), failure))
         throw UsageError(target + " is the scan itself; it would be overwritten.");
-    const fs::path folder = path_of(target).parent_path();
-    if (!folder.empty() && !fs::is_directory(folder, failure))
-        throw UsageError(target + " cannot be written: there is no folder '" + folder.string() + "'.");
+    as_usage([&] { require_writable(target); });
 }
 
 void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds) {
@@ -74,6 +68,13 @@ void print_summary(const Reconstruction& result, const std::vector<std::string>&
     std::printf("%.1f s\n", seconds);
 }
 
+std::string leaf_names() {
+    std::string names;
+    for (const std::string& name : leaf_preset_names())
+        names += name + " ";
+    return names;
+}
+
 }  // namespace
 
 const Command& reconstruct_command() {
@@ -90,7 +91,7 @@ const Command& reconstruct_command() {
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
-         {"--leaves", "PRESET", "generic maple cherry oak birch none (default generic)"},
+         {"--leaves", "PRESET", leaf_names() + "(default generic)"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},

@@ -1,9 +1,9 @@
 #include <cstdio>
-#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
 #include "exchange/tree_files.h"
+#include "file_bytes.h"
 #include "scan/read_cloud.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
@@ -63,10 +63,7 @@ void run_synth(const std::vector<std::string>& words) {
     const VirtualScan scan = scan_tree(tree, scanning, &scan_progress);
     progress.check();
     progress.update(0.9, "Writing");
-    std::error_code failure;
-    std::filesystem::create_directories(std::filesystem::path(std::u8string(folder.begin(), folder.end())),
-                                        failure);
-    if (failure) throw Error("The folder '" + folder + "' cannot be made: " + failure.message() + ".");
+    make_folder(folder);
     const std::string scan_path = folder + "/scan.ply", truth_path = folder + "/truth.txt";
     write_cloud(scan_path, scan.cloud);
     write_treefile(truth_path, tree);

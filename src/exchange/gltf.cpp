@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <sstream>
 
 #include "error.h"
@@ -219,8 +218,7 @@ uint32_t read_u32(const std::string& bytes, size_t at) {
 
 // The one-file form taken apart: JSON, buffer and pictures, each in a file, the JSON last.
 void write_parts(const std::string& path, const std::string& glb) {
-    const std::filesystem::path target(path);
-    const std::string stem = target.stem().string();
+    const std::string stem = stem_of(path);
     const size_t json_size = read_u32(glb, 12);
     nlohmann::json json = nlohmann::json::parse(glb.substr(20, json_size));
     if (json.contains("buffers")) {
@@ -230,8 +228,7 @@ void write_parts(const std::string& path, const std::string& glb) {
             const auto& view = json["bufferViews"][image["bufferView"].get<size_t>()];
             const size_t offset = view.value("byteOffset", size_t{0});
             const std::string name = stem + "_" + image["name"].get<std::string>() + ".png";
-            write_file((target.parent_path() / name).string(),
-                       {bytes + offset, view["byteLength"].get<size_t>()});
+            write_file(sibling_of(path, name), {bytes + offset, view["byteLength"].get<size_t>()});
             geometry = std::min(geometry, offset);
             image.erase("bufferView");
             image.erase("mimeType");
@@ -239,7 +236,7 @@ void write_parts(const std::string& path, const std::string& glb) {
         }
         auto& views = json["bufferViews"];
         views.erase(views.end() - static_cast<std::ptrdiff_t>(json["images"].size()), views.end());
-        write_file((target.parent_path() / (stem + ".bin")).string(), {bytes, geometry});
+        write_file(sibling_of(path, stem + ".bin"), {bytes, geometry});
         json["buffers"][0] = {{"byteLength", geometry}, {"uri", percent_encoded(stem + ".bin")}};
     }
     write_file(path, json.dump(1, '\t'));
@@ -248,16 +245,14 @@ void write_parts(const std::string& path, const std::string& glb) {
 }  // namespace
 
 void write_gltf(const std::string& path, const ModelFile& file) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".glb" && extension != ".gltf") throw Error("'" + path + "' must end in .glb or .gltf.");
+    const std::string extension = extension_of(path);
+    if (extension != "glb" && extension != "gltf") throw Error("'" + path + "' must end in .glb or .gltf.");
     const tinygltf::Model model = build(file);
     std::ostringstream stream;
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true))
         throw Error("Cannot put together the glTF model for '" + path + "'.");
     const std::string glb = std::move(stream).str();
-    if (extension == ".glb")
+    if (extension == "glb")
         write_file(path, glb);
     else
         write_parts(path, glb);

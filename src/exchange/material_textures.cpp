@@ -1,7 +1,5 @@
 #include "exchange/material_textures.h"
 
-#include <filesystem>
-
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
@@ -53,12 +51,10 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uin
 
 std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset, int size,
                                         uint64_t seed) {
-    std::error_code failure;
-    std::filesystem::create_directories(directory, failure);
-    if (failure) throw Error("Cannot make the folder '" + directory + "': " + failure.message() + ".");
+    make_folder(directory);
     std::vector<std::string> paths;
     for (const NamedPicture& picture : make_pictures(preset, size, seed)) {
-        paths.push_back((std::filesystem::path(directory) / (preset + "_" + picture.name + ".png")).string());
+        paths.push_back(utf8_of(path_of(directory) / path_of(preset + "_" + picture.name + ".png")));
         write_file(paths.back(), picture.bytes());
     }
     return paths;

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -115,8 +114,7 @@ void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t 
 }  // namespace
 
 void write_obj(const std::string& path, const ModelFile& model) {
-    const std::filesystem::path target(path);
-    const std::string stem = target.stem().string();
+    const std::string stem = stem_of(path);
     const bool bark = model.bark && !model.bark->indices.empty();
     const bool leaves = model.leaves && !model.leaves->indices.empty();
     std::string out = "# Metres, Y up.\n";
@@ -130,7 +128,7 @@ void write_obj(const std::string& path, const ModelFile& model) {
             const bool used = picture.name.rfind("bark", 0) == 0 ? bark : leaves;
             if (!used) continue;
             const std::string name = stem + "_" + picture.name + ".png";
-            write_file((target.parent_path() / name).string(), picture.bytes());
+            write_file(sibling_of(path, name), picture.bytes());
         }
     }
     if (bark) {
@@ -144,7 +142,7 @@ void write_obj(const std::string& path, const ModelFile& model) {
                      "_leaf_normal.png\nmap_Bump " + stem + "_leaf_normal.png\n";
         append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1);
     }
-    if (!materials.empty()) write_file((target.parent_path() / (stem + ".mtl")).string(), materials);
+    if (!materials.empty()) write_file(sibling_of(path, stem + ".mtl"), materials);
     write_file(path, out);
 }
 

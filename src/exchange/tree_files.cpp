@@ -1,7 +1,7 @@
 #include "exchange/tree_files.h"
 
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
 #include <fstream>
 #include <unordered_map>
 
@@ -171,9 +171,12 @@ Tree read_node_csv(const std::string& path, UpAxis up) {
                         std::to_string(values.size()) + " values where the first line names " +
                         std::to_string(columns.count) + ".");
         const NodeId row = static_cast<NodeId>(table.positions.size());
+        const double id = columns.id >= 0 ? values[columns.id] : row;
+        if (!std::isfinite(id))
+            throw Error("'" + path + "', line " + std::to_string(line_number) + ": its id is no number.");
         append_node(values.data(), columns, false, table);
         parent_ids.push_back(values[columns.parent]);
-        if (!row_of.emplace(columns.id >= 0 ? values[columns.id] : row, row).second)
+        if (!row_of.emplace(id, row).second)
             throw Error("'" + path + "', line " + std::to_string(line_number) +
                         ": this id was there before.");
     }
@@ -191,9 +194,9 @@ enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv };
 
 // From the file's first 4 kB.
 SkeletonFormat sniff(const std::string& path) {
-    const std::filesystem::path file(std::u8string(path.begin(), path.end()));
-    if (!std::filesystem::exists(file)) throw Error("There is no file '" + path + "'.");
-    std::ifstream in(file, std::ios::binary);
+    std::error_code failure;
+    if (!std::filesystem::exists(path_of(path), failure)) throw Error("There is no file '" + path + "'.");
+    std::ifstream in(path_of(path), std::ios::binary);
     std::string bytes(4096, '\0');
     if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0)
         return SkeletonFormat::kNone;

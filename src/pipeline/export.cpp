@@ -1,13 +1,10 @@
 #include "pipeline/export.h"
 
-#include <algorithm>
-#include <array>
-#include <filesystem>
-
 #include "error.h"
 #include "exchange/gltf.h"
 #include "exchange/obj.h"
 #include "exchange/tree_files.h"
+#include "file_bytes.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 #include "tree/measure.h"
@@ -16,23 +13,15 @@ namespace treerec {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kUnknown };
 
-fs::path path_of(const std::string& utf8) {
-    return fs::path(std::u8string(utf8.begin(), utf8.end()));
-}
-
 Format format_of(const std::string& path) {
-    std::string extension = path_of(path).extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (extension == ".glb" || extension == ".gltf") return Format::kGltf;
-    if (extension == ".obj") return Format::kObj;
-    if (extension == ".ply") return Format::kPly;
-    if (extension == ".txt") return Format::kTreefile;
-    if (extension == ".csv") return Format::kCsv;
+    const std::string extension = extension_of(path);
+    if (extension == "glb" || extension == "gltf") return Format::kGltf;
+    if (extension == "obj") return Format::kObj;
+    if (extension == "ply") return Format::kPly;
+    if (extension == "txt") return Format::kTreefile;
+    if (extension == "csv") return Format::kCsv;
     return Format::kUnknown;
 }
 
@@ -44,12 +33,7 @@ void require_writable_format(const std::string& path) {
             "'" + path +
             "' names no format that can be written; end it in .glb, .gltf or .obj (the tree with bark and "
             "leaves), or .ply, .txt or .csv (its skeleton).");
-    std::error_code failure;
-    const fs::path folder = path_of(path).parent_path();
-    if (!folder.empty() && !fs::is_directory(folder, failure))
-        throw Error("'" + path + "' cannot be written: there is no folder '" + folder.string() + "'.");
-    if (fs::is_directory(path_of(path), failure))
-        throw Error("'" + path + "' is a folder; name a file in it.");
+    require_writable(path);
 }
 
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options) : tree_(tree), options_(options) {}

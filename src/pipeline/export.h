@@ -44,8 +44,8 @@ class TreeExporter {
     std::vector<NamedPicture> pictures_;
 };
 
-// Throws Error, naming the formats, if the extension of `path` is none of those that write() knows, or its
-// folder is not there: to be asked before the long work.
+// Throws Error, naming the formats, if the extension of `path` is none of those that write() knows, or if no
+// file can be written there (file_bytes.h): to be asked before the long work.
 void require_writable_format(const std::string& path);
 
 // One file: TreeExporter in one call.

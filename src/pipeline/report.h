@@ -18,7 +18,8 @@ struct ReportDetails {
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
-//   format_version 1, version, scan, scan_format, seed, options {up, scale, spacing_m, leaves, clean}
+//   format_version 1, version, scan, scan_format, seed, options {up, scale, spacing_m, columns, leaves,
+//   clean}
 //   points_read, points (after cleaning), removed {step: points}
 //   up, up_detected, metres_per_unit, scale_guessed, origin [x y z in scan coordinates], spacing_m
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)

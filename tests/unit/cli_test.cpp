@@ -12,6 +12,7 @@
 
 #ifndef _WIN32
 #include <sys/wait.h>
+#include <unistd.h>
 #endif
 
 #include "error.h"
@@ -39,9 +40,9 @@ class Cli : public ::testing::Test {
         const char* program = std::getenv("TREEREC_CLI");
         if (!program || !fs::exists(program)) GTEST_SKIP() << "TREEREC_CLI does not name the program";
         program_ = fs::absolute(program).string();
-        folder_ =
-            fs::temp_directory_path() /
-            ("treerec_cli_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+        folder_ = fs::temp_directory_path() /
+                  ("treerec_cli_" + std::to_string(::getpid()) + "_" +
+                   std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
         fs::remove_all(folder_);
         fs::create_directories(folder_ / "out");
     }
@@ -207,6 +208,17 @@ TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
     }
     EXPECT_NE(run("reconstruct c.xyz -o out/a.glb --sed 3").error.find("--seed"), std::string::npos);
     EXPECT_NE(run("reconstrct").error.find("'reconstruct'"), std::string::npos);
+}
+
+TEST_F(Cli, OutputThatCannotBeWrittenIsAnError) {
+    if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    const int status = std::system(("'" + program_ + "' --version >/dev/full 2>/dev/null").c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1);
+    put("s.xyz", xyz(small_scan()));
+    // Known before the long work, and so a matter of the command line.
+    EXPECT_EQ(run("reconstruct s.xyz -o out/a.txt --report out --quiet").code, 2);
+    EXPECT_EQ(run("reconstruct s.xyz -o out/a.txt --report nowhere/r.json --quiet").code, 2);
+    EXPECT_TRUE(out_is_empty());
 }
 
 // Files that hold no tree at all: a sentence, exit code 1, nothing written.

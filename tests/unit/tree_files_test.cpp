@@ -1,6 +1,9 @@
 #include "exchange/tree_files.h"
 
 #include <gtest/gtest.h>
+#ifndef _WIN32
+#include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -21,9 +24,9 @@ namespace fs = std::filesystem;
 class TreeFiles : public ::testing::Test {
   protected:
     void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() /
-            ("treerec_files_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+        folder_ = fs::temp_directory_path() /
+                  ("treerec_files_" + std::to_string(::getpid()) + "_" +
+                   std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }
@@ -134,6 +137,7 @@ TEST_F(TreeFiles, ReadsNodeTables) {
         "n.csv", "node,parent,x,y,z,radius\n7,-1,1,2,3,.2\n9,7,1,2,4,.1\n12,9,1,2,5,.05\n3,7,1,3,3.5,0.1\n"));
     EXPECT_EQ(tree.size(), 4u);
     EXPECT_EQ(tree.node(tree.root()).child_count, 2);
+    EXPECT_THROW(read_node_csv(put("nan.csv", "id,parent,x,y,z,radius\nnan,-1,0,0,0,1\n")), Error);
     EXPECT_THROW(read_node_csv(put("d.csv", "id,parent,x,y,z,radius\n1,0,0,0,0,1\n1,0,0,0,1,1\n")), Error);
     EXPECT_THROW(read_node_csv(put("e.csv", "id,parent,x,y,z,radius\n1,2,0,0,0,1\n2,1,0,0,1,1\n")), Error);
 }
