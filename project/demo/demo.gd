@@ -1,6 +1,7 @@
+@tool
 extends Node3D
-## Shows the tree that ./dev demo reconstructed last, a camera going round it. Without one it says
-## how to make it.
+## Shows the tree that ./dev demo reconstructed last, in the editor too; in the game a camera goes
+## round it. Without a tree it says how to make one.
 
 const _MADE_BY_DEMO: String = "../build/demo/tree.tscn"
 
@@ -10,13 +11,21 @@ const _MADE_BY_DEMO: String = "../build/demo/tree.tscn"
 
 
 func _ready() -> void:
-	var path: String = ProjectSettings.globalize_path("res://").path_join(_MADE_BY_DEMO)
-	_hint.visible = not FileAccess.file_exists(path)
-	if _hint.visible:
+	var in_editor: bool = Engine.is_editor_hint()
+	set_process(not in_editor)
+	var path: String = (
+		ProjectSettings.globalize_path("res://").path_join(_MADE_BY_DEMO).simplify_path()
+	)
+	if not FileAccess.file_exists(path):
+		# In the editor this would change the scene.
+		_hint.visible = not in_editor
 		return
-	var tree: TreeInstance3D = (load(path) as PackedScene).instantiate() as TreeInstance3D
+	var scene: PackedScene = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE)
+	var tree: TreeInstance3D = scene.instantiate() as TreeInstance3D
+	# Without an owner: it is never saved with this scene.
 	add_child(tree)
-	tree.rebuilt.connect(_frame_tree.bind(tree))
+	if not in_editor:
+		tree.rebuilt.connect(_frame_tree.bind(tree))
 
 
 func _process(delta: float) -> void:
