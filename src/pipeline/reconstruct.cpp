@@ -17,8 +17,10 @@ constexpr double kOrientEnd = 0.15;
 constexpr double kCleanEnd = 0.30;
 constexpr double kSkeletonEnd = 0.97;
 
-// Below this share of explained points the user is told.
+// Below these shares the user is told: of explained points, and of wood whose radius was measured. Sparse
+// airborne scans of trees reach 0.005 of the latter, houses and balls not half of that.
 constexpr double kLeastExplained = 0.25;
+constexpr double kLeastMeasured = 0.003;
 
 class StageClock {
   public:
@@ -98,6 +100,11 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
                                   " % of the points lie within 2 cm of the wood that was found. Is it a "
                                   "single tree, without leaves, "
                                   "and are its units right?");
+    if (measure(result.tree).measured_share < kLeastMeasured)
+        result.warnings.emplace_back(
+            "Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is it "
+            "a "
+            "tree?");
     clock.stop("Score", result.cloud.size());
     return result;
 }

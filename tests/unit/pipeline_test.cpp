@@ -132,6 +132,21 @@ TEST_F(Pipeline, SameBytesWhateverTheThreadsAndTheOrderOfThePoints) {
         EXPECT_TRUE(files[i] == files[i % 3]) << "file " << i;
 }
 
+TEST_F(Pipeline, ABallIsDoubted) {
+    const auto doubts = [](const Reconstruction& result) {
+        return std::ranges::count_if(result.warnings, [](const std::string& warning) {
+            return warning.find("Is it a tree?") != std::string::npos;
+        });
+    };
+    EXPECT_EQ(doubts(reconstruct_file(path("scan.ply"), {})), 0);
+    Random random(5);
+    PointCloud ball;
+    for (int i = 0; i < 8000; i++)
+        ball.positions.emplace_back(3.0 * random.direction());
+    write_cloud(path("ball.ply"), ball);
+    EXPECT_EQ(doubts(reconstruct_file(path("ball.ply"), {})), 1);
+}
+
 TEST_F(Pipeline, TheReportIsCompleteAndFinite) {
     const Reconstruction result = reconstruct_file(path("scan.ply"), {});
     TreeExporter exporter(result.tree, {});
