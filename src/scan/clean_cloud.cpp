@@ -53,8 +53,8 @@ std::vector<uint8_t> find_extreme_colors(const PointCloud& cloud, const CleanOpt
 // The samples still in the cloud, and how the steps take some away.
 class Cleaning {
   public:
-    Cleaning(PointCloud& cloud, CleanReport& report)
-        : cloud_(cloud), report_(report), samples_(take_samples(cloud.positions, kMostSamples)) {
+    Cleaning(PointCloud& cloud, CleanReport& report, const Progress* progress)
+        : cloud_(cloud), report_(report), samples_(take_samples(cloud.positions, kMostSamples, progress)) {
         weights_.resize(samples_.points.size());
         for (const uint32_t s : samples_.of_point)
             weights_[s]++;
@@ -224,7 +224,7 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     step(0.0);
     if (options.remove_extreme_colors && cloud.has_colors()) clean_colors(cloud, options, report);
     step(0.1);
-    Cleaning cleaning(cloud, report);
+    Cleaning cleaning(cloud, report, progress);
     step(0.3);
     double spacing = 0.0;
     if (options.remove_outliers || options.remove_fragments) {

@@ -25,9 +25,8 @@ struct Grid {
     }
 };
 
-Grid grid_over(const std::vector<Vec3>& points, double cell) {
-    const std::array<Range, 3> ranges = robust_ranges(points);
-    return {DVec3(ranges[0].low, ranges[1].low, ranges[2].low), cell};
+DVec3 low_corner(const std::array<Range, 3>& ranges) {
+    return {ranges[0].low, ranges[1].low, ranges[2].low};
 }
 
 bool comes_before(const Vec3& a, const Vec3& b) {
@@ -68,7 +67,7 @@ uint32_t find_root(std::vector<uint32_t>& parents, uint32_t i) {
 
 }  // namespace
 
-Samples take_samples(const std::vector<Vec3>& positions, size_t limit) {
+Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Progress* progress) {
     Samples samples;
     samples.of_point.resize(positions.size());
     std::vector<uint32_t> chosen;  // a point of the cloud per sample
@@ -89,7 +88,8 @@ Samples take_samples(const std::vector<Vec3>& positions, size_t limit) {
     const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size(), 1e-6});
     std::vector<Keyed> keyed;
     for (double cell = extent / 2000.0;;) {
-        keyed = keyed_by_cell(positions, grid_over(positions, cell));
+        if (progress) progress->check();
+        keyed = keyed_by_cell(positions, {low_corner(ranges), cell});
         const size_t cells = count_cells(keyed);
         if (cells <= limit) break;
         // A surface has cells by the square of the fineness.
@@ -125,7 +125,7 @@ Samples take_samples(const std::vector<Vec3>& positions, size_t limit) {
 }
 
 std::vector<uint32_t> connected_components(const std::vector<Vec3>& points, double cell) {
-    const std::vector<Keyed> keyed = keyed_by_cell(points, grid_over(points, cell));
+    const std::vector<Keyed> keyed = keyed_by_cell(points, {low_corner(robust_ranges(points)), cell});
     std::vector<uint64_t> cells;
     std::vector<uint32_t> cell_of_point(points.size());
     for (const Keyed& k : keyed) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "progress.h"
 #include "scan/robust.h"
 
 namespace treerec {
@@ -17,7 +18,7 @@ struct Samples {
 };
 
 // Every distinct point, or one point per grid cell where there would be more than `limit`.
-Samples take_samples(const std::vector<Vec3>& positions, size_t limit);
+Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Progress* progress);
 
 // Labels the points by connected component, where points in touching cells (26 neighbours) are connected.
 // Labels are 0.. in the order of each component's first point. cell: metres.
