@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.h"
+#include "exchange/tree_files.h"
 
 namespace treerec {
 
@@ -56,6 +57,8 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
                                 Progress* progress) {
     Reconstruction result;
     StageClock clock(result.stages);
+    // Its nodes would pass for points.
+    if (is_skeleton_file(path)) throw Error("'" + path + "' is a skeleton, not a point cloud.");
 
     SubProgress reading(progress, 0.0, kReadEnd);
     reading.update(0.0, "Reading");

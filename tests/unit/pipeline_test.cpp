@@ -132,6 +132,19 @@ TEST_F(Pipeline, SameBytesWhateverTheThreadsAndTheOrderOfThePoints) {
         EXPECT_TRUE(files[i] == files[i % 3]) << "file " << i;
 }
 
+TEST_F(Pipeline, ASkeletonIsNoCloud) {
+    for (const char* name : {"truth.ply", "truth.txt", "truth.csv"}) {
+        export_tree(path(name), truth_, leaf_preset("none"), 1);
+        try {
+            reconstruct_file(path(name), {});
+            ADD_FAILURE() << name;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("is a skeleton"), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_THROW(reconstruct_file(path("missing.ply"), {}), Error);
+}
+
 TEST_F(Pipeline, ABallIsDoubted) {
     const auto doubts = [](const Reconstruction& result) {
         return std::ranges::count_if(result.warnings, [](const std::string& warning) {
