@@ -212,3 +212,18 @@ func test_the_mesh_has_room_for_the_wind() -> void:
 		"The box is too tight."
 	)
 	instance.free()
+
+
+func test_leaves_share_what_the_node_is_set_to() -> void:
+	var instance: TreeInstance3D = _instance(grown_tree(2))
+	await _settle(instance)
+	# Not typed: as the inspector and loaded scenes set it.
+	instance.set("visibility_range_end", 50.0)
+	instance.set("layers", 4)
+	instance.set("cast_shadow", GeometryInstance3D.SHADOW_CASTING_SETTING_OFF)
+	await tree.process_frame
+	var leaves: MultiMeshInstance3D = _leaves_of(instance)
+	check_equal(leaves.visibility_range_end, 50.0, "the distance at which the leaves vanish")
+	check_equal(leaves.layers, 4, "the leaves' layers")
+	check_equal(leaves.cast_shadow, instance.cast_shadow, "the leaves' shadow")
+	instance.free()

@@ -14,6 +14,20 @@ signal rebuilt
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.15
+# What the leaves take over from this node.
+const _SHARED: PackedStringArray = [
+	"layers",
+	"cast_shadow",
+	"gi_mode",
+	"transparency",
+	"lod_bias",
+	"ignore_occlusion_culling",
+	"visibility_range_begin",
+	"visibility_range_begin_margin",
+	"visibility_range_end",
+	"visibility_range_end_margin",
+	"visibility_range_fade_mode",
+]
 
 ## Whether trees are built on worker threads. Turn it off to find errors more easily: then they are
 ## built on the main thread, at the end of the frame.
@@ -106,6 +120,13 @@ func _notification(what: int) -> void:
 			_update_instances()
 		NOTIFICATION_TRANSFORM_CHANGED:
 			_update_instances()
+
+
+# The engine asks the script first: so the leaves learn of the properties that they share.
+func _set(property: StringName, _value: Variant) -> bool:
+	if property in _SHARED:
+		_update_instances.call_deferred()
+	return false
 
 
 func _validate_property(property: Dictionary) -> void:
@@ -228,9 +249,8 @@ func _update_instances() -> void:
 	var height: float = _height * global_basis.get_scale().y
 	_set_shader_values(get_instance(), height)
 	if _leaves_node != null:
-		_leaves_node.layers = layers
-		_leaves_node.cast_shadow = cast_shadow
-		_leaves_node.gi_mode = gi_mode
+		for property: String in _SHARED:
+			_leaves_node.set(property, get(property))
 		_set_shader_values(_leaves_node.get_instance(), height)
 
 
