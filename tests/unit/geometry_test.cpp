@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <numeric>
+#include <thread>
 
 #include "error.h"
 #include "geometry/parallel.h"
@@ -55,6 +57,8 @@ TEST(ParallelFor, PassesAnExceptionOn) {
                               [&](size_t begin, size_t) {
                                   calls++;
                                   if (begin == 3) throw Error("three");
+                                  // So that the others cannot be through before the exception is caught.
+                                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
                               }),
                  Error);
     EXPECT_LT(calls, 1000);
