@@ -148,6 +148,12 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         if (count > 0) centre /= static_cast<double>(count);
         if (count >= kGroupLeast) break;
     }
+    // The middle of a ring wider than a stem, such as a house's walls, is empty: its nearest point serves.
+    const auto across = [&](size_t v) { return std::hypot(points[v].x - centre.x, points[v].z - centre.z); };
+    size_t nearest = points.size();
+    for (size_t v = 0; v < points.size(); v++)
+        if (in_slab(v) && (nearest == points.size() || across(v) < across(nearest))) nearest = v;
+    if (across(nearest) > kStemGapShare * size.y) centre = DVec3(points[nearest]);
     centre.y = base;
     // Other stems that stand as low belong to the same root.
     DVec3 sum(0.0);

@@ -145,6 +145,24 @@ TEST_F(Pipeline, ASkeletonIsNoCloud) {
     EXPECT_THROW(reconstruct_file(path("missing.ply"), {}), Error);
 }
 
+// The middle of its walls' foot is empty, so no point is near it.
+TEST_F(Pipeline, AHouseStillHasARoot) {
+    Random random(6);
+    PointCloud house;
+    for (int i = 0; i < 3000; i++) {
+        const double u = random.uniform(), v = random.uniform();
+        for (const DVec3& p :
+             {DVec3(10 * u, 0, 5 * v), DVec3(10 * u, 8, 5 * v), DVec3(0, 8 * u, 5 * v),
+              DVec3(10, 8 * u, 5 * v), DVec3(10 * u, 4 * v, 5 + 3 * v), DVec3(10 * u, 8 - 4 * v, 5 + 3 * v),
+              DVec3(20 * u - 5, 18 * v - 5, 0), DVec3(20 * v - 5, 18 * u - 5, 0)})
+            house.positions.emplace_back(p);
+    }
+    write_cloud(path("house.ply"), house);
+    const Reconstruction result = reconstruct_file(path("house.ply"), {});
+    EXPECT_EQ(result.tree.check().value_or("sound"), "sound");
+    EXPECT_LT(measure(result.tree).height, 9.0);
+}
+
 TEST_F(Pipeline, ABallIsDoubted) {
     const auto doubts = [](const Reconstruction& result) {
         return std::ranges::count_if(result.warnings, [](const std::string& warning) {
