@@ -136,10 +136,9 @@ static Variant require_entry(const Dictionary& p_data, const char* p_key, Varian
 // For each entry of p_parents, which names a parent by its id, the parent's place in p_ids.
 static std::vector<NodeId> places_of_parents(const PackedInt32Array& p_ids,
                                              const PackedInt32Array& p_parents) {
-    constexpr NodeId kLargestId = 1 << 24;  // as Tree::from_arrays()
     NodeId largest = 0;
     for (const NodeId id : p_ids) {
-        if (id < 0 || id > kLargestId) {
+        if (id < 0 || id > treerec::kLargestId) {
             throw treerec::Error(
                 "The saved tree is damaged: a node's id is out of range. Reconstruct the tree again.");
         }

@@ -67,9 +67,10 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     const std::vector<Vec3> points = thin_points(cloud.positions, result.spacing, progress);
     if (points.size() < kLeastPoints)
         throw Error(
-            "The cloud has only " + std::to_string(points.size()) +
-            " distinct points, and a tree needs at least 10. Check that the file is complete and that the "
-            "cleaning steps did not take too much.");
+            "The cloud has only " + std::to_string(points.size()) + " points more than " +
+            std::to_string(result.spacing) +
+            " m apart, and a tree needs at least 10. Check that the file is complete, that its unit is "
+            "right, and that the cleaning steps did not take too much.");
     clock.stop("Thinning", points.size());
 
     SubProgress triangulating(listener, 0.1, 0.55);

@@ -17,8 +17,7 @@ void require_radius(double radius) {
         throw Error("A node's radius must be positive and finite.");
 }
 
-// The largest id that from_arrays accepts; it bounds what a damaged file can make us allocate.
-constexpr NodeId kLargestId = 1 << 24;
+constexpr size_t kMostNodes = size_t{1} << 24;
 
 }  // namespace
 
@@ -332,7 +331,7 @@ Tree Tree::from_arrays(const std::vector<NodeId>& parents, const std::vector<DVe
     if (positions.size() != count || radii.size() != count || flags.size() != count ||
         (ids && ids->size() != count))
         throw Error("The tree's arrays differ in length; the file is damaged.");
-    if (count > static_cast<size_t>(kLargestId)) throw Error("The tree has more than 16 million nodes.");
+    if (count > kMostNodes) throw Error("The tree has more than 16 million nodes.");
     Tree tree;
     if (count == 0) return tree;
     NodeId id_limit = static_cast<NodeId>(count);

@@ -14,6 +14,8 @@ namespace treerec {
 
 using NodeId = int32_t;
 inline constexpr NodeId kNoNode = -1;
+// The largest id that a file may name: it bounds what a damaged one can make us allocate (about 300 MB).
+inline constexpr NodeId kLargestId = 1 << 22;
 
 // The paper's four kinds (papers/000, table 3.2). A trunk node that forks is of kind kBranch and one that
 // ends is of kind kLeaf, as figure 3.7 draws them; ask Node::is_trunk() for the trunk itself.
@@ -133,8 +135,9 @@ class Tree {
     std::optional<std::string> check() const;
 
     // Builds a tree from parallel arrays: parents[i] is an index into the arrays or -1, for exactly one i.
-    // Parents may come after their children. ids[i], when given, become the node ids (distinct, 0..2^24).
-    // Throws Error if the arrays do not describe a tree; nothing else can go wrong with hostile values.
+    // Parents may come after their children. ids[i], when given, become the node ids (distinct,
+    // 0..kLargestId). Throws Error if the arrays do not describe a tree; nothing else can go wrong with
+    // hostile values.
     static Tree from_arrays(const std::vector<NodeId>& parents, const std::vector<DVec3>& positions,
                             const std::vector<double>& radii, const std::vector<uint8_t>& flags,
                             const std::vector<NodeId>* ids = nullptr);
