@@ -1,6 +1,5 @@
 #include "pipeline/reconstruct.h"
 
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -22,22 +21,6 @@ constexpr double kSkeletonEnd = 0.97;
 // airborne scans of trees reach 0.005 of the latter, houses and balls not half of that.
 constexpr double kLeastExplained = 0.25;
 constexpr double kLeastMeasured = 0.003;
-
-class StageClock {
-  public:
-    explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
-    void restart() { start_ = Clock::now(); }
-    void stop(const char* name, size_t count) {
-        const Clock::time_point now = Clock::now();
-        stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
-        start_ = now;
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    std::vector<StageTime>& stages_;
-    Clock::time_point start_ = Clock::now();
-};
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -86,8 +69,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     SkeletonResult skeleton = skeletonize(result.cloud, options.skeleton, &growing);
     growing.check();
     append(result.warnings, skeleton.warnings);
-    for (const SkeletonStage& stage : skeleton.stages)
-        result.stages.push_back({stage.name, stage.milliseconds, stage.count});
+    result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
     result.spacing = skeleton.spacing;
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);

@@ -12,6 +12,7 @@
 #include "scan/point_cloud.h"
 #include "scan/read_cloud.h"
 #include "skeleton/skeleton.h"
+#include "stage_clock.h"
 #include "tree/measure.h"
 #include "tree/tree.h"
 
@@ -24,12 +25,6 @@ struct ReconstructOptions {
     SkeletonOptions skeleton;
 };
 
-struct StageTime {
-    std::string name;  // "Read", "Orient", "Clean", the skeletonizer's own, "Score"
-    double milliseconds = 0.0;
-    size_t count = 0;  // points or nodes after the stage
-};
-
 struct Reconstruction {
     PointCloud cloud;  // cleaned, in the tree's frame: its points lie on the tree
     Tree raw;          // before pruning and simplification; same frame
@@ -39,8 +34,8 @@ struct Reconstruction {
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;
-    ScanScore fit;  // of the tree to the cleaned cloud
-    std::vector<StageTime> stages;
+    ScanScore fit;                      // of the tree to the cleaned cloud
+    std::vector<StageTime> stages;      // "Read", "Orient", "Clean", the skeletonizer's own, "Score"
     std::vector<std::string> warnings;  // of all stages, in order
 };
 

@@ -6,6 +6,7 @@
 
 #include "progress.h"
 #include "scan/point_cloud.h"
+#include "stage_clock.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -19,17 +20,11 @@ struct SkeletonOptions {
     uint64_t seed = 1;               // of the robust fits
 };
 
-struct SkeletonStage {
-    std::string name;
-    double milliseconds = 0.0;
-    size_t count = 0;  // points or nodes after the stage
-};
-
 struct SkeletonResult {
     Tree raw;   // the shortest-path tree before pruning and simplification, for pictures; thin constant radii
     Tree tree;  // the skeleton: trunk marked, radii measured or inferred, root at (0,0,0), frame set
     double spacing = 0.0;  // that was used
-    std::vector<SkeletonStage> stages;
+    std::vector<StageTime> stages;
     std::vector<std::string> warnings;
 };
 

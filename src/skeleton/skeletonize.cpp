@@ -1,5 +1,3 @@
-#include <chrono>
-
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/delaunay_graph.h"
@@ -24,21 +22,6 @@ constexpr double kLeastBranch = 0.05;   // metres, likewise
 constexpr double kWidestRing = 0.05;    // of the tree's extent
 constexpr double kLeafyShare = 0.05;    // likewise: the shortest branch among leaves
 constexpr double kRawRadius = 0.002;    // metres
-
-class StageClock {
-  public:
-    explicit StageClock(std::vector<SkeletonStage>& stages) : stages_(stages) {}
-    void stop(const char* name, size_t count) {
-        const Clock::time_point now = Clock::now();
-        stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
-        start_ = now;
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    std::vector<SkeletonStage>& stages_;
-    Clock::time_point start_ = Clock::now();
-};
 
 // The shortest-path tree itself, for pictures.
 Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {

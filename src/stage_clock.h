@@ -1,0 +1,35 @@
+// How long each stage of a job took, for reports.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace treerec {
+
+struct StageTime {
+    std::string name;
+    double milliseconds = 0.0;
+    size_t count = 0;  // points, branches or nodes after the stage
+};
+
+// Appends a StageTime at every stop(), measured from the last one.
+class StageClock {
+  public:
+    explicit StageClock(std::vector<StageTime>& stages) : stages_(stages) {}
+
+    void restart() { start_ = Clock::now(); }
+    void stop(const char* name, size_t count) {
+        const Clock::time_point now = Clock::now();
+        stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
+        start_ = now;
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    std::vector<StageTime>& stages_;
+    Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace treerec
