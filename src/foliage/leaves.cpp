@@ -16,8 +16,8 @@ namespace {
 constexpr double kGoldenAngle = 2.39996322972865332;  // radians: leaves above one another shade least
 constexpr double kFullHeight = 6.0;                   // metres; smaller trees bear smaller sprays
 constexpr size_t kBranchesPerChunk = 256;
-constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that a stub can stand on
-constexpr double kStubRadii = 6.0;   // a branch shorter than this many radii of its host is a stub
+constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that a snag can stand on
+constexpr double kSnagRadii = 6.0;   // a branch shorter than this many radii of its host is a snag
 
 // The rules of one tree, in its own measure.
 struct Scaled {
@@ -123,17 +123,17 @@ void Placer::bear(const Branch& branch, std::vector<AxisPoint>& axis,
     }
 }
 
-// By branch: whether it is a stub on stout wood, or grows on one. A scan of an old trunk is full of them -
-// snags, bark strips, burls - and leaves on them make its foot a bush.
-std::vector<uint8_t> find_stubs(const Tree& tree, const BranchList& list, double stout_radius) {
-    std::vector<uint8_t> stub(list.branches.size(), 0);
-    for (size_t i = 0; i < stub.size(); i++) {
+// By branch: whether it is a snag on stout wood, or grows on one. A scan of an old trunk is full of them -
+// dead twigs, bark strips, burls - and leaves on them make its foot a bush.
+std::vector<uint8_t> find_snags(const Tree& tree, const BranchList& list, double stout_radius) {
+    std::vector<uint8_t> snag(list.branches.size(), 0);
+    for (size_t i = 0; i < snag.size(); i++) {
         const Branch& branch = list.branches[i];
         if (branch.attach == kNoNode) continue;
         const double host = tree.node(branch.attach).radius;
-        stub[i] = stub[branch.parent] || (host > stout_radius && branch.length < kStubRadii * host);
+        snag[i] = snag[branch.parent] || (host > stout_radius && branch.length < kSnagRadii * host);
     }
-    return stub;
+    return snag;
 }
 
 // Fewer, larger leaves that cover the same area.
@@ -163,11 +163,11 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     const std::vector<Branch>& branches = placer.list.branches;
     std::vector<std::vector<LeafPlacement>> parts((branches.size() + kBranchesPerChunk - 1) /
                                                   kBranchesPerChunk);
-    const std::vector<uint8_t> stub = find_stubs(tree, placer.list, kStoutShare * placer.size.maximum_radius);
+    const std::vector<uint8_t> snag = find_snags(tree, placer.list, kStoutShare * placer.size.maximum_radius);
     parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
         std::vector<AxisPoint> axis;
         for (size_t i = begin; i < end; i++)
-            if (!stub[i]) placer.bear(branches[i], axis, parts[begin / kBranchesPerChunk]);
+            if (!snag[i]) placer.bear(branches[i], axis, parts[begin / kBranchesPerChunk]);
     });
     size_t count = 0;
     for (const auto& part : parts)

@@ -21,7 +21,7 @@ struct LeafRules {
     double internode = 0.05;   // distance between sprays along a twig; pairs stand twice as far apart
     double twig_length = 0.6;  // how far from its tip a branch bears leaves
     double maximum_radius =
-        0.02;  // thicker wood bears none, but for the tips; nor do stubs on wood twice as thick
+        0.02;  // thicker wood bears none, but for the tips; nor do snags on wood twice as thick
     double leaf_size = 0.25;      // length of a spray
     double size_variation = 0.3;  // share
     double angle = 55.0;          // between the twig and the spray

@@ -82,7 +82,7 @@ bool bears_leaf_at(const std::vector<LeafPlacement>& leaves, const DVec3& place)
 }
 
 TEST(Leaves, EveryTipBearsOne) {
-    // Slender wood throughout: no stubs.
+    // Slender wood throughout: no snags.
     Tree tree = test::random_tree(4, 500);
     for (NodeId id : tree.depth_first())
         tree.set_radius(id, std::min(tree.node(id).radius, 0.02));
@@ -91,21 +91,21 @@ TEST(Leaves, EveryTipBearsOne) {
         EXPECT_TRUE(bears_leaf_at(leaves, tree.node(tip).position));
 }
 
-TEST(Leaves, StubsOnAStoutTrunkBearNone) {
+TEST(Leaves, SnagsOnAStoutTrunkBearNone) {
     Tree tree;
     tree.add_root({0, 0, 0}, 0.15);
     const NodeId low = tree.add_child(0, {0, 1, 0}, 0.15);
     NodeId at = low;
     for (int i = 2; i <= 10; i++)
         at = tree.add_child(at, {0, i, 0}, 0.15 - 0.014 * i);
-    const NodeId stub = tree.add_child(low, {0.4, 1.2, 0}, 0.01);
-    const NodeId on_stub = tree.add_child(stub, {0.5, 1.5, 0}, 0.01);
-    const NodeId also_on_stub = tree.add_child(stub, {0.5, 1.2, 0.2}, 0.01);
+    const NodeId snag = tree.add_child(low, {0.4, 1.2, 0}, 0.01);
+    const NodeId on_snag = tree.add_child(snag, {0.5, 1.5, 0}, 0.01);
+    const NodeId also_on_snag = tree.add_child(snag, {0.5, 1.2, 0.2}, 0.01);
     const NodeId limb = tree.add_child(low, {-1.5, 1.5, 0}, 0.01);
     const NodeId twig = tree.add_child(tree.node(at).parent, {0.3, 9.1, 0}, 0.01);
     const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), 1);
-    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(on_stub).position));
-    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(also_on_stub).position));
+    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(on_snag).position));
+    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(also_on_snag).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(limb).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(twig).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(at).position));
