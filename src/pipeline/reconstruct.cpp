@@ -53,7 +53,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
 
     SubProgress orienting(progress, kReadEnd, kOrientEnd);
     orienting.update(0.0, "Orienting");
-    result.orient = orient_cloud(result.cloud, options.orient);
+    result.orient = orient_cloud(result.cloud, options.orient, &orienting);
     append(result.warnings, result.orient.warnings);
     clock.stop("Orient", result.cloud.size());
     orienting.check();
@@ -61,6 +61,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     SubProgress cleaning(progress, kOrientEnd, kCleanEnd);
     cleaning.update(0.0, "Cleaning");
     result.clean = clean_cloud(result.cloud, options.clean, &cleaning);
+    settle_height(result.cloud, options.orient, result.orient);
     append(result.warnings, result.clean.warnings);
     clock.stop("Clean", result.cloud.size());
     cleaning.check();

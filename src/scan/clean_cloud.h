@@ -10,10 +10,20 @@
 
 namespace treerec {
 
+// A length that the user measured: two places in the scan's coordinates and the metres between them.
+struct KnownLength {
+    DVec3 from{0.0};
+    DVec3 to{0.0};
+    double metres = 0.0;
+};
+
+// At most one of metres_per_unit, known_height and known_length sets the scale; where none does, it is
+// guessed from the size (metres unless that is implausible), and said so.
 struct OrientOptions {
-    std::optional<UpAxis> up;  // none: detect Z, Y or -Y; Z where the shape does not tell
-    std::optional<double>
-        metres_per_unit;  // none: guess from the size (metres unless implausible), and say so
+    std::optional<UpAxis> up = std::nullopt;  // none: detect Z, Y or -Y; Z where the shape does not tell
+    std::optional<double> metres_per_unit = std::nullopt;
+    std::optional<double> known_height = std::nullopt;  // metres, of the whole tree
+    std::optional<KnownLength> known_length = std::nullopt;
 };
 
 struct OrientReport {
@@ -21,11 +31,17 @@ struct OrientReport {
     bool up_detected = false;
     double metres_per_unit = 1.0;
     bool scale_guessed = false;
+    bool scale_unknown = false;  // guessed, and a cloud of this kind has no scale of its own
     std::vector<std::string> warnings;
 };
 
-// Changes the cloud to tree space: metres, Y up; positions, normals and frame agree afterwards.
-OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options);
+// Changes the cloud to tree space: metres, Y up; positions, normals and frame agree afterwards. Throws Error
+// for an empty cloud, for more than one scale and for a scale or length that is not positive.
+OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progress* progress = nullptr);
+
+// After cleaning, when the cloud is the tree alone: makes it options.known_height high to the millimetre.
+// Does nothing where no height is known.
+void settle_height(PointCloud& cloud, const OrientOptions& options, OrientReport& report);
 
 // Each step can be switched off. Units: metres.
 struct CleanOptions {

@@ -1,19 +1,16 @@
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "scan/clean_cloud.h"
 #include "scan/robust.h"
+#include "scan/scale.h"
 
 namespace treerec {
 
 namespace {
 
 constexpr int kSlices = 40;
-constexpr double kShortestTree = 0.3;  // metres
-constexpr double kTallestTree = 120.0;
-constexpr double kTypicalTree = 10.0;
 // How much more an upside-down stem must look like one. Both ends of a pruned tree look like stems.
 constexpr double kFlipMargin = 1.3;
 // Coordinates this large are a map's (UTM and the like), and maps are Z up.
@@ -125,15 +122,17 @@ AxisView view_axis(const std::vector<Vec3>& points, const std::array<Range, 3>& 
     return view;
 }
 
+bool is_on_map(const DVec3& origin) {
+    return std::max(std::abs(origin.x), std::abs(origin.y)) > kMapCoordinates;
+}
+
 // Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; no program puts
 // the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
 // without colours, which photos would have given it.
-UpAxis detect_up(const PointCloud& cloud, bool& sure) {
-    const DVec3 place = glm::abs(cloud.frame.origin);
+UpAxis detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, bool& sure) {
     sure = true;
-    if (std::max(place.x, place.y) > kMapCoordinates) return UpAxis::kZ;
+    if (is_on_map(cloud.frame.origin)) return UpAxis::kZ;
 
-    const std::array<Range, 3> ranges = robust_ranges(cloud.positions);
     const AxisView y = view_axis(cloud.positions, ranges, 1);
     const AxisView z = view_axis(cloud.positions, ranges, 2);
     const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
@@ -149,37 +148,6 @@ UpAxis detect_up(const PointCloud& cloud, bool& sure) {
     return y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
 }
 
-// Four digits.
-std::string short_number(double value) {
-    char text[32];
-    const bool whole = value >= 1000.0 && value < 1e15;
-    const std::to_chars_result end =
-        whole ? std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, 0)
-              : std::to_chars(text, text + sizeof(text), value, std::chars_format::general, 4);
-    return {text, end.ptr};
-}
-
-struct Unit {
-    std::string name;
-    double metres;
-};
-
-// Metres if that makes a tree of it, else the unit that does and comes closest to a typical one; where none
-// does, the scan has no scale, and a power of ten makes it about as high as a typical tree.
-Unit guess_unit(double height) {
-    const auto is_tree = [&](double metres) {
-        return height * metres >= kShortestTree && height * metres <= kTallestTree;
-    };
-    const auto error = [&](double metres) { return std::abs(std::log(height * metres / kTypicalTree)); };
-    if (is_tree(1.0) || !(height > 0.0)) return {"metres", 1.0};
-    const bool centimetres = is_tree(0.01);
-    const bool millimetres = is_tree(0.001);
-    if (centimetres && !(millimetres && error(0.001) < error(0.01))) return {"centimetres", 0.01};
-    if (millimetres) return {"millimetres", 0.001};
-    const double metres = std::pow(10.0, std::round(std::log10(kTypicalTree / height)));
-    return {short_number(metres) + " m each", metres};
-}
-
 size_t axis_of(UpAxis up) {
     if (up == UpAxis::kX || up == UpAxis::kNegX) return 0;
     return up == UpAxis::kY || up == UpAxis::kNegY ? 1 : 2;
@@ -187,40 +155,24 @@ size_t axis_of(UpAxis up) {
 
 }  // namespace
 
-OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options) {
+OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progress* progress) {
     OrientReport report;
     if (cloud.empty()) throw Error("The cloud has no points.");
-    if (options.metres_per_unit &&
-        !(std::isfinite(*options.metres_per_unit) && *options.metres_per_unit > 0.0))
-        throw Error("The scale must be a positive number of metres per unit.");
+    if (progress) progress->check();
+    const std::array<Range, 3> ranges = robust_ranges(cloud.positions);
+    const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;
     } else {
         bool sure = false;
-        report.up = detect_up(cloud, sure);
+        report.up = detect_up(cloud, ranges, sure);
         report.up_detected = true;
         if (!sure)
             report.warnings.push_back("The shape does not tell which way is up; " +
                                       std::string(up_axis_name(report.up)) +
                                       " was taken. If the tree lies or hangs, set the up axis by hand.");
     }
-
-    const double height = robust_ranges(cloud.positions)[axis_of(report.up)].size();
-    if (options.metres_per_unit) {
-        report.metres_per_unit = *options.metres_per_unit;
-    } else {
-        const Unit unit = guess_unit(height);
-        report.metres_per_unit = unit.metres;
-        report.scale_guessed = true;
-        if (unit.metres != 1.0)
-            report.warnings.push_back("The cloud is " + short_number(height) +
-                                      " units high; they were taken for " + unit.name +
-                                      ". Set the scale by hand if that is wrong.");
-    }
-    const double metres = height * report.metres_per_unit;
-    if (metres > 0.0 && (metres < kShortestTree || metres > kTallestTree))
-        report.warnings.push_back("The cloud is " + short_number(metres) +
-                                  " m high, which is odd for a tree; check the scale and the up axis.");
+    set_scale(ranges[axis_of(report.up)].size(), on_map, options, report);
 
     cloud.frame.up = report.up;
     cloud.frame.metres_per_unit = report.metres_per_unit;

@@ -66,7 +66,9 @@ TEST(ScanOrient, FindsTheUpAxis) {
                 EXPECT_EQ(report.up, up);
                 EXPECT_TRUE(report.up_detected);
                 EXPECT_DOUBLE_EQ(report.metres_per_unit, unit);
-                EXPECT_EQ(report.warnings.size(), unit == 1.0 ? 0U : 1U);
+                // Whatever has Y up comes from photos, without a scale.
+                EXPECT_EQ(report.warnings.size(), unit == 1.0 && up == UpAxis::kZ ? 0U : 1U);
+                EXPECT_EQ(report.scale_unknown, unit == 1.0 && up != UpAxis::kZ);
                 for (size_t i = 0; i < cloud.size(); i += 97)
                     expect_point(cloud, i, DVec3(before.positions[i]) + before.frame.origin, 1e-5 / unit);
             }
