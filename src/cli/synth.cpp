@@ -18,7 +18,8 @@ const Command& synth_command() {
         "Grows a tree, scans it virtually, and writes scan.ply and truth.txt.",
         {{"-o", "DIR", "the folder to write to; it is made"},
          {"--seed", "N", "the tree and everything random about it (default 1)"},
-         {"--habit", "NAME", "broadleaf conifer birch (default broadleaf)"},
+         {"--habit", "NAME",
+          "broadleaf conifer birch forked leaning shrub buttressed palm (default broadleaf)"},
          {"--height", "M", "metres (default: the habit's, by the seed)"},
          {"--points", "N", "of the cloud (default 40000)"},
          {"--noise", "S", "standard deviation of the range in metres (default 0.003)"},
@@ -47,7 +48,7 @@ void run_synth(const std::vector<std::string>& words) {
             throw UsageError(error.what());
         }
     }
-    VirtualScanOptions scanning;
+    VirtualScanOptions scanning = scan_options_for(grow.habit);
     scanning.seed = grow.seed;
     scanning.points = arguments.whole("--points", scanning.points, 1, 20'000'000);
     scanning.noise = arguments.number("--noise", scanning.noise, 0.0, 1.0);

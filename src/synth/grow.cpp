@@ -1,12 +1,12 @@
 #include "synth/grow.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <unordered_map>
 
 #include "error.h"
 #include "geometry/random.h"
+#include "synth/habits.h"
 #include "tree/trunk.h"
 
 namespace treerec {
@@ -14,72 +14,7 @@ namespace treerec {
 namespace {
 
 constexpr double kGoldenAngle = 137.50776405003785;  // degrees
-constexpr int kMaximumOrder = 3;                     // of branches; the trunk is 0
-
-// How the branches of one order grow. Lengths in metres, angles in degrees.
-struct OrderHabit {
-    double step;          // between nodes
-    double sway;          // of the heading, per square root of a metre
-    double lift;          // pull towards the sky (negative: towards the ground) per metre, at the base
-    double tip_lift;      // the same at the tip
-    double bare;          // share of its length without side branches
-    double spacing;       // between side buds (or whorls)
-    int whorl;            // buds per spacing
-    double angle;         // of its side branches at its base
-    double tip_angle;     // and at its tip
-    double child_ratio;   // length of its longest side branch beside its own
-    double least_length;  // shorter side branches do not grow
-    double clearance;     // kept from other wood
-};
-
-struct HabitRules {
-    const char* name;
-    double least_height, most_height;
-    double slenderness;  // height / diameter at the base above the flare
-    double tip_radius;   // metres
-    double lean;         // degrees, the trunk's most
-    int leaders;         // limbs that the trunk splits into; 1: it goes through to the top
-    double split;        // at this share of the height
-    // Length of side branches along the trunk: share of the longest, from the first to the top.
-    double profile_base, profile_middle, profile_top;
-    std::array<OrderHabit, kMaximumOrder + 1> orders;
-};
-
-// clang-format off
-const HabitRules kBroadleafRules = {
-    "broadleaf", 8.5, 11.5, 30.0, 0.0035, 3.0, 4, 0.25, 0.85, 1.0, 0.40,
-    // step, sway, lift, tip, bare, spacing, whorl, angle, tip, ratio, least, clearance
-    {{{0.12,  4.0,  0.16, 0.10, 0.30, 0.55, 1, 62.0, 42.0, 0.52, 0.60, 0.18},
-      {0.10, 13.0,  0.12, 0.20, 0.18, 0.44, 1, 56.0, 42.0, 0.52, 0.40, 0.11},
-      {0.08, 17.0,  0.18, 0.24, 0.20, 0.42, 1, 50.0, 40.0, 0.50, 0.30, 0.07},
-      {0.08, 18.0,  0.15, 0.25, 1.00, 1.00, 0, 45.0, 45.0, 0.00, 0.10, 0.05}}}};
-
-const HabitRules kConiferRules = {
-    "conifer", 10.0, 14.0, 52.0, 0.0035, 1.0, 1, 1.0, 0.92, 0.72, 0.10,
-    {{{0.14,  1.2,  0.25, 0.40, 0.12, 0.55, 4, 86.0, 50.0, 0.25, 0.35, 0.10},
-      {0.10,  7.0, -0.12, 0.26, 0.22, 0.42, 2, 56.0, 46.0, 0.38, 0.28, 0.05},
-      {0.08, 10.0, -0.05, 0.10, 0.35, 0.45, 1, 46.0, 42.0, 0.40, 0.22, 0.03},
-      {0.08, 12.0,  0.00, 0.10, 1.00, 1.00, 0, 45.0, 45.0, 0.00, 0.10, 0.03}}}};
-
-const HabitRules kBirchRules = {
-    "birch", 10.0, 14.0, 62.0, 0.0030, 2.5, 1, 1.0, 0.80, 1.0, 0.22,
-    {{{0.12,  2.4,  0.22, 0.25, 0.25, 0.32, 1, 54.0, 32.0, 0.29, 0.40, 0.10},
-      {0.10, 10.0,  0.12, -0.10, 0.18, 0.32, 1, 50.0, 36.0, 0.48, 0.30, 0.07},
-      {0.08, 13.0, -0.15, -1.00, 0.20, 0.36, 1, 44.0, 36.0, 0.58, 0.25, 0.05},
-      {0.08, 14.0, -1.10, -1.40, 1.00, 1.00, 0, 45.0, 45.0, 0.00, 0.10, 0.04}}}};
-// clang-format on
-
-const HabitRules& rules_of(Habit habit) {
-    switch (habit) {
-        case Habit::kBroadleaf:
-            return kBroadleafRules;
-        case Habit::kConifer:
-            return kConiferRules;
-        case Habit::kBirch:
-            return kBirchRules;
-    }
-    return kBroadleafRules;
-}
+constexpr double kTurnSpread = 0.35;                 // of a limb's turn off the trunk, either way
 
 double lerp(double a, double b, double t) {
     return a + (b - a) * t;
@@ -154,13 +89,14 @@ class Grower {
 
     Tree grow() {
         Random random(seed_, 1);
-        const double lean = glm::radians(rules_.lean) * random.uniform();
-        const double azimuth = random.uniform(0.0, 2.0 * kPi);
-        const DVec3 up(std::sin(lean) * std::cos(azimuth), std::cos(lean),
-                       std::sin(lean) * std::sin(azimuth));
+        const double lean = random.uniform(rules_.least_lean, rules_.most_lean);
+        const DVec3 up = tilted(lean, random.uniform(0.0, 360.0));
         tree_.add_root(DVec3(0.0), kProvisionalRadius, kMeasuredRadiusFlag);
-        buds_.push_back(
-            {tree_.root(), up, height_ * (rules_.leaders > 1 ? rules_.split : 1.0), 0, -1, false});
+        if (rules_.stems == 1)
+            buds_.push_back(
+                {tree_.root(), up, height_ * (rules_.leaders > 1 ? rules_.split : 1.0), 0, -1, false});
+        else
+            sprout_stems(random);
         for (size_t i = 0; i < buds_.size(); i++)
             grow_axis(buds_[i], static_cast<int32_t>(i));
         set_radii();
@@ -179,6 +115,23 @@ class Grower {
         DVec3 direction;
         double along;  // 0..1
     };
+
+    // The vertical, leaning by `lean` towards `azimuth`, degrees.
+    static DVec3 tilted(double lean, double azimuth) {
+        const double angle = glm::radians(lean), to = glm::radians(azimuth);
+        return {std::sin(angle) * std::cos(to), std::cos(angle), std::sin(angle) * std::sin(to)};
+    }
+
+    // Several stems from the root, each with branches like a limb's.
+    void sprout_stems(Random& random) {
+        const double turn = random.uniform(0.0, 360.0);
+        for (int i = 0; i < rules_.stems; i++) {
+            const double azimuth = turn + 360.0 * i / rules_.stems + random.uniform(-20.0, 20.0);
+            const double lean = rules_.spread * random.uniform(0.6, 1.4);
+            const double length = height_ * (i == 0 ? 1.0 : random.uniform(0.65, 0.95));
+            buds_.push_back({tree_.root(), tilted(lean, azimuth), length, 0, -1, true});
+        }
+    }
 
     void grow_axis(const Bud bud, int32_t axis) {
         const OrderHabit& habit = rules_.orders[bud.order];
@@ -229,7 +182,8 @@ class Grower {
         const double reach = height_ * (1.0 - rules_.split);
         for (int i = 0; i < rules_.leaders; i++) {
             const bool first = i == 0;
-            const double angle = first ? random.uniform(6.0, 14.0) : random.uniform(28.0, 52.0);
+            const double angle = (first ? rules_.first_turn : rules_.other_turn) *
+                                 random.uniform(1.0 - kTurnSpread, 1.0 + kTurnSpread);
             const double azimuth = turn + 360.0 * i / rules_.leaders + random.uniform(-20.0, 20.0);
             const double length = reach * (first ? 1.0 : random.uniform(0.72, 0.95));
             // A fork of four limbs in one point is rare in nature: they leave over the last metre.
@@ -343,21 +297,33 @@ class Grower {
 
 }  // namespace
 
+std::vector<Habit> all_habits() {
+    return {Habit::kBroadleaf, Habit::kConifer, Habit::kBirch,      Habit::kForked,
+            Habit::kLeaning,   Habit::kShrub,   Habit::kButtressed, Habit::kPalm};
+}
+
 Habit parse_habit(const std::string& name) {
-    for (Habit habit : {Habit::kBroadleaf, Habit::kConifer, Habit::kBirch})
-        if (name == rules_of(habit).name) return habit;
     std::string names;
-    for (const std::string& known : habit_names())
-        names += (names.empty() ? "" : ", ") + known;
+    for (Habit habit : all_habits()) {
+        if (name == habit_rules(habit).name) return habit;
+        names += std::string(names.empty() ? "" : ", ") + habit_rules(habit).name;
+    }
     throw Error("There is no habit '" + name + "'; use one of " + names + ".");
 }
 
+std::string habit_name(Habit habit) {
+    return habit_rules(habit).name;
+}
+
 std::vector<std::string> habit_names() {
-    return {kBroadleafRules.name, kConiferRules.name, kBirchRules.name};
+    std::vector<std::string> names;
+    for (Habit habit : all_habits())
+        names.push_back(habit_name(habit));
+    return names;
 }
 
 Tree grow_tree(const GrowOptions& options) {
-    const HabitRules& rules = rules_of(options.habit);
+    const HabitRules& rules = habit_rules(options.habit);
     double height = options.height;
     if (height == 0.0) height = Random(options.seed, 7).uniform(rules.least_height, rules.most_height);
     if (!(height >= 1.0 && height <= 60.0)) throw Error("A tree can be grown from 1 to 60 m high.");

@@ -13,7 +13,7 @@
 
 namespace treerec {
 
-enum class Habit { kBroadleaf, kConifer, kBirch };
+enum class Habit { kBroadleaf, kConifer, kBirch, kForked, kLeaning, kShrub, kButtressed, kPalm };
 
 struct GrowOptions {
     Habit habit = Habit::kBroadleaf;
@@ -21,9 +21,12 @@ struct GrowOptions {
     uint64_t seed = 1;
 };
 
-// "broadleaf", "conifer", "birch". Throws Error for another name, listing these.
-Habit parse_habit(const std::string& name);
+std::vector<Habit> all_habits();
+// "broadleaf", "conifer", "birch", "forked", "leaning", "shrub" (several stems), "buttressed", "palm".
+std::string habit_name(Habit habit);
 std::vector<std::string> habit_names();
+// Throws Error for another name, listing these.
+Habit parse_habit(const std::string& name);
 
 // Metres, Y up, root at (0,0,0), trunk marked, frame with Z up. All radii count as measured. The same options
 // give the same tree on every machine. Throws Error for a height outside 1..60 m.
