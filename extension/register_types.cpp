@@ -8,6 +8,7 @@
 
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
+#include "exchange/ready_pictures.h"
 #include "tree_reconstructor.h"
 #endif
 
@@ -36,6 +37,7 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
 #ifdef TREEREC_EDITOR
             GDREGISTER_CLASS(
                 TreeReconstructor)  // Here, since scripts run by the editor's program use it too.
+            treerec::use_ready_pictures();
 #endif
             break;
         case MODULE_INITIALIZATION_LEVEL_EDITOR:

@@ -46,12 +46,30 @@ bool is_special(const fs::path& path) {
     return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-bool write_stream(const fs::path& path, std::string_view bytes) {
+constexpr size_t kBytesBetweenChecks = size_t{8} << 20;
+
+bool write_stream(const fs::path& path, std::span<const std::string_view> parts, const Progress* progress) {
     std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    for (std::string_view part : parts) {
+        while (!part.empty() && stream) {
+            if (progress) progress->check();
+            const std::string_view piece = part.substr(0, kBytesBetweenChecks);
+            stream.write(piece.data(), static_cast<std::streamsize>(piece.size()));
+            part.remove_prefix(piece.size());
+        }
+    }
     stream.close();
     return !stream.fail();
 }
+
+// Removes what was written beside a file unless it has been renamed.
+struct Leftover {
+    fs::path path;
+    ~Leftover() {
+        std::error_code ignored;
+        fs::remove(path, ignored);
+    }
+};
 
 // Where the bytes go in the end: for a link, what it points to.
 fs::path target_of(const std::string& path) {
@@ -68,23 +86,23 @@ fs::path part_of(fs::path target) {
 
 }  // namespace
 
-void write_file(const std::string& path, std::string_view bytes) {
+void write_file(const std::string& path, std::string_view bytes, const Progress* progress) {
+    write_file(path, std::span(&bytes, 1), progress);
+}
+
+void write_file(const std::string& path, std::span<const std::string_view> parts, const Progress* progress) {
     require_writable(path);
     const Error failed("'" + path + "' could not be written; check the disk's free space and the rights.");
     if (is_special(path_of(path))) {
-        if (!write_stream(path_of(path), bytes)) throw failed;
+        if (!write_stream(path_of(path), parts, progress)) throw failed;
         return;
     }
     const fs::path target = target_of(path);
-    const fs::path beside = part_of(target);
+    const Leftover beside{part_of(target)};
     std::error_code code;
-    const bool written = write_stream(beside, bytes);
-    if (written) fs::rename(beside, target, code);
-    if (!written || code) {
-        std::error_code ignored;
-        fs::remove(beside, ignored);
-        throw failed;
-    }
+    if (!write_stream(beside.path, parts, progress)) throw failed;
+    fs::rename(beside.path, target, code);
+    if (code) throw failed;
 }
 
 void require_writable(const std::string& path) {

@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+
+#include "progress.h"
 
 namespace treerec {
 
@@ -20,8 +23,11 @@ struct FileBytes {
 FileBytes read_file(const std::string& path);
 
 // Writes beside `path` and renames, so that a failure leaves the old file as it was. A link stays a link;
-// what is no plain file (a pipe, a device) is written to straight. Throws Error.
-void write_file(const std::string& path, std::string_view bytes);
+// what is no plain file (a pipe, a device) is written to straight. Throws Error, or Cancelled.
+void write_file(const std::string& path, std::string_view bytes, const Progress* progress = nullptr);
+// The parts one after the other.
+void write_file(const std::string& path, std::span<const std::string_view> parts,
+                const Progress* progress = nullptr);
 
 // Throws Error if a file at `path` could not be written: its folder is not there or not ours to write, or it
 // is a folder itself. To be asked before the long work.

@@ -44,7 +44,8 @@ void info_of_skeleton(const std::string& path, UpAxis up, bool as_json) {
     if (m.dbh > 0.0)
         std::printf("DBH            %.1f cm (%d stem%s)\n", 100.0 * m.dbh, m.stems, m.stems == 1 ? "" : "s");
     else
-        std::printf("DBH            none: no wood at breast height\n");
+        std::printf("DBH            none: %s\n",
+                    m.height < kBreastHeight ? "it is lower than breast height" : "no wood at breast height");
     std::printf("crown radius   %.2f m\ncrown base     %.2f m\n", m.crown_radius, m.crown_base);
     std::printf("length         %.1f m\nwood           %.4f m3\n", m.total_length, m.volume);
     std::printf("measured       %.0f %% of the length\n", 100.0 * m.measured_share);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
+#include "exchange/ready_pictures.h"
 #include "version.h"
 
 namespace treerec {
@@ -85,6 +86,7 @@ int run(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
     treerec::listen_for_interrupt();
+    treerec::use_ready_pictures();
     try {
         const int code = treerec::run({argv + 1, argv + argc});
         if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -25,12 +28,39 @@ auto as_usage(Call call) {
     }
 }
 
+// "x,y,z,x,y,z,metres".
+KnownLength known_length_from(const Arguments& arguments) {
+    const std::string word = arguments.text("--length", "");
+    std::array<double, 7> values{};
+    const char *at = word.data(), *const end = at + word.size();
+    for (size_t i = 0; i < values.size(); i++) {
+        const auto [next, failure] = std::from_chars(at, end, values[i]);
+        const bool last = i + 1 == values.size();
+        if (failure != std::errc() || !std::isfinite(values[i]) ||
+            (last ? next != end : next == end || *next != ','))
+            throw UsageError(
+                "--length needs seven numbers, as in 0,0,0,0,0,5.2,1.8: two places in the scan's "
+                "coordinates and the metres between them. Not '" +
+                word + "'.");
+        at = last ? next : next + 1;
+    }
+    const auto& v = values;
+    const KnownLength known{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+    if (!(known.metres > 0.0) || known.from == known.to)
+        throw UsageError("--length needs two different places, and a length above 0.");
+    return known;
+}
+
 ReconstructOptions options_from(const Arguments& arguments) {
     ReconstructOptions options;
     options.read.columns = columns_from(arguments);
     if (arguments.text("--up", "auto") != "auto") options.orient.up = up_axis_from(arguments);
     if (arguments.has("--scale"))
         options.orient.metres_per_unit = arguments.number("--scale", 1.0, 1e-9, 1e9);
+    if (arguments.has("--height")) options.orient.known_height = arguments.number("--height", 0.0, 1e-3, 1e3);
+    if (arguments.has("--length")) options.orient.known_length = known_length_from(arguments);
+    if (arguments.has("--scale") + arguments.has("--height") + arguments.has("--length") > 1)
+        throw UsageError("--scale, --height and --length all set the scale; give one of them.");
     options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
     options.skeleton.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
     const bool clean = !arguments.has("--no-clean");
@@ -38,6 +68,8 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_outliers = clean && !arguments.has("--no-clean-outliers");
     options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
+    // Enough for the summary; a report tells more exactly.
+    if (!arguments.has("--report")) options.score_points = 4000;
     return options;
 }
 
@@ -52,14 +84,15 @@ void require_safe_target(const std::string& target, const std::string& scan,
 }
 
 void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds) {
-    const Measurements m = measure(result.tree);
+    const Measurements& m = result.measured;
     std::printf("%zu points, %zu after cleaning; %zu nodes, %zu tips\n", result.points_read,
                 result.cloud.size(), m.nodes, m.tips);
     std::printf("height %.2f m, ", m.height);
     if (m.dbh > 0.0)
         std::printf("DBH %.1f cm, ", 100.0 * m.dbh);
     else
-        std::printf("no stem at breast height, ");
+        std::printf("%s, ",
+                    m.height < kBreastHeight ? "lower than breast height" : "no stem at breast height");
     std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
     std::printf("%.0f %% of the points lie within 2 cm of the bark, half within %.1f mm\n",
                 100.0 * result.fit.explained_2cm, result.fit.median_mm);
@@ -91,6 +124,8 @@ const Command& reconstruct_command() {
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
+         {"--height", "M", "the tree's height in metres: sets the scale of scans that have none"},
+         {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
          {"--leaves", "PRESET", leaf_names() + "(default generic)"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
@@ -135,7 +170,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     TerminalProgress progress(quiet);
     SubProgress reconstructing(&progress, 0.0, 0.9);
     const Reconstruction result = reconstruct_file(scan, options, &reconstructing);
-    TreeExporter exporter(result.tree, exports);
+    TreeExporter exporter(result.tree, exports, &progress);
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();
         progress.update(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");

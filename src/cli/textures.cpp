@@ -40,7 +40,7 @@ void run_textures(const std::vector<std::string>& words) {
         progress.update(static_cast<double>(i) / static_cast<double>(presets.size()), presets[i].c_str());
         progress.check();
         const std::vector<std::string> written =
-            write_pictures(arguments.text("-o", ""), presets[i], size, seed);
+            write_pictures(arguments.text("-o", ""), presets[i], make_pictures(presets[i], size, seed));
         progress.clear();
         if (quiet) continue;
         for (const std::string& path : written)

@@ -1,193 +1,205 @@
 #include "exchange/gltf.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <sstream>
+#include <nlohmann/json.hpp>
+#include <span>
 
 #include "error.h"
 #include "file_bytes.h"
-
-#define TINYGLTF_IMPLEMENTATION
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#endif
-#include <tiny_gltf.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "geometry/parallel.h"
 
 namespace treerec {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr size_t kLargestFile = 0xFFFFFF00;  // a .glb counts its bytes in 32 bits
+constexpr size_t kChunk = 16384;             // vertices or indices converted at a time
+constexpr uint32_t kGlbMagic = 0x46546C67, kGlbVersion = 2, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
-// Appends to the model's one buffer.
-class Builder {
-  public:
-    explicit Builder(tinygltf::Model& model) : model_(model) { model_.buffers.resize(1); }
-
-    int add_view(const void* bytes, size_t size, int target) {
-        std::vector<unsigned char>& data = model_.buffers[0].data;
-        data.resize((data.size() + 3) / 4 * 4, 0);
-        if (data.size() + size > kLargestFile)
-            throw Error("The model is larger than 4 GB; simplify the tree or write fewer leaves.");
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = data.size();
-        view.byteLength = size;
-        view.target = target;
-        const auto* first = static_cast<const unsigned char*>(bytes);
-        data.insert(data.end(), first, first + size);
-        model_.bufferViews.push_back(std::move(view));
-        return static_cast<int>(model_.bufferViews.size()) - 1;
-    }
-
-    template <typename T>
-    int add_accessor(const std::vector<T>& values, int component, int type, int target) {
-        tinygltf::Accessor accessor;
-        accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
-        accessor.componentType = component;
-        accessor.type = type;
-        accessor.count = values.size();
-        accessor.normalized = component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
-        model_.accessors.push_back(std::move(accessor));
-        return static_cast<int>(model_.accessors.size()) - 1;
-    }
-
-    int add_mesh(const Mesh& mesh, const char* name, int material) {
-        constexpr int kVertices = TINYGLTF_TARGET_ARRAY_BUFFER, kFloat = TINYGLTF_COMPONENT_TYPE_FLOAT;
-        tinygltf::Primitive primitive;
-        primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        primitive.material = material;
-        primitive.indices = add_accessor(mesh.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                         TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-        auto& attributes = primitive.attributes;
-        attributes["POSITION"] = add_accessor(mesh.positions, kFloat, TINYGLTF_TYPE_VEC3, kVertices);
-        Vec3 low = mesh.positions[0], high = low;
-        for (const Vec3& position : mesh.positions) {
-            low = glm::min(low, position);
-            high = glm::max(high, position);
-        }
-        model_.accessors.back().minValues = {low.x, low.y, low.z};
-        model_.accessors.back().maxValues = {high.x, high.y, high.z};
-        attributes["NORMAL"] = add_accessor(mesh.normals, kFloat, TINYGLTF_TYPE_VEC3, kVertices);
-        attributes["TANGENT"] = add_accessor(mesh.tangents, kFloat, TINYGLTF_TYPE_VEC4, kVertices);
-        attributes["TEXCOORD_0"] = add_accessor(mesh.uvs, kFloat, TINYGLTF_TYPE_VEC2, kVertices);
-        std::vector<glm::u8vec4> wind(mesh.colors.size());
-        for (size_t i = 0; i < wind.size(); i++)
-            wind[i] = glm::u8vec4(glm::clamp(mesh.colors[i], 0.0f, 1.0f) * 255.0f + 0.5f);
-        attributes["_WIND"] =
-            add_accessor(wind, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4, kVertices);
-        tinygltf::Mesh made;
-        made.name = name;
-        made.primitives.push_back(std::move(primitive));
-        model_.meshes.push_back(std::move(made));
-        return static_cast<int>(model_.meshes.size()) - 1;
-    }
-
-    int add_texture(const std::vector<NamedPicture>& pictures, const std::string& name, int wrap) {
-        const auto found = std::find_if(pictures.begin(), pictures.end(),
-                                        [&](const NamedPicture& picture) { return picture.name == name; });
-        if (found == pictures.end()) throw Error("The model lacks the picture '" + name + "'.");
-        tinygltf::Image image;
-        image.name = name;
-        image.mimeType = "image/png";
-        image.bufferView = add_view(found->png.data(), found->png.size(), 0);
-        tinygltf::Sampler sampler;
-        sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
-        sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
-        sampler.wrapS = sampler.wrapT = wrap;
-        tinygltf::Texture texture;
-        texture.name = name;
-        texture.source = static_cast<int>(model_.images.size());
-        const auto same = std::find_if(model_.samplers.begin(), model_.samplers.end(),
-                                       [&](const tinygltf::Sampler& other) { return other.wrapS == wrap; });
-        texture.sampler = static_cast<int>(same - model_.samplers.begin());
-        if (same == model_.samplers.end()) model_.samplers.push_back(sampler);
-        model_.images.push_back(std::move(image));
-        model_.textures.push_back(std::move(texture));
-        return static_cast<int>(model_.textures.size()) - 1;
-    }
-
-  private:
-    tinygltf::Model& model_;
-};
+// The numbers that glTF gives to things (specification 2.0, sections 3.8.4, 5.1.3, 5.11.5, 5.26).
+constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
+constexpr int kRepeat = 10497, kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
+constexpr size_t kMostShortIndices = 65535;  // vertices; the index 65535 itself is reserved
 
 bool drawn(const Mesh* mesh) {
     return mesh && !mesh->indices.empty();
 }
 
-tinygltf::Model build(const ModelFile& file) {
-    tinygltf::Model model;
-    Builder builder(model);
-    model.asset.version = "2.0";
-    model.asset.generator = "Godot tree reconstruction (treerec)";
-    tinygltf::Node tree;
-    tree.name = "Tree";
-    tinygltf::Value::Object extras;
-    for (const auto& [name, value] : file.extras)
-        extras[name] = tinygltf::Value(value);
-    if (!extras.empty()) tree.extras = tinygltf::Value(extras);
-    std::vector<tinygltf::Node> parts;
-    const auto add_part = [&](const char* name, int mesh) {
-        tinygltf::Node part;
-        part.name = name;
-        part.mesh = mesh;
-        parts.push_back(std::move(part));
-        tree.children.push_back(static_cast<int>(parts.size()));
+std::string_view bytes_of(const auto& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0])};
+}
+
+// A model being put together: its JSON, and its one buffer as parts that mostly lie where they were made.
+class Builder {
+  public:
+    explicit Builder(const ModelFile& file);
+
+    Json json;
+    std::vector<std::string_view> parts;  // multiples of 4 bytes
+    size_t size = 0;                      // of all parts
+    size_t geometry_parts = 0;            // the pictures come after these,
+    size_t geometry_size = 0;             // and these bytes
+    std::vector<NamedPicture> pictures;   // those of the model, in the order of its images
+
+  private:
+    size_t add_view(std::string_view bytes, int target);
+    size_t add_accessor(std::string_view bytes, size_t count, int component, const char* type, int target);
+    size_t add_indices(const Mesh& mesh);
+    size_t add_mesh(const Mesh& mesh, const char* name);
+    size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap);
+
+    static constexpr std::array<char, 4> kPadding{};
+    std::vector<uint16_t> short_indices_[2];  // of bark and leaves: what parts point into
+    std::vector<glm::u8vec4> wind_[2];
+};
+
+size_t Builder::add_view(std::string_view bytes, int target) {
+    const size_t padding = (4 - bytes.size() % 4) % 4;
+    if (size + bytes.size() + padding > kLargestFile)
+        throw Error("The model is larger than 4 GB; simplify the tree or write fewer leaves.");
+    Json view = {{"buffer", 0}, {"byteOffset", size}, {"byteLength", bytes.size()}};
+    if (target) view["target"] = target;
+    json["bufferViews"].push_back(std::move(view));
+    parts.push_back(bytes);
+    parts.emplace_back(kPadding.data(), padding);
+    size += bytes.size() + padding;
+    return json["bufferViews"].size() - 1;
+}
+
+size_t Builder::add_accessor(std::string_view bytes, size_t count, int component, const char* type,
+                             int target) {
+    Json accessor = {{"bufferView", add_view(bytes, target)}, {"componentType", component}};
+    if (component == kUnsignedByte) accessor["normalized"] = true;
+    accessor["count"] = count;
+    accessor["type"] = type;
+    json["accessors"].push_back(std::move(accessor));
+    return json["accessors"].size() - 1;
+}
+
+size_t Builder::add_indices(const Mesh& mesh) {
+    const size_t count = mesh.indices.size();
+    if (mesh.positions.size() > kMostShortIndices)
+        return add_accessor(bytes_of(mesh.indices), count, kUnsignedInt, "SCALAR", kIndexBuffer);
+    std::vector<uint16_t>& indices = short_indices_[json["meshes"].size()];
+    indices.resize(count);
+    std::transform(mesh.indices.begin(), mesh.indices.end(), indices.begin(),
+                   [](uint32_t index) { return static_cast<uint16_t>(index); });
+    return add_accessor(bytes_of(indices), count, kUnsignedShort, "SCALAR", kIndexBuffer);
+}
+
+size_t Builder::add_mesh(const Mesh& mesh, const char* name) {
+    const size_t count = mesh.positions.size();
+    std::vector<glm::u8vec4>& wind = wind_[json["meshes"].size()];
+    wind.resize(count);
+    std::vector<std::pair<Vec3, Vec3>> bounds((count + kChunk - 1) / kChunk);
+    parallel_for(count, kChunk, [&](size_t begin, size_t end) {
+        Vec3 low = mesh.positions[begin], high = low;
+        for (size_t i = begin; i < end; i++) {
+            low = glm::min(low, mesh.positions[i]);
+            high = glm::max(high, mesh.positions[i]);
+            wind[i] = glm::u8vec4(glm::clamp(mesh.colors[i], 0.0f, 1.0f) * 255.0f + 0.5f);
+        }
+        bounds[begin / kChunk] = {low, high};
+    });
+    auto [low, high] = bounds[0];
+    for (const auto& [least, most] : bounds) {
+        low = glm::min(low, least);
+        high = glm::max(high, most);
+    }
+    Json primitive;
+    primitive["indices"] = add_indices(mesh);
+    Json& attributes = primitive["attributes"];
+    const auto add = [&](const char* attribute, std::string_view bytes, int component, const char* type) {
+        attributes[attribute] = add_accessor(bytes, count, component, type, kVertexBuffer);
     };
+    add("POSITION", bytes_of(mesh.positions), kFloat, "VEC3");
+    json["accessors"].back()["min"] = {low.x, low.y, low.z};
+    json["accessors"].back()["max"] = {high.x, high.y, high.z};
+    add("NORMAL", bytes_of(mesh.normals), kFloat, "VEC3");
+    add("TANGENT", bytes_of(mesh.tangents), kFloat, "VEC4");
+    add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
+    add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
+    primitive["material"] = json["meshes"].size();
+    json["meshes"].push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
+    return json["meshes"].size() - 1;
+}
+
+size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap) {
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const NamedPicture& picture) { return picture.name == name; });
+    if (found == all.end()) throw Error("The model lacks the picture '" + name + "'.");
+    pictures.push_back(*found);
+    json["images"].push_back(
+        {{"name", name}, {"mimeType", "image/png"}, {"bufferView", add_view(found->png, 0)}});
+    const Json sampler = {
+        {"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}, {"wrapS", wrap}, {"wrapT", wrap}};
+    Json& samplers = json["samplers"];
+    auto same = std::find(samplers.begin(), samplers.end(), sampler);
+    const auto index = static_cast<size_t>(same - samplers.begin());
+    if (same == samplers.end()) samplers.push_back(sampler);
+    json["textures"].push_back({{"name", name}, {"sampler", index}, {"source", json["images"].size() - 1}});
+    return json["textures"].size() - 1;
+}
+
+Json texture_info(size_t index) {
+    return Json::object({{"index", index}});
+}
+
+Builder::Builder(const ModelFile& file) {
+    json["asset"] = {{"version", "2.0"}, {"generator", "Godot tree reconstruction (treerec)"}};
+    json["scene"] = 0;
+    json["scenes"] = Json::array({{{"name", "Tree"}, {"nodes", {0}}}});
+    json["nodes"] = Json::array({{{"name", "Tree"}}});
+    for (const char* list :
+         {"meshes", "materials", "textures", "images", "samplers", "accessors", "bufferViews"})
+        json[list] = Json::array();
+    for (const auto& [name, value] : file.extras)
+        json["nodes"][0]["extras"][name] = value;
     // Geometry first: the pictures at the buffer's end can then be cut off into files of their own.
-    int bark_material = 0, leaf_material = drawn(file.bark) ? 1 : 0;
-    if (drawn(file.bark)) add_part("Bark", builder.add_mesh(*file.bark, "Bark", bark_material));
-    if (drawn(file.leaves)) add_part("Leaves", builder.add_mesh(*file.leaves, "Leaves", leaf_material));
-    const std::vector<NamedPicture> made = file.pictures.empty() && !parts.empty()
-                                               ? make_pictures(file.preset, kTextureSize, file.texture_seed)
-                                               : std::vector<NamedPicture>();
-    const std::vector<NamedPicture>& pictures = file.pictures.empty() ? made : file.pictures;
+    const auto add_part = [&](const char* name, const Mesh* mesh) {
+        if (!drawn(mesh)) return;
+        json["nodes"][0]["children"].push_back(json["nodes"].size());
+        json["nodes"].push_back({{"name", name}, {"mesh", add_mesh(*mesh, name)}});
+    };
+    add_part("Bark", file.bark);
+    add_part("Leaves", file.leaves);
+    geometry_parts = parts.size();
+    geometry_size = size;
+    const std::vector<NamedPicture> all =
+        file.pictures.empty() && size > 0 ? make_pictures(file.preset) : file.pictures;
     if (drawn(file.bark)) {
-        tinygltf::Material material;
-        material.name = "bark";
-        auto& surface = material.pbrMetallicRoughness;
-        surface.baseColorTexture.index =
-            builder.add_texture(pictures, "bark_albedo", TINYGLTF_TEXTURE_WRAP_REPEAT);
-        material.normalTexture.index =
-            builder.add_texture(pictures, "bark_normal", TINYGLTF_TEXTURE_WRAP_REPEAT);
-        surface.metallicRoughnessTexture.index =
-            builder.add_texture(pictures, "bark_roughness", TINYGLTF_TEXTURE_WRAP_REPEAT);
-        material.occlusionTexture.index = surface.metallicRoughnessTexture.index;
-        model.materials.push_back(std::move(material));
+        Json material, surface;
+        material["name"] = "bark";
+        surface["baseColorTexture"] = texture_info(add_texture(all, "bark_albedo", kRepeat));
+        material["normalTexture"] = texture_info(add_texture(all, "bark_normal", kRepeat));
+        const size_t roughness = add_texture(all, "bark_roughness", kRepeat);
+        surface["metallicRoughnessTexture"] = texture_info(roughness);
+        material["occlusionTexture"] = texture_info(roughness);
+        material["pbrMetallicRoughness"] = std::move(surface);
+        json["materials"].push_back(std::move(material));
     }
     if (drawn(file.leaves)) {
-        tinygltf::Material material;
-        material.name = "leaves";
-        material.alphaMode = "MASK";
-        material.alphaCutoff = 0.4;
-        material.doubleSided = true;
-        auto& surface = material.pbrMetallicRoughness;
-        surface.metallicFactor = 0.0;
-        surface.roughnessFactor = 0.7;
-        surface.baseColorTexture.index =
-            builder.add_texture(pictures, "leaf_albedo", TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE);
-        material.normalTexture.index =
-            builder.add_texture(pictures, "leaf_normal", TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE);
-        model.materials.push_back(std::move(material));
+        Json material, surface;
+        material["name"] = "leaves";
+        surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge));
+        surface["metallicFactor"] = 0.0;
+        surface["roughnessFactor"] = 0.7;
+        material["pbrMetallicRoughness"] = std::move(surface);
+        material["normalTexture"] = texture_info(add_texture(all, "leaf_normal", kClampToEdge));
+        material["alphaMode"] = "MASK";
+        material["alphaCutoff"] = 0.4;
+        material["doubleSided"] = true;
+        json["materials"].push_back(std::move(material));
     }
-    model.nodes.push_back(std::move(tree));
-    for (tinygltf::Node& part : parts)
-        model.nodes.push_back(std::move(part));
-    tinygltf::Scene scene;
-    scene.name = "Tree";
-    scene.nodes = {0};
-    model.scenes.push_back(std::move(scene));
-    model.defaultScene = 0;
-    if (model.buffers[0].data.empty()) model.buffers.clear();
-    return model;
+    if (size > 0) json["buffers"] = Json::array({{{"byteLength", size}}});
+    // glTF knows no empty lists.
+    for (auto list = json.begin(); list != json.end();)
+        list = list->is_array() && list->empty() ? json.erase(list) : std::next(list);
 }
 
 // A file's name as part of a URI (RFC 3986).
@@ -209,53 +221,60 @@ std::string percent_encoded(const std::string& name) {
     return uri;
 }
 
-uint32_t read_u32(const std::string& bytes, size_t at) {
-    uint32_t value = 0;
-    for (size_t i = 0; i < 4; i++)
-        value |= static_cast<uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-    return value;
+void append_u32(std::string& bytes, size_t value) {
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>(value >> shift & 0xFF);
 }
 
-// The one-file form taken apart: JSON, buffer and pictures, each in a file, the JSON last.
-void write_parts(const std::string& path, const std::string& glb) {
-    const std::string stem = stem_of(path);
-    const size_t json_size = read_u32(glb, 12);
-    nlohmann::json json = nlohmann::json::parse(glb.substr(20, json_size));
-    if (json.contains("buffers")) {
-        const char* bytes = glb.data() + 20 + json_size + 8;
-        size_t geometry = json["buffers"][0]["byteLength"].get<size_t>();
-        for (auto& image : json["images"]) {
-            const auto& view = json["bufferViews"][image["bufferView"].get<size_t>()];
-            const size_t offset = view.value("byteOffset", size_t{0});
-            const std::string name = stem + "_" + image["name"].get<std::string>() + ".png";
-            write_file(sibling_of(path, name), {bytes + offset, view["byteLength"].get<size_t>()});
-            geometry = std::min(geometry, offset);
-            image.erase("bufferView");
-            image.erase("mimeType");
-            image["uri"] = percent_encoded(name);
-        }
-        auto& views = json["bufferViews"];
-        views.erase(views.end() - static_cast<std::ptrdiff_t>(json["images"].size()), views.end());
-        write_file(sibling_of(path, stem + ".bin"), {bytes, geometry});
-        json["buffers"][0] = {{"byteLength", geometry}, {"uri", percent_encoded(stem + ".bin")}};
+// One file: header, JSON, buffer (specification 2.0, section 4).
+void write_glb(const std::string& path, Builder& model, const Progress* progress) {
+    std::string text = model.json.dump();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const size_t buffer = model.size > 0 ? 8 + model.size : 0;
+    std::string head, chunk;
+    append_u32(head, kGlbMagic);
+    append_u32(head, kGlbVersion);
+    append_u32(head, 12 + 8 + text.size() + buffer);
+    append_u32(head, text.size());
+    append_u32(head, kJsonChunk);
+    if (buffer > 0) {
+        append_u32(chunk, model.size);
+        append_u32(chunk, kBinChunk);
     }
-    write_file(path, json.dump(1, '\t'));
+    std::vector<std::string_view> parts{head, text, chunk};
+    parts.insert(parts.end(), model.parts.begin(), model.parts.end());
+    write_file(path, parts, progress);
+}
+
+// JSON, buffer and pictures, each in a file, the JSON last.
+void write_parts(const std::string& path, Builder& model, const Progress* progress) {
+    const std::string stem = stem_of(path);
+    Json& json = model.json;
+    if (model.size > 0) {
+        for (size_t i = 0; i < model.pictures.size(); i++) {
+            const std::string name = stem + "_" + model.pictures[i].name + ".png";
+            write_file(sibling_of(path, name), model.pictures[i].png, progress);
+            json["images"][i] = {{"name", model.pictures[i].name}, {"uri", percent_encoded(name)}};
+        }
+        Json& views = json["bufferViews"];
+        views.erase(views.end() - static_cast<std::ptrdiff_t>(model.pictures.size()), views.end());
+        write_file(sibling_of(path, stem + ".bin"), std::span(model.parts).first(model.geometry_parts),
+                   progress);
+        json["buffers"][0] = {{"byteLength", model.geometry_size}, {"uri", percent_encoded(stem + ".bin")}};
+    }
+    write_file(path, json.dump(1, '\t'), progress);
 }
 
 }  // namespace
 
-void write_gltf(const std::string& path, const ModelFile& file) {
+void write_gltf(const std::string& path, const ModelFile& file, const Progress* progress) {
     const std::string extension = extension_of(path);
     if (extension != "glb" && extension != "gltf") throw Error("'" + path + "' must end in .glb or .gltf.");
-    const tinygltf::Model model = build(file);
-    std::ostringstream stream;
-    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true))
-        throw Error("Cannot put together the glTF model for '" + path + "'.");
-    const std::string glb = std::move(stream).str();
+    Builder model(file);
     if (extension == "glb")
-        write_file(path, glb);
+        write_glb(path, model, progress);
     else
-        write_parts(path, glb);
+        write_parts(path, model, progress);
 }
 
 }  // namespace treerec

@@ -1,5 +1,7 @@
 #include "exchange/material_textures.h"
 
+#include <iterator>
+
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
@@ -20,6 +22,21 @@
 
 namespace treerec {
 
+namespace {
+
+constexpr const char* kNames[] = {"bark_albedo",         "bark_normal", "bark_roughness",
+                                  "bark_roughness_grey", "leaf_albedo", "leaf_normal"};
+std::span<const ReadyPicture> ready_pictures;
+
+Image channel_of(const Image& image, int channel) {
+    Image grey(image.width, image.height, 1);
+    for (size_t i = 0; i < grey.pixels.size(); i++)
+        grey.pixels[i] = image.pixels[i * static_cast<size_t>(image.channels) + static_cast<size_t>(channel)];
+    return grey;
+}
+
+}  // namespace
+
 std::vector<uint8_t> encode_png(const Image& image) {
     std::vector<uint8_t> png;
     const auto append = [](void* out, void* data, int size) {
@@ -33,29 +50,41 @@ std::vector<uint8_t> encode_png(const Image& image) {
     return png;
 }
 
-std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uint64_t seed) {
+std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed) {
     const BarkTextures bark = make_bark_textures(preset, size, seed);
     const LeafTextures leaf = make_leaf_textures(preset, size, seed);
-    std::vector<NamedPicture> pictures{{"bark_albedo", {}},
-                                       {"bark_normal", {}},
-                                       {"bark_roughness", {}},
-                                       {"leaf_albedo", {}},
-                                       {"leaf_normal", {}}};
-    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &leaf.albedo, &leaf.normal};
+    const Image grey = channel_of(bark.roughness, 1);
+    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey, &leaf.albedo, &leaf.normal};
+    std::vector<NamedPicture> pictures(std::size(kNames));
     parallel_for(pictures.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; i++)
-            pictures[i].png = encode_png(*images[i]);
+        for (size_t i = begin; i < end; i++) {
+            auto png = std::make_shared<const std::vector<uint8_t>>(encode_png(*images[i]));
+            pictures[i] = {kNames[i], {reinterpret_cast<const char*>(png->data()), png->size()}, png};
+        }
     });
     return pictures;
 }
 
-std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset, int size,
-                                        uint64_t seed) {
+void set_ready_pictures(std::span<const ReadyPicture> pictures) {
+    ready_pictures = pictures;
+}
+
+std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uint64_t seed) {
+    std::vector<NamedPicture> pictures;
+    if (size == kTextureSize && seed == kTextureSeed)
+        for (const char* name : kNames)
+            for (const ReadyPicture& ready : ready_pictures)
+                if (ready.preset == preset && ready.name == name) pictures.push_back({name, ready.png, {}});
+    return pictures.size() == std::size(kNames) ? pictures : draw_pictures(preset, size, seed);
+}
+
+std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset,
+                                        const std::vector<NamedPicture>& pictures) {
     make_folder(directory);
     std::vector<std::string> paths;
-    for (const NamedPicture& picture : make_pictures(preset, size, seed)) {
+    for (const NamedPicture& picture : pictures) {
         paths.push_back(utf8_of(path_of(directory) / path_of(preset + "_" + picture.name + ".png")));
-        write_file(paths.back(), picture.bytes());
+        write_file(paths.back(), picture.png);
     }
     return paths;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,23 +12,40 @@
 
 namespace treerec {
 
-inline constexpr int kTextureSize = 512;  // pixels along an edge of the textures in model files
+// What model files carry. A kind of tree has one look: the seed of a tree's leaves does not change it.
+inline constexpr int kTextureSize = 512;  // pixels along an edge
+inline constexpr uint64_t kTextureSeed = 1;
 
 std::vector<uint8_t> encode_png(const Image& image);
 
 struct NamedPicture {
-    std::string name;  // "bark_albedo", "bark_normal", "bark_roughness", "leaf_albedo" or "leaf_normal"
-    std::vector<uint8_t> png;
-
-    std::string_view bytes() const { return {reinterpret_cast<const char*>(png.data()), png.size()}; }
+    // "bark_albedo", "bark_normal", "bark_roughness" (mesh/textures.h), "bark_roughness_grey" (the roughness
+    // alone, for formats that want it so), "leaf_albedo" or "leaf_normal".
+    std::string name;
+    std::string_view png;                               // its bytes
+    std::shared_ptr<const std::vector<uint8_t>> drawn;  // what holds them; null for the build's own
 };
 
-// The five pictures of a preset, in the order of the list above.
-std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uint64_t seed);
+// A picture that the build drew, of kTextureSize and kTextureSeed.
+struct ReadyPicture {
+    std::string_view preset;
+    std::string_view name;
+    std::string_view png;
+};
+
+// Takes pictures that need no drawing any more; they must outlive all use. Not while others make pictures.
+void set_ready_pictures(std::span<const ReadyPicture> pictures);
+
+// The six pictures of a preset, in this order: the build's, where it drew these.
+std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kTextureSize,
+                                        uint64_t seed = kTextureSeed);
+
+// The same bytes, always drawn anew; it takes about a second.
+std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed);
 
 // Writes <directory>/<preset>_<name>.png for each picture and returns the paths; makes the directory. Throws
 // Error, naming the path, where it cannot write.
-std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset, int size,
-                                        uint64_t seed);
+std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset,
+                                        const std::vector<NamedPicture>& pictures);
 
 }  // namespace treerec

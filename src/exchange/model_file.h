@@ -1,7 +1,6 @@
 // What goes into a model file, whatever its format.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +14,7 @@ struct ModelFile {
     const Mesh* bark = nullptr;      // null or without triangles: left out
     const Mesh* leaves = nullptr;    // likewise
     std::string preset = "generic";  // of the textures (foliage/leaves.h)
-    uint64_t texture_seed = 1;
-    // Made from preset and texture_seed when empty; give them to write several files at the cost of one.
+    // make_pictures(preset) when empty; give them to write several files at the cost of one.
     std::vector<NamedPicture> pictures;
     std::vector<std::pair<std::string, double>> extras;  // kept in glTF: height_m, dbh_m, seed, nodes, ...
 };

@@ -48,9 +48,11 @@ struct Writer {
 
 // Formats lines 0..count in parallel, `longest` bytes each at most, and appends them to `out` in order.
 template <typename Line>
-void append_lines(std::string& out, size_t count, size_t longest, const Line& line) {
+void append_lines(std::string& out, size_t count, size_t longest, const Progress* progress,
+                  const Line& line) {
     std::vector<std::string> parts((count + kChunk - 1) / kChunk);
     parallel_for(count, kChunk, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
         std::string& part = parts[begin / kChunk];
         part.resize((end - begin) * longest);
         Writer writer{part.data()};
@@ -66,10 +68,11 @@ void append_lines(std::string& out, size_t count, size_t longest, const Line& li
         out += part;
 }
 
-void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t first) {
+void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t first,
+                 const Progress* progress) {
     out += std::string("o ") + name + "\n";
     const size_t count = mesh.positions.size();
-    append_lines(out, count, 160, [&](Writer& writer, size_t i) {
+    append_lines(out, count, 160, progress, [&](Writer& writer, size_t i) {
         writer.text("v");
         for (int axis = 0; axis < 3; axis++) {
             writer.text(" ");
@@ -77,14 +80,14 @@ void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t 
         }
         writer.text("\n");
     });
-    append_lines(out, count, 110, [&](Writer& writer, size_t i) {
+    append_lines(out, count, 110, progress, [&](Writer& writer, size_t i) {
         writer.text("vt ");
         writer.number(mesh.uvs[i].x, 5);
         writer.text(" ");
         writer.number(1.0f - mesh.uvs[i].y, 5);  // OBJ counts v upwards
         writer.text("\n");
     });
-    append_lines(out, count, 160, [&](Writer& writer, size_t i) {
+    append_lines(out, count, 160, progress, [&](Writer& writer, size_t i) {
         writer.text("vn");
         for (int axis = 0; axis < 3; axis++) {
             writer.text(" ");
@@ -93,7 +96,7 @@ void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t 
         writer.text("\n");
     });
     out += std::string("usemtl ") + name + "\n";
-    append_lines(out, mesh.triangle_count(), 210, [&](Writer& writer, size_t i) {
+    append_lines(out, mesh.triangle_count(), 210, progress, [&](Writer& writer, size_t i) {
         writer.text("f");
         for (size_t k = 0; k < 3; k++) {
             const uint64_t index = first + mesh.indices[3 * i + k];
@@ -113,7 +116,7 @@ void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t 
 
 }  // namespace
 
-void write_obj(const std::string& path, const ModelFile& model) {
+void write_obj(const std::string& path, const ModelFile& model, const Progress* progress) {
     const std::string stem = stem_of(path);
     const bool bark = model.bark && !model.bark->indices.empty();
     const bool leaves = model.leaves && !model.leaves->indices.empty();
@@ -122,28 +125,29 @@ void write_obj(const std::string& path, const ModelFile& model) {
     if (bark || leaves) {
         out += "mtllib " + stem + ".mtl\n";
         const std::vector<NamedPicture> pictures =
-            model.pictures.empty() ? make_pictures(model.preset, kTextureSize, model.texture_seed)
-                                   : model.pictures;
+            model.pictures.empty() ? make_pictures(model.preset) : model.pictures;
         for (const NamedPicture& picture : pictures) {
-            const bool used = picture.name.rfind("bark", 0) == 0 ? bark : leaves;
-            if (!used) continue;
+            const bool used = picture.name.starts_with("bark") ? bark : leaves;
+            // MTL takes a roughness from a grey picture, and knows no occlusion.
+            if (!used || picture.name == "bark_roughness") continue;
             const std::string name = stem + "_" + picture.name + ".png";
-            write_file(sibling_of(path, name), picture.bytes());
+            write_file(sibling_of(path, name), picture.png, progress);
         }
     }
     if (bark) {
-        materials += "newmtl bark\nKd 1 1 1\nKs 0 0 0\nPr 1\nmap_Kd " + stem + "_bark_albedo.png\nnorm " +
-                     stem + "_bark_normal.png\nmap_Bump " + stem + "_bark_normal.png\n";
-        append_mesh(out, *model.bark, "bark", 1);
+        materials += "newmtl bark\nKd 1 1 1\nKs 0 0 0\nPr 1\nmap_Kd " + stem + "_bark_albedo.png\nmap_Pr " +
+                     stem + "_bark_roughness_grey.png\nnorm " + stem + "_bark_normal.png\nmap_Bump " + stem +
+                     "_bark_normal.png\n";
+        append_mesh(out, *model.bark, "bark", 1, progress);
     }
     if (leaves) {
         materials += "newmtl leaves\nKd 1 1 1\nKs 0 0 0\nPr 0.7\nmap_Kd " + stem +
                      "_leaf_albedo.png\nmap_d " + stem + "_leaf_albedo.png\nnorm " + stem +
                      "_leaf_normal.png\nmap_Bump " + stem + "_leaf_normal.png\n";
-        append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1);
+        append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1, progress);
     }
-    if (!materials.empty()) write_file(sibling_of(path, stem + ".mtl"), materials);
-    write_file(path, out);
+    if (!materials.empty()) write_file(sibling_of(path, stem + ".mtl"), materials, progress);
+    write_file(path, out, progress);
 }
 
 }  // namespace treerec

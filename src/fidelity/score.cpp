@@ -1,6 +1,7 @@
 #include "fidelity/score.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -8,6 +9,7 @@
 #include "fidelity/segment_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
+#include "geometry/random.h"
 
 namespace treerec {
 
@@ -18,7 +20,7 @@ constexpr double kSame = 1e-6;            // metres: what rounding may part
 constexpr double kLongestWood = 20000.0;  // metres
 constexpr double kExplained = 0.02;       // metres
 constexpr double kMatch = 0.01;           // metres
-constexpr size_t kChunk = 4096;
+constexpr size_t kChunk = 1024;
 
 // The tree's segments in the tree space of another frame, in its metres.
 std::vector<WoodSegment> segments_in(const Tree& tree, const ScanFrame& frame) {
@@ -88,6 +90,20 @@ double mean_distance(const std::vector<Sample>& samples) {
     return sum / static_cast<double>(samples.size());
 }
 
+// About so many of the points, whatever their order.
+std::vector<Vec3> sample_of(const std::vector<Vec3>& points, size_t about) {
+    const double share = static_cast<double>(about) / static_cast<double>(points.size());
+    const auto limit = static_cast<uint64_t>(share * 0x1p63) * 2;
+    std::vector<Vec3> chosen;
+    chosen.reserve(about + about / 4);
+    for (const Vec3& p : points) {
+        const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
+        if (hash_seed(x << 32 | y, std::bit_cast<uint32_t>(p.z)) < limit) chosen.push_back(p);
+    }
+    if (chosen.empty()) chosen = points;
+    return chosen;
+}
+
 template <typename Limit>
 double share_within(const std::vector<Sample>& samples, Limit limit) {
     size_t within = 0;
@@ -103,18 +119,24 @@ Agreement agreement(double threshold, double precision, double recall) {
 
 }  // namespace
 
-ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Progress* progress) {
+ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Progress* progress,
+                     size_t about) {
     if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to score against.");
     const SegmentTree wood(segments_in(tree, tree.frame()));
     const bool same_frame = tree.frame() == cloud.frame;
-    std::vector<double> errors(cloud.size());
+    const bool whole = about == 0 || about >= cloud.size();
+    const std::vector<Vec3> sample = whole ? std::vector<Vec3>() : sample_of(cloud.positions, about);
+    const std::vector<Vec3>& chosen = whole ? cloud.positions : sample;
+    std::vector<double> errors(chosen.size());
     if (progress) progress->update(0.0, "Scoring");
-    parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
+    parallel_for(chosen.size(), kChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();
-        for (size_t i = begin; i < end; i++)
-            errors[i] = wood.surface_distance(
-                same_frame ? DVec3(cloud.positions[i])
-                           : tree.frame().to_tree(cloud.frame.to_scan(DVec3(cloud.positions[i]))));
+        int32_t hint = -1;
+        for (size_t i = begin; i < end; i++) {
+            const DVec3 p(chosen[i]);
+            errors[i] =
+                wood.surface_distance(same_frame ? p : tree.frame().to_tree(cloud.frame.to_scan(p)), hint);
+        }
     });
     // Sorted, so that the sum does not depend on the order of the points.
     std::sort(errors.begin(), errors.end());

@@ -15,7 +15,7 @@ namespace treerec {
 // A point's error is the smallest |distance to the axis - radius| over all segments: how far it lies from the
 // nearest bark. Millimetres.
 struct ScanScore {
-    size_t points = 0;
+    size_t points = 0;  // looked at
     double median_mm = 0.0;
     double mean_mm = 0.0;
     double p95_mm = 0.0;
@@ -49,9 +49,10 @@ struct SkeletonScore {
 };
 
 // cloud and tree may lie in different frames; the tree's says what a metre is. `noise`: the scan's range
-// noise in metres. Throws Error for a tree without wood or an empty cloud. O(points log segments).
+// noise in metres. about: roughly how many points to look at, chosen by their places alone; 0 is all. Throws
+// Error for a tree without wood or an empty cloud. O(points log segments).
 ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise = 0.0,
-                     Progress* progress = nullptr);
+                     Progress* progress = nullptr, size_t about = 0);
 
 // Both are compared in scan coordinates, in metres. A distance under a micrometre counts as none. Throws
 // Error if one has no wood, or is longer than 20 km (a wrong unit).

@@ -109,34 +109,46 @@ SegmentTree::Hit SegmentTree::nearest_axis(const DVec3& p, int32_t hint) const {
     return best;
 }
 
-double SegmentTree::surface_distance(const DVec3& p) const {
+double SegmentTree::surface_distance(const DVec3& p, int32_t& hint) const {
     double best = std::numeric_limits<double>::max();
     if (empty()) return best;
-    // No wood in the cell can have its bark nearer to p than this.
-    const auto bound = [&](const Cell& cell) {
-        const double outside = std::sqrt(nearest_squared(cell.box, p)) - cell.largest_radius;
-        const double inside = cell.least_radius - std::sqrt(farthest_squared(cell.box, p));
-        return std::max({outside, inside, 0.0});
+    const auto error_of = [&](int32_t index) {
+        const WoodSegment& segment = segments_[index];
+        return std::abs(distance_to_segment(p, segment.from, segment.to) - segment.radius);
     };
-    std::array<int32_t, kStackSize> stack;
+    if (hint >= 0) best = error_of(hint);
+    // Whether all wood of the cell has its bark farther from p than the best so far.
+    const auto hopeless = [&](const Cell& cell, double nearest) {
+        const double reach = best + cell.largest_radius;
+        if (nearest >= reach * reach) return true;
+        const double inner = cell.least_radius - best;
+        return inner > 0.0 && farthest_squared(cell.box, p) <= inner * inner;
+    };
+    struct Waiting {
+        int32_t cell;
+        double nearest;  // squared
+    };
+    std::array<Waiting, kStackSize> stack;
     size_t depth = 0;
-    stack[depth++] = 0;
+    stack[depth++] = {0, nearest_squared(cells_[0].box, p)};
     while (depth > 0) {
-        const int32_t at = stack[--depth];
-        const Cell& cell = cells_[at];
-        if (bound(cell) >= best) continue;
+        const Waiting at = stack[--depth];
+        const Cell& cell = cells_[at.cell];
+        if (hopeless(cell, at.nearest)) continue;
         if (cell.right < 0) {
             for (int32_t i = cell.begin; i < cell.end; i++) {
-                const WoodSegment& segment = segments_[i];
-                best = std::min(best,
-                                std::abs(distance_to_segment(p, segment.from, segment.to) - segment.radius));
+                const double error = error_of(i);
+                if (error >= best) continue;
+                best = error;
+                hint = i;
             }
             continue;
         }
-        const int32_t left = at + 1;
-        const bool left_first = bound(cells_[left]) <= bound(cells_[cell.right]);
-        stack[depth++] = left_first ? cell.right : left;
-        stack[depth++] = left_first ? left : cell.right;
+        const Waiting left{at.cell + 1, nearest_squared(cells_[at.cell + 1].box, p)};
+        const Waiting right{cell.right, nearest_squared(cells_[cell.right].box, p)};
+        const bool left_first = left.nearest <= right.nearest;
+        stack[depth++] = left_first ? right : left;
+        stack[depth++] = left_first ? left : right;
     }
     return best;
 }

@@ -36,8 +36,9 @@ class SegmentTree {
     // The segment whose axis is nearest to `p`. `hint`: a segment that is probably near (a neighbour's hit),
     // which makes the search faster and changes nothing else but which of equals is returned.
     Hit nearest_axis(const DVec3& p, int32_t hint = -1) const;
-    // The smallest |distance to the axis - radius| over all segments.
-    double surface_distance(const DVec3& p) const;
+    // The smallest |distance to the axis - radius| over all segments. `hint`: likewise, and then the segment
+    // that was found.
+    double surface_distance(const DVec3& p, int32_t& hint) const;
 
   private:
     struct Cell {

@@ -12,17 +12,17 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLargestTree = 1e6;       // metres from the origin
-constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood would vanish in floats
-constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
-constexpr double kCollarRadius = 0.008;    // metres; thinner branches get no collar of their own
-constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
-constexpr double kThinBendPerRing = 0.30;  // radians between rings at level 0, on twigs
-constexpr double kThickBendPerRing = 0.2;  // and where the eye rests
-constexpr double kThickRadius = 0.015;     // metres
-constexpr double kAxisSlack = 0.2;         // how far rings may leave out a bend, over the radius
-constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
-constexpr size_t kBranchesPerChunk = 256;  // of parallel work
+constexpr double kLargestTree = 1e6;        // metres from the origin
+constexpr double kLeastShare = 1e-5;        // of the coordinates: thinner wood would vanish in floats
+constexpr double kCollar = 0.35;            // how much wider a branch leaves its parent, over its radius
+constexpr double kCollarRadius = 0.008;     // metres; thinner branches get no collar of their own
+constexpr double kRoundTipRadius = 0.006;   // metres; thinner tips are pointed
+constexpr double kThinBendPerRing = 0.40;   // radians between rings at level 0, on twigs
+constexpr double kThickBendPerRing = 0.25;  // and where the eye rests
+constexpr double kThickRadius = 0.015;      // metres
+constexpr double kAxisSlack = 0.25;         // how far rings may leave out a bend, over the radius
+constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings
+constexpr size_t kBranchesPerChunk = 256;   // of parallel work
 
 struct Ring {
     DVec3 centre;
@@ -174,7 +174,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
     const double slack = kAxisSlack * (1 << level);
-    const double least_slack = 4e-4 * crown.height * (1 << level);
+    const double least_slack = 6e-4 * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
         out.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
     };
@@ -423,7 +423,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
 
 }  // namespace
 
-Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
+Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Progress* progress) {
     Mesh mesh;
     if (tree.size() < 2) return mesh;
     if (options.maximum_sides > 64) throw Error("A branch can have at most 64 sides.");
@@ -432,6 +432,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
         throw Error("The tree reaches beyond 1000 km; check the scan's units.");
     const size_t branches = builder.tubes.size();
     parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
         std::vector<AxisPoint> points;
         for (size_t i = begin; i < end; i++)
             builder.plan(i, points);
@@ -454,6 +455,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options) {
     mesh.custom0.resize(vertices);
     mesh.indices.resize(indices);
     parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
         for (size_t i = begin; i < end; i++)
             if (builder.tubes[i].rings > 0) builder.emit(i, mesh);
     });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mesh/mesh.h"
+#include "progress.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -17,7 +18,9 @@ struct TubeOptions {
 };
 
 // Vertices carry normals, tangents, UVs (u around in whole repeats, v along in metres), wind channels.
-// An empty tree or a lone root gives an empty mesh. Deterministic.
-Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {});
+// An empty tree or a lone root gives an empty mesh. Deterministic. Throws Error for a tree that reaches
+// beyond 1000 km or has too much bark, or Cancelled.
+Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {},
+                        const Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -10,7 +10,7 @@ namespace treerec {
 struct Image {
     int width = 0;
     int height = 0;
-    int channels = 0;             // 3 or 4
+    int channels = 0;             // 1, 3 or 4
     std::vector<uint8_t> pixels;  // height * width * channels
 
     Image() = default;

@@ -42,7 +42,7 @@ Mesh build_leaf_card(int level) {
     return card;
 }
 
-Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level) {
+Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Progress* progress) {
     const Mesh card = build_leaf_card(level);
     const size_t corners = card.positions.size(), card_indices = card.indices.size();
     if (leaves.size() * corners > UINT32_MAX) throw Error("There are too many leaves for one mesh.");
@@ -55,6 +55,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level) {
     mesh.colors.resize(vertices);
     mesh.indices.resize(leaves.size() * card_indices);
     parallel_for(leaves.size(), 4096, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
         for (size_t i = begin; i < end; i++) {
             const LeafPlacement& leaf = leaves[i];
             const glm::mat3 turn(leaf.x, leaf.y, leaf.z);

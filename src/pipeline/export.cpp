@@ -36,27 +36,30 @@ void require_writable_format(const std::string& path) {
     require_writable(path);
 }
 
-TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options) : tree_(tree), options_(options) {}
+TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)
+    : tree_(tree), options_(options), progress_(progress) {}
 
-void TreeExporter::build() {
-    if (built_) return;
-    bark_ = build_branch_tubes(tree_);
-    if (options_.leaves.enabled) {
-        const std::vector<LeafPlacement> placed = place_leaves(tree_, options_.leaves, options_.seed);
-        leaf_count_ = placed.size();
-        leaves_ = bake_leaves(placed);
-    }
-    built_ = true;
+const Mesh& TreeExporter::bark() {
+    if (!bark_) bark_ = build_branch_tubes(tree_, {}, progress_);
+    return *bark_;
+}
+
+const std::vector<LeafPlacement>& TreeExporter::placed() {
+    if (!placed_) placed_ = place_leaves(tree_, options_.leaves, options_.seed);
+    return *placed_;
+}
+
+const Mesh& TreeExporter::leaf_cards() {
+    if (!leaf_cards_) leaf_cards_ = bake_leaves(placed(), 0, progress_);
+    return *leaf_cards_;
 }
 
 size_t TreeExporter::triangles() {
-    build();
-    return bark_.triangle_count() + leaves_.triangle_count();
+    return bark().triangle_count() + leaves() * build_leaf_card().triangle_count();
 }
 
 size_t TreeExporter::leaves() {
-    build();
-    return leaf_count_;
+    return placed().size();
 }
 
 void TreeExporter::write(const std::string& path) {
@@ -75,28 +78,26 @@ void TreeExporter::write(const std::string& path) {
         case Format::kObj:
             break;
     }
-    build();
-    if (pictures_.empty()) pictures_ = make_pictures(options_.textures, kTextureSize, options_.seed);
+    if (pictures_.empty()) pictures_ = make_pictures(options_.textures);
     const Measurements measured = measure(tree_);
     ModelFile model;
-    model.bark = &bark_;
-    model.leaves = &leaves_;
+    model.bark = &bark();
+    model.leaves = &leaf_cards();
     model.preset = options_.textures;
-    model.texture_seed = options_.seed;
     model.pictures = pictures_;
     model.extras = {{"height_m", measured.height},
                     {"dbh_m", measured.dbh},
                     {"nodes", static_cast<double>(measured.nodes)},
                     {"seed", static_cast<double>(options_.seed)}};
     if (format == Format::kGltf)
-        write_gltf(path, model);
+        write_gltf(path, model, progress_);
     else
-        write_obj(path, model);
+        write_obj(path, model, progress_);
 }
 
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures) {
-    TreeExporter(tree, {leaves, textures, seed}).write(path);
+                 const std::string& textures, const Progress* progress) {
+    TreeExporter(tree, {leaves, textures, seed}, progress).write(path);
 }
 
 }  // namespace treerec

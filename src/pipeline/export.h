@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "exchange/material_textures.h"
 #include "foliage/leaves.h"
 #include "mesh/mesh.h"
+#include "progress.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -15,14 +17,14 @@ namespace treerec {
 struct ExportOptions {
     LeafRules leaves = leaf_preset("generic");
     std::string textures = "generic";  // the preset whose bark and leaf pictures are used
-    uint64_t seed = 1;                 // of leaves and pictures
+    uint64_t seed = 1;                 // of the leaves
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
-// tree must outlive it.
+// tree and the progress must outlive it; every method may throw Cancelled.
 class TreeExporter {
   public:
-    TreeExporter(const Tree& tree, const ExportOptions& options);
+    TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);
 
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
     // the tree has it; with leaves) or .ply .txt .csv (the skeleton in scan coordinates). Throws Error for
@@ -33,14 +35,16 @@ class TreeExporter {
     size_t leaves();
 
   private:
-    void build();
+    const Mesh& bark();
+    const std::vector<LeafPlacement>& placed();
+    const Mesh& leaf_cards();
 
     const Tree& tree_;
     ExportOptions options_;
-    bool built_ = false;
-    Mesh bark_;
-    Mesh leaves_;
-    size_t leaf_count_ = 0;
+    const Progress* progress_;
+    std::optional<Mesh> bark_;
+    std::optional<std::vector<LeafPlacement>> placed_;
+    std::optional<Mesh> leaf_cards_;
     std::vector<NamedPicture> pictures_;
 };
 
@@ -50,6 +54,6 @@ void require_writable_format(const std::string& path);
 
 // One file: TreeExporter in one call.
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures = "generic");
+                 const std::string& textures = "generic", const Progress* progress = nullptr);
 
 }  // namespace treerec

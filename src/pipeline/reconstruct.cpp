@@ -80,17 +80,17 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
 
     clock.restart();
     SubProgress scoring(progress, kSkeletonEnd, 1.0);
-    result.fit = score_scan(result.tree, result.cloud, 0.0, &scoring);
+    result.measured = measure(result.tree);
+    result.fit = score_scan(result.tree, result.cloud, 0.0, &scoring, options.score_points);
     if (result.fit.explained_2cm < kLeastExplained)
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
                                   " % of the points lie within 2 cm of the wood that was found. Is it a "
                                   "single tree, without leaves, "
                                   "and are its units right?");
-    if (measure(result.tree).measured_share < kLeastMeasured)
+    if (result.measured.measured_share < kLeastMeasured)
         result.warnings.emplace_back(
             "Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is it "
-            "a "
-            "tree?");
+            "a tree?");
     clock.stop("Score", result.cloud.size());
     return result;
 }

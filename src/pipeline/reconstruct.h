@@ -23,6 +23,7 @@ struct ReconstructOptions {
     OrientOptions orient;
     CleanOptions clean;
     SkeletonOptions skeleton;
+    size_t score_points = 200000;  // about how many points the fit is measured on
 };
 
 struct Reconstruction {
@@ -34,6 +35,7 @@ struct Reconstruction {
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;
+    Measurements measured;              // of the tree
     ScanScore fit;                      // of the tree to the cleaned cloud
     std::vector<StageTime> stages;      // "Read", "Orient", "Clean", the skeletonizer's own, "Score"
     std::vector<std::string> warnings;  // of all stages, in order

@@ -14,8 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void add_measurements(Json& json, const Tree& tree) {
-    const Measurements m = measure(tree);
+void add_measurements(Json& json, const Measurements& m) {
     json["nodes"] = m.nodes;
     json["tips"] = m.tips;
     Json orders = Json::array();
@@ -44,6 +43,9 @@ Json options_json(const ReportDetails& details) {
     Json json;
     json["up"] = options.orient.up ? up_axis_name(*options.orient.up) : "auto";
     json["scale"] = options.orient.metres_per_unit ? Json(*options.orient.metres_per_unit) : Json("auto");
+    json["known_height_m"] = options.orient.known_height ? Json(*options.orient.known_height) : Json(nullptr);
+    json["known_length_m"] =
+        options.orient.known_length ? Json(options.orient.known_length->metres) : Json(nullptr);
     json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
     json["columns"] = options.read.columns;
     json["leaves"] = details.leaves;
@@ -73,7 +75,7 @@ double peak_memory_mb() {
 
 std::string measurements_json(const Tree& tree) {
     Json json;
-    add_measurements(json, tree);
+    add_measurements(json, measure(tree));
     return dump(json);
 }
 
@@ -95,6 +97,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["up_detected"] = result.orient.up_detected;
     json["metres_per_unit"] = result.orient.metres_per_unit;
     json["scale_guessed"] = result.orient.scale_guessed;
+    json["scale_unknown"] = result.orient.scale_unknown;
     const DVec3& origin = result.tree.frame().origin;
     json["origin"] = {origin.x, origin.y, origin.z};
     json["spacing_m"] = result.spacing;
@@ -108,10 +111,11 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["total_ms"] = total;
     const double peak = peak_memory_mb();
     json["peak_mb"] = peak > 0.0 ? Json(peak) : Json(nullptr);
-    add_measurements(json, result.tree);
+    add_measurements(json, result.measured);
     json["triangles"] = details.triangles;
     json["leaves"] = details.leaf_count;
-    json["fit"] = {{"median_mm", result.fit.median_mm},
+    json["fit"] = {{"points", result.fit.points},
+                   {"median_mm", result.fit.median_mm},
                    {"mean_mm", result.fit.mean_mm},
                    {"p95_mm", result.fit.p95_mm},
                    {"explained_2cm", result.fit.explained_2cm}};

@@ -18,15 +18,16 @@ struct ReportDetails {
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
-//   format_version 1, version, scan, scan_format, seed, options {up, scale, spacing_m, columns, leaves,
-//   clean}
+//   format_version 1, version, scan, scan_format, seed, options {up, scale, known_height_m, known_length_m,
+//   spacing_m, columns, leaves, clean}
 //   points_read, points (after cleaning), removed {step: points}
-//   up, up_detected, metres_per_unit, scale_guessed, origin [x y z in scan coordinates], spacing_m
+//   up, up_detected, metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
+//   its scale), origin [x y z in scan coordinates], spacing_m
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
-//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null if there is no wood at breast
-//   height), stems, crown_radius_m, crown_base_m, length_m, volume_m3, measured_share, triangles, leaves
-//   fit {median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark (fidelity/score.h)
-//   warnings [sentence]
+//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than
+//   breast height, or without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3,
+//   measured_share, triangles, leaves fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned
+//   points and the bark (fidelity/score.h) warnings [sentence]
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // The measurements alone, with the keys above.

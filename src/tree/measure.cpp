@@ -118,7 +118,8 @@ Measurements measure(const Tree& tree) {
     }
     result.height = highest - lowest;
     result.measured_share = result.total_length > 0.0 ? measured / result.total_length : 0.0;
-    measure_stems(tree, list, result);
+    const double base = tree.node(tree.root()).position.y;
+    if (highest - base >= kBreastHeight) measure_stems(tree, list, result);
     measure_crown(tree, list, result);
     return result;
 }

@@ -20,7 +20,8 @@ struct Measurements {
     size_t nodes = 0;
     size_t tips = 0;
     double height = 0.0;  // from the lowest node to the highest
-    // Diameter of the thickest stem, 1.3 m from the root along the wood, between two nodes interpolated.
+    // Diameter of the thickest stem, 1.3 m from the root along the wood, between two nodes interpolated. None
+    // where nothing is that high above the root.
     double dbh = 0.0;
     int stems = 0;  // wood there at least half as thick as the thickest
     // Mean over 36 directions of the crown's reach from its axis: the vertical through the middle of the wood

@@ -165,6 +165,23 @@ TEST_F(Cli, HelpAndVersionExitWithZero) {
     }
 }
 
+TEST_F(Cli, AKnownLengthSetsTheScale) {
+    put("s.xyz", xyz(small_scan()));
+    ASSERT_EQ(run("reconstruct s.xyz -o out/a.txt --report out/plain.json --quiet").code, 0);
+    ASSERT_EQ(run("reconstruct s.xyz -o out/b.txt --report out/b.json --height 12.5 --quiet").code, 0);
+    ASSERT_EQ(run("reconstruct s.xyz -o out/c.txt --report out/c.json --length 0,0,0,0,3,4,15 --quiet").code,
+              0);
+    const auto plain = nlohmann::json::parse(get("out/plain.json"));
+    const auto height = nlohmann::json::parse(get("out/b.json"));
+    const auto length = nlohmann::json::parse(get("out/c.json"));
+    EXPECT_TRUE(plain["scale_guessed"].get<bool>());
+    EXPECT_FALSE(height["scale_guessed"].get<bool>());
+    EXPECT_NEAR(height["height_m"].get<double>(), 12.5, 0.5);
+    EXPECT_EQ(height["options"]["known_height_m"], 12.5);
+    EXPECT_NEAR(length["metres_per_unit"].get<double>(), 3.0, 1e-9);
+    EXPECT_EQ(length["options"]["known_length_m"], 15.0);
+}
+
 TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
     put("c.xyz", "1 2 3\n");
     put("c.txt", "1 2 3\n");
@@ -186,6 +203,12 @@ TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
                               "reconstruct c.xyz -o out/a.glb --up w",
                               "reconstruct c.xyz -o out/a.glb --scale 0",
                               "reconstruct c.xyz -o out/a.glb --scale nan",
+                              "reconstruct c.xyz -o out/a.glb --height 0",
+                              "reconstruct c.xyz -o out/a.glb --height 5 --scale 1",
+                              "reconstruct c.xyz -o out/a.glb --length 1,2,3,4",
+                              "reconstruct c.xyz -o out/a.glb --length 1,2,3,4,5,6,7,8",
+                              "reconstruct c.xyz -o out/a.glb --length 1,2,3,1,2,3,7",
+                              "reconstruct c.xyz -o out/a.glb --length 1,2,3,4,5,6,nan",
                               "reconstruct c.xyz -o out/a.glb --leaves cactus",
                               "reconstruct c.xyz -o out/a.glb --quiet=1",
                               "reconstruct c.xyz -o out/a.glb -o out/a.glb",

@@ -40,7 +40,7 @@ TEST(SegmentTree, FindsWhatASlowSearchFinds) {
     const std::vector<WoodSegment> wood = wood_segments(grown(3));
     const SegmentTree tree(wood);
     Random random(5);
-    int32_t hint = -1;
+    int32_t hint = -1, surface_hint = -1;
     for (int i = 0; i < 300; i++) {
         const DVec3 p(random.uniform(-3, 3), random.uniform(-1, 6), random.uniform(-3, 3));
         double axis = std::numeric_limits<double>::max(), surface = axis;
@@ -52,7 +52,11 @@ TEST(SegmentTree, FindsWhatASlowSearchFinds) {
         const SegmentTree::Hit hit = tree.nearest_axis(p, hint);
         hint = hit.segment;
         EXPECT_DOUBLE_EQ(hit.distance, axis);
-        EXPECT_DOUBLE_EQ(tree.surface_distance(p), surface);
+        int32_t none = -1;
+        EXPECT_DOUBLE_EQ(tree.surface_distance(p, none), surface);
+        EXPECT_DOUBLE_EQ(tree.surface_distance(p, surface_hint), surface);
+        const WoodSegment& found = tree.segment(surface_hint);
+        EXPECT_DOUBLE_EQ(std::abs(distance_to_segment(p, found.from, found.to) - found.radius), surface);
     }
 }
 
@@ -150,6 +154,20 @@ TEST(Score, DoesNotDependOnFramesOrderOrThreads) {
     moved.rebase(DVec3(1.0, 2.0, 3.0));
     EXPECT_NEAR(score_scan(moved, cloud).mean_mm, before.mean_mm, 1e-3);
     EXPECT_EQ(score_skeleton(moved, tree).by_radius[0].f, 1.0);
+}
+
+TEST(Score, ASampleStandsForTheCloud) {
+    const Tree tree = grown(2);
+    PointCloud cloud = bark_points(tree, 40000, 0.01, 3);
+    const ScanScore all = score_scan(tree, cloud);
+    const ScanScore some = score_scan(tree, cloud, 0.0, nullptr, 4000);
+    EXPECT_EQ(all.points, 40000u);
+    EXPECT_NEAR(static_cast<double>(some.points), 4000.0, 300.0);
+    EXPECT_NEAR(some.median_mm, all.median_mm, 0.05 * all.median_mm);
+    EXPECT_NEAR(some.explained_2cm, all.explained_2cm, 0.02);
+    std::reverse(cloud.positions.begin(), cloud.positions.end());
+    EXPECT_EQ(score_scan(tree, cloud, 0.0, nullptr, 4000).mean_mm, some.mean_mm);
+    EXPECT_EQ(score_scan(tree, cloud, 0.0, nullptr, 80000).points, 40000u);
 }
 
 TEST(Score, RefusesWhatHasNoWood) {

@@ -7,9 +7,19 @@
 #include <filesystem>
 #include <fstream>
 
+#define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#endif
 #include <tiny_gltf.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
 
 #include "error.h"
 #include "mesh/branch_tubes.h"
@@ -74,7 +84,12 @@ void expect_attribute(const tinygltf::Model& model, int accessor_index, const st
 
 void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh) {
     const tinygltf::Primitive& primitive = model.meshes[static_cast<size_t>(mesh_index)].primitives.at(0);
-    expect_attribute(model, primitive.indices, mesh.indices);
+    // Short indices where they suffice.
+    if (mesh.positions.size() <= 65535)
+        expect_attribute(model, primitive.indices,
+                         std::vector<uint16_t>(mesh.indices.begin(), mesh.indices.end()));
+    else
+        expect_attribute(model, primitive.indices, mesh.indices);
     expect_attribute(model, primitive.attributes.at("POSITION"), mesh.positions);
     expect_attribute(model, primitive.attributes.at("NORMAL"), mesh.normals);
     expect_attribute(model, primitive.attributes.at("TANGENT"), mesh.tangents);
@@ -106,8 +121,30 @@ TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
             const auto picture = std::find_if(model_.pictures.begin(), model_.pictures.end(),
                                               [&](const NamedPicture& p) { return p.name == image.name; });
             ASSERT_NE(picture, model_.pictures.end());
-            EXPECT_EQ(image.image, picture->png) << name << " " << image.name;
+            EXPECT_EQ(std::string(image.image.begin(), image.image.end()), picture->png)
+                << name << " " << image.name;
         }
+    }
+}
+
+TEST_F(GltfWrite, AMeshOfManyVerticesHasLongIndices) {
+    bark_ = build_branch_tubes(test::random_tree(5, 6000));
+    ASSERT_GT(bark_.positions.size(), 65535u);
+    write_gltf(path("many.glb"), model_);
+    const tinygltf::Model model = read(path("many.glb"));
+    expect_mesh(model, model.nodes[1].mesh, bark_);
+    expect_mesh(model, model.nodes[2].mesh, leaves_);
+}
+
+TEST_F(GltfWrite, ACancelledOneLeavesTheOldFile) {
+    struct Stopped final : Progress {
+        bool cancelled() const override { return true; }
+    } stopped;
+    for (const char* name : {"old.glb", "old.gltf"}) {
+        std::ofstream(path(name)) << "old";
+        EXPECT_THROW(write_gltf(path(name), model_, &stopped), Cancelled);
+        EXPECT_EQ(std::filesystem::file_size(path(name)), 3u);
+        EXPECT_FALSE(std::filesystem::exists(path(name) + ".part"));
     }
 }
 

@@ -57,6 +57,14 @@ TEST(Measure, BreastHeightRunsAlongALeaningTrunk) {
     EXPECT_NEAR(m.height, 4.0, 1e-12);
 }
 
+TEST(Measure, ABranchThatLiesBelowBreastHeightHasNoDbh) {
+    Tree tree;
+    const NodeId root = tree.add_root(DVec3(0.0), 0.03);
+    tree.add_child(root, DVec3(2.0, 1.2, 0.0), 0.01);
+    EXPECT_EQ(measure(tree).dbh, 0.0);
+    EXPECT_EQ(measure(tree).stems, 0);
+}
+
 TEST(Measure, AStumpBelowBreastHeightHasNoDbh) {
     const Measurements m = measure(stem(1.0, 0.2, 0.2, 3));
     EXPECT_EQ(m.dbh, 0.0);

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "exchange/material_textures.h"
+#include "exchange/ready_pictures.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"
 
@@ -74,10 +75,32 @@ TEST(Textures, SameSeedSameBytesWhateverTheThreads) {
     const std::vector<NamedPicture> three = make_pictures("maple", 64, 9);
     set_thread_count(0);
     const std::vector<NamedPicture> other = make_pictures("maple", 64, 10);
-    ASSERT_EQ(one.size(), 5u);
+    ASSERT_EQ(one.size(), 6u);
     for (size_t i = 0; i < one.size(); i++) {
         EXPECT_EQ(one[i].png, three[i].png) << one[i].name;
         EXPECT_NE(one[i].png, other[i].png) << one[i].name;
+    }
+}
+
+// What the build drew is what the program would draw.
+TEST(Textures, ReadyPicturesAreTheDrawnOnes) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "Sanitized programs carry no pictures.";
+#endif
+    use_ready_pictures();
+    for (const std::string& preset : leaf_preset_names()) {
+        if (!leaf_preset(preset).enabled) continue;
+        for (const NamedPicture& picture : make_pictures(preset))
+            EXPECT_EQ(picture.drawn, nullptr) << preset << " " << picture.name;
+    }
+    const std::vector<NamedPicture> ready = make_pictures("birch");
+    const std::vector<NamedPicture> drawn = draw_pictures("birch", kTextureSize, kTextureSeed);
+    set_ready_pictures({});
+    EXPECT_NE(make_pictures("pine", 64, 1)[0].drawn, nullptr);
+    ASSERT_EQ(ready.size(), drawn.size());
+    for (size_t i = 0; i < ready.size(); i++) {
+        EXPECT_EQ(ready[i].name, drawn[i].name);
+        EXPECT_EQ(ready[i].png, drawn[i].png) << ready[i].name;
     }
 }
 

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
-
 #include "error.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
@@ -102,6 +102,27 @@ TEST_F(ObjWrite, WhatIsReadIsWhatWasWritten) {
     expect_same(parts[1].mesh, leaves_);
     for (const char* beside : {"tree.mtl", "tree_bark_albedo.png", "tree_leaf_albedo.png"})
         EXPECT_TRUE(std::filesystem::exists(path(beside))) << beside;
+}
+
+// Every picture that the materials name is there, and the roughness is a grey one.
+TEST_F(ObjWrite, TheMaterialsHaveTheirPictures) {
+    write_obj(path("tree.obj"), model_);
+    std::ifstream materials(path("tree.mtl"));
+    std::string key, value;
+    std::set<std::string> keys;
+    for (std::string line; std::getline(materials, line);) {
+        std::istringstream words(line);
+        words >> key >> value;
+        keys.insert(key);
+        if (!value.ends_with(".png")) continue;
+        std::ifstream picture(path(value.c_str()), std::ios::binary);
+        std::string head(26, '\0');
+        picture.read(head.data(), 26);
+        ASSERT_TRUE(picture) << value;
+        EXPECT_EQ(head[25] == 0, key == "map_Pr") << value;  // PNG's colour type: grey
+    }
+    for (const char* wanted : {"map_Kd", "map_Pr", "map_d", "norm"})
+        EXPECT_TRUE(keys.contains(wanted)) << wanted;
 }
 
 TEST_F(ObjWrite, NumbersOfEverySizeComeBack) {
