@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_float64_array.hpp>
 #include <godot_cpp/variant/packed_string_array.hpp>
 #include <string>
 
@@ -56,6 +57,51 @@ void write_scale(ParsedOptions& r_options, const Variant& p_value) {
     }
 }
 
+Variant read_known_height(const ParsedOptions& p_options) {
+    return p_options.pipeline.orient.known_height.value_or(0.0);
+}
+
+void write_known_height(ParsedOptions& r_options, const Variant& p_value) {
+    const double height = p_value;
+    r_options.pipeline.orient.known_height.reset();
+    if (height != 0.0) {
+        r_options.pipeline.orient.known_height = height;
+    }
+}
+
+Variant read_known_length(const ParsedOptions& p_options) {
+    PackedFloat64Array numbers;
+    if (const std::optional<treerec::KnownLength>& known = p_options.pipeline.orient.known_length) {
+        for (const treerec::DVec3& end : {known->from, known->to}) {
+            for (int axis = 0; axis < 3; axis++) {
+                numbers.push_back(end[axis]);
+            }
+        }
+        numbers.push_back(known->metres);
+    }
+    return numbers;
+}
+
+void write_known_length(ParsedOptions& r_options, const Variant& p_value) {
+    const PackedFloat64Array numbers = p_value;
+    r_options.pipeline.orient.known_length.reset();
+    if (numbers.is_empty()) {
+        return;
+    }
+    bool finite = true;
+    for (int64_t i = 0; i < numbers.size(); i++) {
+        finite = finite && std::isfinite(numbers[i]);
+    }
+    if (numbers.size() != 7 || !finite) {
+        throw treerec::Error(
+            "The option \"known_length\" must be seven numbers: two places in the scan and the metres "
+            "between "
+            "them.");
+    }
+    const double* n = numbers.ptr();
+    r_options.pipeline.orient.known_length = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]};
+}
+
 Variant read_columns(const ParsedOptions& p_options) {
     PackedStringArray names;
     for (const std::string& name : p_options.pipeline.read.columns) {
@@ -82,6 +128,12 @@ const Option kOptions[] = {
      "The scan's axis that points to the sky; auto detects it."},
     {"scale", read_scale, write_scale, PROPERTY_HINT_RANGE, "0,1000,0.0001,or_greater",
      "Length of one unit of the scan in metres; 0 guesses it from the size."},
+    {"known_height", read_known_height, write_known_height, PROPERTY_HINT_RANGE,
+     "0,100,0.01,or_greater,suffix:m",
+     "The tree's height, which sets the scale of a scan that has none; 0 is not known."},
+    {"known_length", read_known_length, write_known_length, PROPERTY_HINT_NONE, "",
+     "A length that sets the scale: x, y, z of two places in the scan, and the metres between them. Empty is "
+     "not known."},
     {"columns", read_columns, write_columns, PROPERTY_HINT_NONE, "",
      "Text files only: the columns' names in order, such as x,y,z,r,g,b; - skips one. Empty detects them."},
     {"remove_extreme_colors", OPTION_MEMBER(clean.remove_extreme_colors, bool), PROPERTY_HINT_NONE, "",

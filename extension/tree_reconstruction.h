@@ -84,6 +84,9 @@ class TreeReconstruction : public godot::Resource {
   protected:
     static void _bind_methods();
     void _validate_property(godot::PropertyInfo& p_property) const;
+    // The inspector asks what else an undo has to bring back: a preset sets all leaf properties.
+    godot::PackedStringArray _get_linked_undo_properties(const godot::StringName& p_property,
+                                                         const godot::Variant& p_value) const;
 
   private:
     struct LeafValue;

@@ -136,6 +136,20 @@ void TreeReconstruction::_validate_property(PropertyInfo& p_property) const {
     }
 }
 
+PackedStringArray TreeReconstruction::_get_linked_undo_properties(const StringName& p_property,
+                                                                  const Variant&) const {
+    PackedStringArray linked;
+    if (p_property == StringName("leaf_preset")) {
+        for (const char* property : {"leaves_enabled", "leaf_arrangement", "maximum_leaves"}) {
+            linked.push_back(property);
+        }
+        for (const LeafValue& value : kLeafValues) {
+            linked.push_back(value.property);
+        }
+    }
+    return linked;
+}
+
 void TreeReconstruction::_bind_properties() {
     ClassDB::bind_method(D_METHOD("set_skeleton", "skeleton"), &TreeReconstruction::set_skeleton);
     ClassDB::bind_method(D_METHOD("get_skeleton"), &TreeReconstruction::get_skeleton);
@@ -154,6 +168,8 @@ void TreeReconstruction::_bind_properties() {
     ClassDB::bind_method(D_METHOD("get_leaf_value", "index"), &TreeReconstruction::get_leaf_value);
     ClassDB::bind_method(D_METHOD("set_maximum_leaves", "count"), &TreeReconstruction::set_maximum_leaves);
     ClassDB::bind_method(D_METHOD("get_maximum_leaves"), &TreeReconstruction::get_maximum_leaves);
+    ClassDB::bind_method(D_METHOD("_get_linked_undo_properties", "property", "value"),
+                         &TreeReconstruction::_get_linked_undo_properties);
 
     ADD_PROPERTY(
         PropertyInfo(Variant::DICTIONARY, "skeleton", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
@@ -162,9 +178,11 @@ void TreeReconstruction::_bind_properties() {
                               PROPERTY_USAGE_DEFAULT | PROPERTY_USAGE_READ_ONLY),
                  "set_provenance", "get_provenance");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "seed"), "set_seed", "get_seed");
-    ADD_GROUP("Leaves", "leaf_");
+    // Without a prefix, so that all of them stand in the group.
+    ADD_GROUP("Leaves", "");
     // The preset comes first: it sets all that follow, which a file then sets again.
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "leaf_preset"), "set_leaf_preset", "get_leaf_preset");
+    ADD_PROPERTY(PropertyInfo(Variant::BOOL, "leaves_enabled"), "set_leaves_enabled", "are_leaves_enabled");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "leaf_arrangement", PROPERTY_HINT_ENUM, "Alternate,Opposite"),
                  "set_leaf_arrangement", "get_leaf_arrangement");
     for (int i = 0; i < int(std::size(kLeafValues)); i++) {
@@ -172,8 +190,6 @@ void TreeReconstruction::_bind_properties() {
                                    String::utf8(kLeafValues[i].hint)),
                       "set_leaf_value", "get_leaf_value", i);
     }
-    ADD_GROUP("", "");
-    ADD_PROPERTY(PropertyInfo(Variant::BOOL, "leaves_enabled"), "set_leaves_enabled", "are_leaves_enabled");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "maximum_leaves", PROPERTY_HINT_RANGE, "0,200000,1,or_greater"),
                  "set_maximum_leaves", "get_maximum_leaves");
 }

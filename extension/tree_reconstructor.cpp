@@ -33,16 +33,31 @@ static std::string file_path(const String& p_path) {
     return to_std(ProjectSettings::get_singleton()->globalize_path(p_path));
 }
 
-void TreeReconstructor::_start() {
-    cancelled_ = false;
-    const std::lock_guard lock(mutex_);
-    fraction_ = 0.0;
-    stage_.clear();
-    error_message_.clear();
-    report_json_.clear();
-    cloud_ = treerec::PointCloud();
-    raw_ = treerec::Tree();
-}
+// One call at work. A cancel is for the call that is running, or else for the next one, and is over with it.
+class TreeReconstructor::Job {
+  public:
+    explicit Job(TreeReconstructor* p_owner) : owner_(p_owner), owns_(!p_owner->running_.exchange(true)) {
+        if (owns_) {
+            owner_->_fail("");
+        }
+    }
+    ~Job() {
+        if (owns_) {
+            owner_->cancelled_ = false;
+            owner_->running_ = false;
+        }
+    }
+    Job(const Job&) = delete;
+    Job& operator=(const Job&) = delete;
+
+    bool is_alone() const { return owns_; }
+
+  private:
+    TreeReconstructor* owner_;
+    bool owns_;
+};
+
+#define BUSY "This TreeReconstructor is at work already. Make another one."
 
 void TreeReconstructor::_report_progress(double p_fraction, const char* p_stage) {
     constexpr int64_t kSignalEveryMs = 30;
@@ -68,7 +83,7 @@ void TreeReconstructor::_fail(const std::string& p_sentence) {
 }
 
 static std::string write_report(const treerec::Reconstruction& p_result, const ParsedOptions& p_options,
-                                const std::string& p_path) {
+                                const std::string& p_path, const treerec::Progress& p_progress) {
     treerec::ReportDetails details;
     details.scan_path = p_path;
     details.options = p_options.pipeline;
@@ -76,53 +91,69 @@ static std::string write_report(const treerec::Reconstruction& p_result, const P
     details.seed = p_options.pipeline.skeleton.seed;
     treerec::ExportOptions look;
     look.leaves = treerec::leaf_preset(details.leaves);
-    look.textures = details.leaves;
     look.seed = details.seed;
-    treerec::TreeExporter counter(p_result.tree, look);
+    treerec::TreeExporter counter(p_result.tree, look, &p_progress);
     details.triangles = counter.triangles();
     details.leaf_count = counter.leaves();
     return treerec::report_json(p_result, details);
 }
 
-Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path,
-                                                            const Dictionary& p_options) {
-    ERR_FAIL_COND_V_MSG(running_.exchange(true), Ref<TreeReconstruction>(),
-                        "This TreeReconstructor is at work already. Make another one.");
-    _start();
-    Ref<TreeReconstruction> made;
-    try {
-        const ParsedOptions options = parse_reconstruct_options(p_options);
-        Listener listener(this);
-        treerec::Reconstruction result =
-            treerec::reconstruct_file(file_path(p_path), options.pipeline, &listener);
-        const std::string report = write_report(result, options, to_std(p_path));
-
-        made.instantiate();
-        made->set_seed(int64_t(options.pipeline.skeleton.seed));
-        made->set_leaf_preset(options.leaves);
-        made->set_tree(std::move(result.tree));
-        Dictionary provenance;
-        provenance["source"] = p_path;
-        provenance["options"] = p_options.duplicate();
-        provenance["report"] = JSON::parse_string(to_godot(report));
-        made->set_provenance(provenance);
-
+Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, const Dictionary& p_options,
+                                                        Listener& p_listener) {
+    constexpr double kReportBegins = 0.97;
+    {
         const std::lock_guard lock(mutex_);
-        report_json_ = report;
-        cloud_ = std::move(result.cloud);
-        raw_ = std::move(result.raw);
-        fraction_ = 1.0;
-    } catch (const std::exception& error) {
-        made.unref();
-        _fail(error.what());
+        fraction_ = 0.0;
+        stage_.clear();
+        report_json_.clear();
+        cloud_ = treerec::PointCloud();
+        raw_ = treerec::Tree();
     }
-    running_ = false;
+    p_listener.check();
+    const ParsedOptions options = parse_reconstruct_options(p_options);
+    treerec::SubProgress reconstructing(&p_listener, 0.0, kReportBegins);
+    treerec::Reconstruction result =
+        treerec::reconstruct_file(file_path(p_path), options.pipeline, &reconstructing);
+    p_listener.update(kReportBegins, "Reporting");
+    const std::string report = write_report(result, options, to_std(p_path), p_listener);
+
+    Ref<TreeReconstruction> made;
+    made.instantiate();
+    made->set_seed(int64_t(options.pipeline.skeleton.seed));
+    made->set_leaf_preset(options.leaves);
+    made->set_tree(std::move(result.tree));
+    Dictionary provenance;
+    provenance["source"] = p_path;
+    provenance["options"] = p_options.duplicate();
+    provenance["report"] = JSON::parse_string(to_godot(report));
+    made->set_provenance(provenance);
+    p_listener.check();
+
+    const std::lock_guard lock(mutex_);
+    report_json_ = report;
+    cloud_ = std::move(result.cloud);
+    raw_ = std::move(result.raw);
+    fraction_ = 1.0;
     return made;
 }
 
+Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path,
+                                                            const Dictionary& p_options) {
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
+    try {
+        Listener listener(this);
+        return _reconstruct(p_path, p_options, listener);
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return Ref<TreeReconstruction>();
+    }
+}
+
 Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path) {
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
     Ref<TreeReconstruction> made;
-    _fail("");
     try {
         treerec::Tree tree = treerec::read_skeleton(file_path(p_path));
         made.instantiate();
@@ -139,10 +170,13 @@ Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path)
 
 Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, const String& p_path) {
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), ERR_INVALID_PARAMETER, "There is no tree to export.");
-    _fail("");
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
     try {
+        const Listener listener(this);
+        listener.check();
         treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
-                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()));
+                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()), &listener);
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());

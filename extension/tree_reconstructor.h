@@ -12,8 +12,8 @@
 #include "pipeline/reconstruct.h"
 #include "tree_reconstruction.h"
 
-// Turns scans into trees, in the editor. reconstruct_file() may run on any thread; the other methods may be
-// called from any other thread meanwhile.
+// Turns scans into trees, in the editor. reconstruct_file(), import_skeleton() and export_file() may run on
+// any thread, one at a time; the other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -39,8 +39,10 @@ class TreeReconstructor : public godot::RefCounted {
 
   private:
     class Listener;
+    class Job;
 
-    void _start();
+    godot::Ref<TreeReconstruction> _reconstruct(const godot::String& p_path,
+                                                const godot::Dictionary& p_options, Listener& p_listener);
     void _report_progress(double p_fraction, const char* p_stage);
     void _fail(const std::string& p_sentence);
 

@@ -27,6 +27,19 @@ func test_every_member_is_described() -> void:
 			_check_text(texts, name, "constant", constant)
 
 
+func test_classes_are_links() -> void:
+	var base: String = (get_script() as Script).resource_path.get_base_dir()
+	for name: String in CLASSES:
+		var text: String = FileAccess.get_file_as_string(
+			base.path_join(HERE % name).simplify_path()
+		)
+		for class_called: String in CLASSES + PackedStringArray(["TreeInstance3D"]):
+			check(
+				not text.contains("[code]%s[/code]" % class_called),
+				"%s.xml names %s without a link." % [name, class_called]
+			)
+
+
 func _check_text(
 	texts: Dictionary[String, String], of: String, kind: String, member: String
 ) -> void:

@@ -163,6 +163,46 @@ func test_leaf_presets() -> void:
 	check(made.leaf_preset in names, "An unknown preset was taken.")
 
 
+# What the inspector does: it stores the linked properties, sets the preset, and on undo sets all back.
+func test_undoing_a_preset_brings_the_tuned_values_back() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	made.leaf_preset = "oak"
+	made.leaf_size = 0.4
+	made.leaves_enabled = false
+	made.maximum_leaves = 77
+	made.leaf_arrangement = TreeReconstruction.LEAF_ARRANGEMENT_OPPOSITE
+	var before: Dictionary[String, Variant] = _leaf_properties(made)
+	check(before.size() > 8, "The leaves have %d properties." % before.size())
+	var linked: PackedStringArray = made.call("_get_linked_undo_properties", &"leaf_preset", "pine")
+	made.leaf_preset = "pine"
+	made.leaf_preset = "oak"
+	for property: String in linked:
+		made.set(property, before[property])
+	check_equal(_leaf_properties(made), before, "the leaf properties after the undo")
+	linked = made.call("_get_linked_undo_properties", &"seed", 3)
+	check_equal(linked.size(), 0, "what is linked to the seed")
+
+
+# All that stands in the inspector's group "Leaves".
+func _leaf_properties(of: TreeReconstruction) -> Dictionary[String, Variant]:
+	var values: Dictionary[String, Variant] = {}
+	var group: Dictionary = {}
+	for property: Dictionary in of.get_property_list():
+		if property.usage & (PROPERTY_USAGE_GROUP | PROPERTY_USAGE_CATEGORY):
+			group = property
+		elif group.get("name") == "Leaves" and property.name.begins_with(group.hint_string):
+			values[property.name] = of.get(property.name)
+	return values
+
+
+func test_the_leaves_stand_in_one_group() -> void:
+	var grouped: Dictionary[String, Variant] = _leaf_properties(grown_tree(2))
+	for property: Dictionary in ClassDB.class_get_property_list("TreeReconstruction", true):
+		var name: String = property.name
+		if "lea" in name and not property.usage & PROPERTY_USAGE_GROUP:
+			check(grouped.has(name), name + " stands outside the group.")
+
+
 func test_leaf_values_stay_in_range() -> void:
 	expect_error("finite")
 	var made: TreeReconstruction = TreeReconstruction.new()

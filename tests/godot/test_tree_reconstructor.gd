@@ -89,6 +89,10 @@ func test_bad_options_get_a_sentence() -> void:
 		{"up": "sideways"},
 		{"seed": "seven"},
 		{"scale": -3.0},
+		{"known_height": -1.0},
+		{"known_height": 5.0, "scale": 1.0},
+		{"known_length": PackedFloat64Array([1.0, 2.0, 3.0])},
+		{"known_length": PackedFloat64Array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])},
 	]:
 		var reconstructor: TreeReconstructor = TreeReconstructor.new()
 		var made: TreeReconstruction = reconstructor.reconstruct_file(path, options)
@@ -110,6 +114,32 @@ func test_can_be_cancelled() -> void:
 	check(made[0] == null, "It went on to the end.")
 	check("ancelled" in reconstructor.get_error_message(), "It does not say that it was cancelled.")
 	await tree.process_frame
+
+
+func test_a_cancel_before_the_start_is_heard() -> void:
+	var path: String = write_scan("scan.xyz")
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	reconstructor.cancel()
+	check(reconstructor.reconstruct_file(path) == null, "The cancel was lost.")
+	check("ancelled" in reconstructor.get_error_message(), "It does not say that it was cancelled.")
+	check(reconstructor.reconstruct_file(path) != null, "The cancel outlived its call.")
+	var model: String = folder.path_join("cancelled.glb")
+	reconstructor.cancel()
+	check_equal(reconstructor.export_file(grown_tree(3), model), FAILED, "a cancelled export")
+	check(not FileAccess.file_exists(model), "A cancelled export left a file.")
+	check_equal(reconstructor.export_file(grown_tree(3), model), OK, "the export after it")
+
+
+func test_a_known_size_sets_the_scale() -> void:
+	var path: String = write_scan("scan.xyz")
+	var length: PackedFloat64Array = [0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 4.0]
+	for options: Dictionary in [{"known_height": 7.0}, {"known_length": length}]:
+		var reconstructor: TreeReconstructor = TreeReconstructor.new()
+		var made: TreeReconstruction = reconstructor.reconstruct_file(path, options)
+		check(made != null, "No tree: " + reconstructor.get_error_message())
+		if made != null:
+			check_near(made.measure()["height"], 7.0, 0.4, "the height with %s" % options)
+		check_equal(reconstructor.get_report().get("scale_guessed"), false, "whether it is a guess")
 
 
 func test_reports_progress() -> void:
