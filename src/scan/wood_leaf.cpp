@@ -1,0 +1,357 @@
+#include "scan/wood_leaf.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/parallel.h"
+#include "geometry/quantile.h"
+#include "scan/leaf_cells.h"
+#include "scan/leaf_paths.h"
+#include "scan/samples.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kMostSamples = 400000;
+constexpr size_t kLeastPoints = 300;
+constexpr size_t kGrain = 4096;
+
+// A tree with a smaller share of leaves counts as bare: leafless trees of dense twigs reach 0.3 by chance.
+constexpr double kLeastShare = 0.4;
+// A cloud with fewer cells along its extent shows neither leaves nor twigs, unless it is filled as no bare
+// crown is.
+constexpr double kLeastResolution = 115.0;
+constexpr double kFilledCells = 0.58;  // of the cells around
+constexpr double kFilledScatter = 0.5;
+constexpr double kMostShare = 0.95;  // that the threshold follows
+constexpr double kThresholdShare =
+    0.5;  // of the logit of the share: between the most likely and the even-handed
+constexpr int kSmoothings = 3;
+constexpr float kSmoothWeight = 0.5F;
+
+constexpr float kReach = 3.0F;  // standard deviations: what lies further out says no more
+constexpr float kBias = -0.912F;
+struct Term {
+    float mean;
+    float deviation;
+    float weight;  // of the standardised value; the sum is the logit of being leaf at even odds
+};
+// By scale: linearity, planarity, scatter, occupied, crowd.
+constexpr std::array<std::array<Term, 5>, kShapeScales> kShapeTerms{{
+    {{{0.4209F, 0.2340F, -0.425F},
+      {0.2754F, 0.1797F, -0.203F},
+      {0.3027F, 0.1816F, 0.528F},
+      {0.3599F, 0.1624F, -0.468F},
+      {2.248F, 0.4428F, -0.050F}}},
+    {{{0.3997F, 0.2186F, -0.011F},
+      {0.2666F, 0.1669F, 0.037F},
+      {0.3336F, 0.1836F, -0.178F},
+      {0.4283F, 0.1876F, 0.451F},
+      {2.778F, 0.6209F, -0.313F}}},
+    {{{0.3375F, 0.1858F, -0.060F},
+      {0.2553F, 0.1533F, 0.167F},
+      {0.4072F, 0.1842F, 0.001F},
+      {0.5084F, 0.2021F, 0.211F},
+      {3.366F, 0.7300F, -0.291F}}},
+    {{{0.0F, 1.0F, 0.0F},
+      {0.0F, 1.0F, 0.0F},
+      {0.5064F, 0.1801F, 0.470F},
+      {0.6387F, 0.2271F, -0.890F},
+      {4.113F, 0.7961F, 1.988F}}},
+}};
+struct PathTerm {
+    float CellPath::*member;
+    Term term;
+};
+constexpr std::array<PathTerm, 10> kPathTerms{{
+    {&CellPath::height, {1.440F, 1.436F, 1.369F}},
+    {&CellPath::mass, {1.959F, 2.063F, -1.626F}},
+    {&CellPath::chain, {2.004F, 1.562F, -0.888F}},
+    {&CellPath::chain_mass, {0.7715F, 0.8626F, 1.002F}},
+    {&CellPath::straight_short, {0.8464F, 0.08296F, -0.318F}},
+    {&CellPath::straight_long, {0.7992F, 0.09439F, -0.265F}},
+    {&CellPath::gap, {0.8606F, 0.6965F, 0.889F}},
+    {&CellPath::bush_8, {0.7731F, 0.5515F, 0.041F}},
+    {&CellPath::bush_16, {1.079F, 0.6568F, 0.332F}},
+    {&CellPath::bush_32, {1.454F, 0.8011F, 0.783F}},
+}};
+
+// Green and the rest, where colour parts them.
+constexpr int kColourBins = 64;
+constexpr double kLeastSeparation = 0.8;  // between the groups, of the whole variance
+constexpr double kLeastGreen = 0.08;      // mean excess green of the green group
+constexpr double kLeastGreenGap = 0.1;    // between the groups' means
+constexpr double kLeastGreenShare = 0.05;
+constexpr float kColourWeight = 8.0F;  // logit between the groups' means
+
+// A limb that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
+// as large as that many cells.
+constexpr double kHiddenShare = 0.15;  // of the crown's extent
+constexpr float kHiddenCells = 8.0F;
+constexpr uint32_t kLeastPiece = 8;
+constexpr double kMuchHidden = 0.3;
+
+float value_of(float value, const Term& term) {
+    return term.weight * std::clamp((value - term.mean) / term.deviation, -kReach, kReach);
+}
+
+float logit_by_shape(const CellShape* shapes, const CellPath& path) {
+    float sum = kBias;
+    for (size_t s = 0; s < kShapeScales; s++) {
+        const std::array<Term, 5>& terms = kShapeTerms[s];
+        sum += value_of(shapes[s].linearity, terms[0]) + value_of(shapes[s].planarity, terms[1]) +
+               value_of(shapes[s].scatter, terms[2]) + value_of(shapes[s].occupied / 26.0F, terms[3]) +
+               value_of(shapes[s].crowd, terms[4]);
+    }
+    for (const PathTerm& p : kPathTerms)
+        sum += value_of(path.*p.member, p.term);
+    return sum;
+}
+
+double logit(double p) {
+    return std::log(p / (1.0 - p));
+}
+
+// The share of leaves under which the chances agree with themselves. logits: at even odds.
+double find_share(const std::vector<float>& logits, const std::vector<uint32_t>& weights,
+                  const Progress& progress) {
+    constexpr int kSteps = 60;
+    constexpr double kLeast = 1e-3;
+    // One look at the distribution is enough for all steps.
+    constexpr int kBins = 400;
+    constexpr double kSpan = 20.0;
+    std::array<double, kBins> histogram{};
+    double all = 0.0;
+    for (size_t i = 0; i < logits.size(); i++) {
+        const double at = (std::clamp<double>(logits[i], -kSpan, kSpan) + kSpan) / (2.0 * kSpan);
+        histogram[static_cast<size_t>(at * (kBins - 1) + 0.5)] += weights[i];
+        all += weights[i];
+    }
+    progress.check();
+    double share = 0.5;
+    for (int step = 0; step < kSteps; step++) {
+        const double offset = logit(share);
+        double sum = 0.0;
+        for (int b = 0; b < kBins; b++) {
+            const double z = 2.0 * kSpan * b / (kBins - 1) - kSpan + offset;
+            sum += histogram[static_cast<size_t>(b)] / (1.0 + std::exp(-z));
+        }
+        share = std::clamp(sum / all, kLeast, 1.0 - kLeast);
+    }
+    return share;
+}
+
+struct GreenGroups {
+    bool apart = false;
+    double middle = 0.0;
+    double gap = 1.0;
+    double share = 0.0;
+};
+
+// Excess green (2 g - r - b) / (r + g + b) by cell, summed over whole numbers so that order is no matter.
+std::vector<float> excess_green(const PointCloud& cloud, const std::vector<uint32_t>& cell_of_point,
+                                size_t cells) {
+    std::vector<std::array<uint64_t, 3>> sums(cells);
+    for (size_t i = 0; i < cloud.size(); i++)
+        for (size_t c = 0; c < 3; c++)
+            sums[cell_of_point[i]][c] += cloud.colors[i][c];
+    std::vector<float> green(cells);
+    for (size_t v = 0; v < cells; v++) {
+        const double r = static_cast<double>(sums[v][0]), g = static_cast<double>(sums[v][1]),
+                     b = static_cast<double>(sums[v][2]);
+        green[v] = static_cast<float>((2.0 * g - r - b) / std::max(r + g + b, 1.0));
+    }
+    return green;
+}
+
+// -1..1: from the rest's side of the gap to the green group's.
+float greenness(double green, const GreenGroups& groups) {
+    return static_cast<float>(std::clamp((green - groups.middle) / groups.gap, -1.0, 1.0));
+}
+
+// Otsu's threshold (1979).
+GreenGroups part_greens(const std::vector<float>& green, const std::vector<uint32_t>& weights) {
+    std::array<double, kColourBins> histogram{};
+    double all = 0.0;
+    for (size_t v = 0; v < green.size(); v++) {
+        const double at = (std::clamp(green[v], -1.0F, 1.0F) + 1.0) * 0.5 * (kColourBins - 1);
+        histogram[static_cast<size_t>(at + 0.5)] += weights[v];
+        all += weights[v];
+    }
+    auto value = [](int bin) { return 2.0 * bin / (kColourBins - 1) - 1.0; };
+    double mean = 0.0, square = 0.0;
+    for (int b = 0; b < kColourBins; b++) {
+        mean += histogram[static_cast<size_t>(b)] * value(b) / all;
+        square += histogram[static_cast<size_t>(b)] * value(b) * value(b) / all;
+    }
+    const double variance = square - mean * mean;
+    GreenGroups best;
+    double most = 0.0, weight = 0.0, sum = 0.0;
+    for (int b = 0; b + 1 < kColourBins; b++) {
+        weight += histogram[static_cast<size_t>(b)] / all;
+        sum += histogram[static_cast<size_t>(b)] * value(b) / all;
+        if (weight <= 0.0 || weight >= 1.0) continue;
+        const double between = (mean * weight - sum) * (mean * weight - sum) / (weight * (1.0 - weight));
+        if (between <= most) continue;
+        most = between;
+        const double low = sum / weight, high = (mean - sum) / (1.0 - weight);
+        best = {between > kLeastSeparation * variance && high > kLeastGreen && high - low > kLeastGreenGap,
+                0.5 * (low + high), high - low, 1.0 - weight};
+    }
+    best.apart = best.apart && best.share > kLeastGreenShare;
+    return best;
+}
+
+void smooth(std::vector<float>& logits, const Cells& cells, const Progress& progress) {
+    const std::vector<float> own = logits;
+    std::vector<float> next(logits.size());
+    for (int i = 0; i < kSmoothings; i++) {
+        parallel_for(logits.size(), kGrain, [&](size_t begin, size_t end) {
+            progress.check();
+            for (size_t v = begin; v < end; v++) {
+                float sum = 0.0F;
+                for (uint32_t e = cells.near_begin[v]; e < cells.near_begin[v + 1]; e++)
+                    sum += logits[cells.near[e]];
+                const auto count = static_cast<float>(cells.near_begin[v + 1] - cells.near_begin[v]);
+                const float around = count > 0.0F ? sum / count : own[v];
+                next[v] = (1.0F - kSmoothWeight) * own[v] + kSmoothWeight * around;
+            }
+        });
+        std::swap(logits, next);
+    }
+}
+
+double extent_of(const std::vector<Vec3>& points, const std::vector<uint8_t>* only) {
+    double extent = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        std::vector<float> values;
+        for (size_t v = 0; v < points.size(); v++)
+            if (!only || (*only)[v]) values.push_back(points[v][axis]);
+        if (values.empty()) return 0.0;
+        extent = std::max<double>(extent, quantile(values, 0.99) - quantile(values, 0.01));
+    }
+    return extent;
+}
+
+// Turns wood that hangs in the leaves without a way to the ground into leaf when it is small, and marks what
+// the skeleton should follow.
+std::vector<uint8_t> follow_limbs(const Cells& cells, const CellPaths& tree, std::vector<uint8_t>& leaf,
+                                  double& hidden_share) {
+    const size_t count = cells.count();
+    const float scale = static_cast<float>(1.0 / cells.size);
+    const float least =
+        std::max(kHiddenCells, static_cast<float>(kHiddenShare * extent_of(cells.centres, &leaf)) * scale);
+    std::vector<uint32_t> wood(count, 0);     // wood cells from here on
+    std::vector<float> through(count, 0.0F);  // the longest way onward through leaves alone
+    for (auto v = tree.order.rbegin(); v != tree.order.rend(); ++v) {
+        wood[*v] += leaf[*v] ? 0 : 1;
+        const uint32_t p = tree.parent[*v];
+        if (p == *v) continue;
+        wood[p] += wood[*v];
+        if (!leaf[*v]) continue;
+        const float step = scale * glm::distance(cells.centres[p], cells.centres[*v]);
+        through[p] = std::max(through[p], through[*v] + step);
+    }
+    std::vector<uint8_t> path(count, 0);
+    std::vector<float> leaf_heights;
+    for (size_t v = 0; v < count; v++)
+        if (leaf[v]) leaf_heights.push_back(cells.centres[v].y);
+    const double crown_base = leaf_heights.empty() ? 0.0 : quantile(leaf_heights, 0.1);
+    double hidden = 0.0, seen = 0.0;
+    for (const uint32_t v : tree.order) {
+        const uint32_t p = tree.parent[v];
+        const bool hangs = p != v && !path[p];
+        if (!leaf[v] && hangs && wood[v] < kLeastPiece) leaf[v] = 1;
+        path[v] = !leaf[v] || wood[v] >= kLeastPiece || through[v] >= least;
+        if (!path[v] || cells.centres[v].y < crown_base) continue;
+        (leaf[v] ? hidden : seen) += 1.0;
+    }
+    hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
+    return path;
+}
+
+}  // namespace
+
+WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
+    const SubProgress progress(listener, 0.0, 1.0);
+    WoodLeaf result;
+    const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
+    if (samples.points.size() < kLeastPoints) return result;
+    const Cells cells = make_cells(samples.points, progress);
+    const size_t count = cells.count();
+    const CellShapes shapes = measure_shapes(cells, progress);
+    const CellPaths paths = trace_paths(cells, progress);
+
+    std::vector<float> logits(count);
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t v = begin; v < end; v++)
+            logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths.paths[v]);
+    });
+    std::vector<uint32_t> weights(count, 0);
+    double filled = 0.0, scattered = 0.0;
+    for (const uint32_t v : cells.of_point) {
+        weights[v]++;
+        filled += shapes[v * kShapeScales].occupied / 26.0;
+        scattered += shapes[v * kShapeScales].scatter;
+    }
+    filled /= static_cast<double>(samples.points.size());
+    scattered /= static_cast<double>(samples.points.size());
+    double share = find_share(logits, weights, progress);
+
+    const bool resolved = extent_of(cells.centres, nullptr) > kLeastResolution * cells.size ||
+                          (filled > kFilledCells && scattered > kFilledScatter);
+    std::vector<uint32_t> cell_of_point(cloud.size());
+    for (size_t i = 0; i < cloud.size(); i++)
+        cell_of_point[i] = cells.of_point[samples.of_point[i]];
+    std::vector<float> green;
+    GreenGroups groups;
+    if (cloud.has_colors()) {
+        green = excess_green(cloud, cell_of_point, count);
+        groups = part_greens(green, weights);
+    }
+    if (groups.apart) {
+        result.by_colour = true;
+        for (size_t v = 0; v < count; v++)
+            logits[v] += kColourWeight * greenness(green[v], groups);
+        share = find_share(logits, weights, progress);
+    }
+    if (!result.by_colour && (share < kLeastShare || !resolved)) return result;
+
+    smooth(logits, cells, progress);
+    const auto threshold =
+        static_cast<float>(-kThresholdShare * logit(std::clamp(share, 1.0 - kMostShare, kMostShare)));
+    std::vector<uint8_t> leaf(count);
+    for (size_t v = 0; v < count; v++)
+        leaf[v] = logits[v] > threshold;
+    const std::vector<uint8_t> path = follow_limbs(cells, paths, leaf, result.hidden_share);
+    progress.check();
+
+    result.foliage = true;
+    result.leaf.resize(cloud.size());
+    result.wood_path.resize(cloud.size());
+    size_t leaves = 0;
+    for (size_t i = 0; i < cloud.size(); i++) {
+        const uint32_t v = cell_of_point[i];
+        bool is_leaf = leaf[v] != 0;
+        if (result.by_colour && leaf[v] == (logits[v] > threshold)) {
+            const Color8& c = cloud.colors[i];
+            const double sum = std::max(1, c[0] + c[1] + c[2]);
+            const float own = greenness((2 * c[1] - c[0] - c[2]) / sum, groups);
+            is_leaf = logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
+        }
+        result.leaf[i] = is_leaf;
+        result.wood_path[i] = path[v] || !is_leaf;
+        leaves += is_leaf;
+    }
+    result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
+    if (result.hidden_share > kMuchHidden)
+        result.warnings.push_back(
+            "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +
+            " % of the limbs in the crown were guessed from the paths through the leaves.");
+    return result;
+}
+
+}  // namespace treerec

@@ -1,0 +1,33 @@
+// Tells a scan's leaves from its wood, so that the skeleton follows wood and the crown keeps its foliage.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "progress.h"
+#include "scan/point_cloud.h"
+
+namespace treerec {
+
+struct WoodLeaf {
+    bool foliage = false;       // whether there are leaves at all; without them the rest is empty
+    double leaf_share = 0.0;    // of the points
+    bool by_colour = false;     // green told more than shape
+    std::vector<uint8_t> leaf;  // by point of the cloud: 1 for a leaf
+    // By point: 1 for what the skeleton should follow: all wood, and among the leaves the points along the
+    // paths of limbs that the leaves hide.
+    std::vector<uint8_t> wood_path;
+    double hidden_share = 0.0;  // of the limbs' length in the crown: followed through leaves, not seen
+    std::vector<std::string> warnings;
+};
+
+// cloud: metres, Y up, clean. Each point's surroundings (shape on four scales, and how the paths from the
+// ground to the twigs pass it) give a chance of being leaf by a logistic rule, which was fitted to virtual
+// scans and to real ones that have either leaves or wood alone; the tree's own share of leaves is then found
+// by expectation maximisation (Saerens, Latinne and Decaestecker 2002), and neighbours smooth one another.
+// Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or too
+// sparse to show them, is left whole. The order of the points and the number of threads change nothing.
+WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress = nullptr);
+
+}  // namespace treerec

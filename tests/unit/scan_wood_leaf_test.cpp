@@ -1,0 +1,187 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+#include <string>
+
+#include "geometry/parallel.h"
+#include "geometry/random.h"
+#include "scan/clean_cloud.h"
+#include "scan/read_cloud.h"
+#include "scan/wood_leaf.h"
+#include "synth/grow.h"
+#include "synth/scan.h"
+
+namespace treerec {
+namespace {
+
+VirtualScan scan(Habit habit, double leaves, uint64_t seed, size_t points = 60000) {
+    GrowOptions grow;
+    grow.habit = habit;
+    grow.seed = seed;
+    VirtualScanOptions options = scan_options_for(habit);
+    options.points = points;
+    options.leaves = leaves;
+    options.seed = seed;
+    return scan_tree(grow_tree(grow), options);
+}
+
+struct Tally {
+    double leaf_precision, leaf_recall, wood_precision, wood_recall, right;
+};
+
+// truth: 1 leaf, 0 wood, anything else does not count.
+Tally tally(const std::vector<uint8_t>& leaf, const std::vector<uint8_t>& truth) {
+    double hit[2][2] = {{0, 0}, {0, 0}};
+    for (size_t i = 0; i < truth.size(); i++)
+        if (truth[i] < 2) hit[truth[i]][leaf[i]]++;
+    return {hit[1][1] / (hit[1][1] + hit[0][1]), hit[1][1] / (hit[1][1] + hit[1][0]),
+            hit[0][0] / (hit[0][0] + hit[1][0]), hit[0][0] / (hit[0][0] + hit[0][1]),
+            (hit[0][0] + hit[1][1]) / (hit[0][0] + hit[0][1] + hit[1][0] + hit[1][1])};
+}
+
+std::vector<uint8_t> truth_of(const VirtualScan& made) {
+    std::vector<uint8_t> truth(made.origin.size());
+    for (size_t i = 0; i < truth.size(); i++)
+        truth[i] = made.origin[i] == kFromLeaf ? 1 : made.origin[i] == kFromWood ? 0 : 2;
+    return truth;
+}
+
+TEST(WoodLeaf, ABareTreeIsLeftWhole) {
+    for (const Habit habit : {Habit::kBroadleaf, Habit::kConifer, Habit::kBirch})
+        for (const uint64_t seed : {5, 6}) {
+            VirtualScan made = scan(habit, 0.0, seed, 30000);
+            EXPECT_FALSE(tell_wood_from_leaves(made.cloud).foliage);
+            made.cloud.colors.clear();
+            EXPECT_FALSE(tell_wood_from_leaves(made.cloud).foliage);
+        }
+}
+
+TEST(WoodLeaf, ShapeAloneTellsThemApart) {
+    VirtualScan made = scan(Habit::kBirch, 0.8, 7, 90000);
+    made.cloud.colors.clear();
+    const WoodLeaf told = tell_wood_from_leaves(made.cloud);
+    ASSERT_TRUE(told.foliage);
+    EXPECT_FALSE(told.by_colour);
+    const Tally t = tally(told.leaf, truth_of(made));
+    EXPECT_GT(t.right, 0.85);
+    EXPECT_GT(t.leaf_recall, 0.93);
+    EXPECT_GT(t.leaf_precision, 0.85);
+    EXPECT_GT(t.wood_precision, 0.7);
+    EXPECT_GT(t.wood_recall, 0.35);  // leaves hang around every twig
+}
+
+TEST(WoodLeaf, ColourTellsThemApartBetterEvenWhereLeavesAreFew) {
+    for (const double leaves : {0.15, 0.8}) {
+        const VirtualScan made = scan(Habit::kBroadleaf, leaves, 8, 40000);
+        const WoodLeaf told = tell_wood_from_leaves(made.cloud);
+        ASSERT_TRUE(told.foliage);
+        EXPECT_TRUE(told.by_colour);
+        const Tally t = tally(told.leaf, truth_of(made));
+        EXPECT_GT(t.right, 0.85);
+        EXPECT_GT(t.wood_recall, 0.6);
+    }
+}
+
+TEST(WoodLeaf, EveryPointOfWoodIsFollowed) {
+    const VirtualScan made = scan(Habit::kBirch, 0.8, 9);
+    const WoodLeaf told = tell_wood_from_leaves(made.cloud);
+    ASSERT_TRUE(told.foliage);
+    size_t through_leaves = 0;
+    for (size_t i = 0; i < told.leaf.size(); i++) {
+        EXPECT_TRUE(told.leaf[i] || told.wood_path[i]);
+        through_leaves += told.leaf[i] && told.wood_path[i];
+    }
+    EXPECT_LT(through_leaves, told.leaf.size() / 3);
+}
+
+TEST(WoodLeaf, NeitherOrderNorThreadsMatter) {
+    const VirtualScan made = scan(Habit::kConifer, 0.8, 10, 90000);
+    std::vector<uint32_t> order(made.cloud.size());
+    std::iota(order.begin(), order.end(), 0);
+    Random random(3, 1);
+    for (size_t i = order.size(); i > 1; i--)
+        std::swap(order[i - 1], order[random.below(static_cast<uint32_t>(i))]);
+    PointCloud shuffled;
+    shuffled.frame = made.cloud.frame;
+    for (const uint32_t i : order) {
+        shuffled.positions.push_back(made.cloud.positions[i]);
+        shuffled.colors.push_back(made.cloud.colors[i]);
+    }
+    const WoodLeaf first = tell_wood_from_leaves(made.cloud);
+    ASSERT_TRUE(first.foliage);
+    set_thread_count(3);
+    const WoodLeaf second = tell_wood_from_leaves(shuffled);
+    set_thread_count(0);
+    for (size_t i = 0; i < order.size(); i++) {
+        ASSERT_EQ(second.leaf[i], first.leaf[order[i]]);
+        ASSERT_EQ(second.wood_path[i], first.wood_path[order[i]]);
+    }
+}
+
+TEST(WoodLeaf, TinyAndFlatCloudsHaveNoLeaves) {
+    PointCloud cloud;
+    EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage);
+    for (int i = 0; i < 5000; i++)
+        cloud.positions.emplace_back(0.0F, 0.001F * static_cast<float>(i), 0.0F);
+    EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage);
+    cloud.positions.assign(5000, Vec3(1.0F));
+    EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage);
+}
+
+TEST(WoodLeaf, CanBeCancelled) {
+    struct Stop final : Progress {
+        bool cancelled() const override { return true; }
+    } stop;
+    const VirtualScan made = scan(Habit::kBirch, 0.5, 1, 5000);
+    EXPECT_THROW(tell_wood_from_leaves(made.cloud, &stop), Cancelled);
+}
+
+PointCloud real_scan(const std::string& folder, const std::string& file) {
+    PointCloud cloud = read_cloud(folder + "/clouds/" + file);
+    OrientOptions upright;
+    upright.up = UpAxis::kZ;
+    upright.metres_per_unit = 1.0;
+    orient_cloud(cloud, upright);
+    return cloud;
+}
+
+TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    for (const char* file :
+         {"wytham_Tf8_ash.txt", "wytham_Tf15_sycamore.txt", "wytham_Tf18_birch.txt", "vezy_A1B2.asc",
+          "vezy_A3B4.asc", "vezy_A5B7.asc", "vezy_A5B8.asc", "vezy_A6B9.asc", "vezy_A6B10.asc",
+          "adtree_Lille_11_leafoff_tall.xyz", "adtree_Lille_2_multistem.xyz", "adtree_tree7.xyz",
+          "adtree_tree13_trunk_gap.xyz", "rtwig_coffeetree.txt", "archi_tree2_leafoff.las",
+          "voxr_tree_t0.asc", "voxr_tree_t1.asc"})
+        EXPECT_FALSE(tell_wood_from_leaves(real_scan(folder, file)).foliage) << file;
+}
+
+TEST(WoodLeafScans, TheSplitTreeIsSplitAlike) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    PointCloud both = read_cloud(std::string(folder) + "/clouds/gbsep_rc151_wood.txt");
+    const size_t wood = both.size();
+    const PointCloud leaves = read_cloud(std::string(folder) + "/clouds/gbsep_rc151_leaf.txt");
+    for (const Vec3& p : leaves.positions)
+        both.positions.emplace_back(DVec3(p) + leaves.frame.origin - both.frame.origin);
+    OrientOptions upright;
+    upright.up = UpAxis::kZ;
+    upright.metres_per_unit = 1.0;
+    orient_cloud(both, upright);
+    std::vector<uint8_t> truth(both.size(), 1);
+    std::fill_n(truth.begin(), wood, uint8_t{0});
+    const WoodLeaf told = tell_wood_from_leaves(both);
+    ASSERT_TRUE(told.foliage);
+    const Tally t = tally(told.leaf, truth);
+    EXPECT_GT(t.right, 0.92);
+    EXPECT_GT(t.leaf_precision, 0.93);
+    EXPECT_GT(t.leaf_recall, 0.95);
+    EXPECT_GT(t.wood_precision, 0.85);
+    EXPECT_GT(t.wood_recall, 0.78);
+}
+
+}  // namespace
+}  // namespace treerec
