@@ -1,5 +1,6 @@
 #include "file_bytes.h"
 
+#include <algorithm>
 #include <fstream>
 #include <new>
 #include <system_error>
@@ -10,7 +11,7 @@ namespace treerec {
 
 namespace fs = std::filesystem;
 
-FileBytes read_file(const std::string& path) {
+FileBytes read_file(const std::string& path, Progress* progress) {
     if (path.empty()) throw Error("No file was named.");
     if (path.find('\0') != std::string::npos) throw Error("The file's name contains a null character.");
     std::error_code code;
@@ -29,9 +30,17 @@ FileBytes read_file(const std::string& path) {
         throw Error("'" + path + "' is too large for this machine's memory (" + std::to_string(size >> 20) +
                     " MiB); thin it first.");
     }
-    stream.read(bytes.data.get(), static_cast<std::streamsize>(size));
-    if (static_cast<uintmax_t>(stream.gcount()) != size)
-        throw Error("'" + path + "' could not be read to its end; check the disk it is on.");
+    // In pieces, so that a slow disk can be given up.
+    constexpr uintmax_t kPiece = uintmax_t{4} << 20;
+    for (uintmax_t at = 0; at < size; at += kPiece) {
+        if (progress) progress->check();
+        const uintmax_t piece = std::min(kPiece, size - at);
+        stream.read(bytes.data.get() + at, static_cast<std::streamsize>(piece));
+        if (static_cast<uintmax_t>(stream.gcount()) != piece)
+            throw Error("'" + path + "' could not be read to its end; check the disk it is on.");
+        if (progress)
+            progress->update(static_cast<double>(at + piece) / static_cast<double>(size), "Reading");
+    }
     bytes.size = static_cast<size_t>(size);
     bytes.data[bytes.size] = '\0';
     return bytes;

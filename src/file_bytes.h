@@ -20,7 +20,7 @@ struct FileBytes {
 };
 
 // Throws Error where the file is missing, a folder, unreadable, or too large for memory.
-FileBytes read_file(const std::string& path);
+FileBytes read_file(const std::string& path, Progress* progress = nullptr);
 
 // Writes beside `path` and renames, so that a failure leaves the old file as it was. A link stays a link;
 // what is no plain file (a pipe, a device) is written to straight. Throws Error, or Cancelled.

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "error.h"
+#include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "exchange/text_scan.h"
 #include "exchange/tree_files.h"
@@ -43,8 +44,11 @@ void write_qsm_csv(const std::string& path, const Tree& tree) {
 }
 
 Tree read_qsm_csv(const std::string& path, UpAxis up) {
-    const FileBytes bytes = read_file(path);
-    std::string_view rest = bytes.view();
+    return parse_qsm_csv(read_file(path).view(), path, up);
+}
+
+Tree parse_qsm_csv(std::string_view bytes, const std::string& path, UpAxis up) {
+    std::string_view rest = bytes;
     const std::optional<std::string_view> head = next_line(rest);
     const std::vector<std::string> fields = head ? split_fields(*head) : std::vector<std::string>();
     enum Column { kRadius, kLength, kStart, kAxis = kStart + 3, kParent = kAxis + 3, kColumns };

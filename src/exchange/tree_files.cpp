@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "file_bytes.h"
 
@@ -114,8 +115,11 @@ void write_treefile(const std::string& path, const Tree& tree) {
 }
 
 Tree read_treefile(const std::string& path, UpAxis up) {
-    const FileBytes bytes = read_file(path);
-    std::string_view rest = bytes.view();
+    return parse_treefile(read_file(path).view(), path, up);
+}
+
+Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up) {
+    std::string_view rest = bytes;
     FileStamp stamp{up, 1.0};
     std::optional<TreefileHeader> header;
     SkeletonTable largest;
@@ -143,8 +147,11 @@ Tree read_treefile(const std::string& path, UpAxis up) {
 }
 
 Tree read_node_csv(const std::string& path, UpAxis up) {
-    const FileBytes bytes = read_file(path);
-    std::string_view rest = bytes.view();
+    return parse_node_csv(read_file(path).view(), path, up);
+}
+
+Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) {
+    std::string_view rest = bytes;
     const std::optional<std::string_view> head = next_line(rest);
     const Columns columns(head ? split_fields(*head) : std::vector<std::string>());
     if (!columns.has_node() || columns.parent < 0)

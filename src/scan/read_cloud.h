@@ -1,4 +1,5 @@
-// Reads and writes point-cloud files: PLY, text (.xyz .txt .asc .pts .csv), LAS 1.0-1.4.
+// Reads and writes point-cloud files: PLY (Gaussian splats among them), text (.xyz .txt .asc .pts .csv), LAS
+// 1.0-1.4, LAZ where LASzip is installed, PCD, COLMAP's points3D (.bin and .txt).
 #pragma once
 
 #include <string>
@@ -22,18 +23,24 @@ std::vector<std::string> parse_columns(std::string_view text);
 // What the reader had to decide or leave out, as sentences for the user ("3 of 4000 points had no finite
 // position.").
 struct ReadCloudReport {
-    std::string
-        format;  // "PLY binary little endian", "text, 6 columns: x y z r g b", "LAS 1.2, point format 3"
+    // "PLY binary little endian", "text, 6 columns: x y z r g b", "LAS 1.2, point format 3", "PCD binary"
+    std::string format;
     std::vector<std::string> warnings;
 };
 
 // Reads the cloud at `path` (UTF-8). The format is sniffed from the contents first, the extension second. The
 // frame's origin is the median of each axis, rounded to whole units, and independent of the points' order;
-// scale 1, axes as in the file. Points without finite coordinates are left out and counted in a warning; a
-// file that is cut off is an Error wherever that can be known. Throws Error with a sentence (missing, empty,
-// truncated, not a point cloud, no finite point, …).
+// scale 1, axes as in the file. Left out and counted in a warning: points without finite coordinates, LAS
+// points flagged as withheld, splats with an opacity below 10 %. A file that is cut off is an Error wherever
+// that can be known. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no finite
+// point, …).
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options = {},
                       ReadCloudReport* report = nullptr, Progress* progress = nullptr);
+
+// The same for the bytes of a file called `name` in memory. LAZ is read from the file of that name, since
+// LASzip wants one.
+PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes,
+                            const ReadCloudOptions& options = {}, ReadCloudReport* report = nullptr);
 
 // Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
 // there are colours or normals), .las (1.2; without normals). Scan coordinates, axes and units, to 1e-8 of

@@ -1,383 +1,24 @@
 // Text clouds: one point per line, whatever the separator, header and order of the columns.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <optional>
 
-#include "scan/readers.h"
+#include "scan/text_layout.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr size_t kSampleLines = 4096;
-constexpr size_t kMostHeaderLines = 200;
-constexpr size_t kMostColumns = 256;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '"';
-}
-
-struct Layout {
-    char separator = ' ';       // ' ' for blanks alone; ',' or ';' beside blanks
-    std::vector<int8_t> roles;  // by column
-    size_t last_column = 0;     // the last with a role
-    size_t data = 0;            // where the first row begins
-    std::optional<uint64_t> promised_points;
-};
-
-class Lines {
-  public:
-    Lines(std::string_view bytes, size_t at) : bytes_(bytes), at_(at) {}
-
-    bool next(std::string_view& line) {
-        if (at_ >= bytes_.size()) return false;
-        const void* found = std::memchr(bytes_.data() + at_, '\n', bytes_.size() - at_);
-        const size_t end =
-            found ? static_cast<size_t>(static_cast<const char*>(found) - bytes_.data()) : bytes_.size();
-        line = bytes_.substr(at_, end - at_);
-        begin_ = at_;
-        at_ = end + 1;
-        ended_ = found != nullptr;
-        return true;
-    }
-    size_t begin() const { return begin_; }  // of the line given last
-    size_t at() const { return at_; }
-    bool ended() const { return ended_; }  // whether the line given last had a line end
-
-  private:
-    std::string_view bytes_;
-    size_t at_;
-    size_t begin_ = 0;
-    bool ended_ = true;
-};
-
-std::string_view trimmed(std::string_view line) {
-    while (!line.empty() && (is_blank(line.front()) || line.front() == '\x1A'))
-        line.remove_prefix(1);
-    while (!line.empty() && (is_blank(line.back()) || line.back() == '\x1A'))
-        line.remove_suffix(1);
-    return line;
-}
-
-bool is_comment(std::string_view trimmed_line) {
-    return trimmed_line.starts_with('#') || trimmed_line.starts_with("//") || trimmed_line.starts_with('%');
-}
-
-// The next value of a row: moves p behind it and its separator. False at the end of the line. value: NaN for
-// a field that is no number; clean: whether it was a number or empty.
-bool next_value(const char*& p, const char* end, char separator, double& value, bool& clean) {
-    while (p != end && is_blank(*p))
-        p++;
-    if (p == end) return false;
-    clean = true;
-    value = kNaN;
-    if (*p != separator) {
-        clean = parse_number(p, end, value);
-        if (p != end && !is_blank(*p) && *p != separator) {
-            // Text, or "1.#QNAN" and its like.
-            clean = clean && *p == '#';
-            value = kNaN;
-            while (p != end && *p != separator && (separator != ' ' || !is_blank(*p)))
-                p++;
-        }
-        while (p != end && is_blank(*p))
-            p++;
-    }
-    if (separator != ' ' && p != end && *p == separator) p++;
-    return true;
-}
-
-// The numbers of a line, NaN for text; numeric: how many are numbers.
-std::vector<double> values_of(std::string_view line, char separator, size_t& numeric) {
-    std::vector<double> values;
-    numeric = 0;
-    const char* p = line.data();
-    const char* end = p + line.size();
-    double value = 0.0;
-    bool clean = false;
-    while (values.size() < kMostColumns && next_value(p, end, separator, value, clean)) {
-        values.push_back(value);
-        numeric += clean ? 1 : 0;
-    }
-    return values;
-}
-
-// Names in a header line, quoted or not.
-std::vector<std::string> names_of(std::string_view line, char separator) {
-    while (!line.empty() &&
-           (line.front() == '#' || line.front() == '/' || line.front() == '%' || line.front() == ' '))
-        line.remove_prefix(1);
-    line = line.substr(0, line.find_last_not_of(" \t\r\x1A") + 1);
-    if (line.find(',') != line.npos) separator = ',';
-    if (line.find(';') != line.npos) separator = ';';
-    if (separator == ' ' && line.find('\t') != line.npos) separator = '\t';
-    std::vector<std::string> names;
-    std::string name;
-    bool quoted = false;
-    bool started = false;
-    auto flush = [&] {
-        names.push_back(name);
-        name.clear();
-        started = false;
-    };
-    for (const char c : line) {
-        if (c == '"') {
-            quoted = !quoted;
-            started = true;
-        } else if (!quoted && (separator == ' ' ? c == ' ' : c == separator)) {
-            if (separator != ' ' || started) flush();
-        } else {
-            name += c;
-            started = true;
-        }
-    }
-    if (started || separator != ' ') flush();
-    if (names.size() > kMostColumns) names.resize(kMostColumns);
-    return names;
-}
-
-// Lines spread evenly over the data.
-std::vector<std::string_view> sample_lines(std::string_view bytes, size_t data) {
-    std::vector<std::string_view> sample;
-    const size_t length = bytes.size() - data;
-    size_t at = data;
-    for (size_t i = 0; i < kSampleLines; i++) {
-        const size_t wanted = data + length / kSampleLines * i;
-        if (wanted > at) {
-            const size_t end = bytes.find('\n', wanted - 1);
-            if (end == bytes.npos) break;
-            at = end + 1;
-        }
-        Lines lines(bytes, at);
-        std::string_view line;
-        if (!lines.next(line)) break;
-        at = lines.at();
-        const std::string_view text = trimmed(line);
-        if (!text.empty() && !is_comment(text)) sample.push_back(text);
-    }
-    return sample;
-}
-
-// Which of ',' and ';' stands between values, and whether ',' is the decimal mark instead.
-char find_separator(const std::vector<std::string_view>& sample, bool& decimal_comma) {
-    size_t commas = 0;
-    size_t semicolons = 0;
-    size_t points = 0;
-    size_t commas_in_numbers = 0;
-    size_t gaps = 0;
-    for (const std::string_view line : sample) {
-        for (size_t i = 0; i < line.size(); i++) {
-            const char c = line[i];
-            points += c == '.';
-            semicolons += c == ';';
-            gaps += is_blank(c);
-            if (c != ',') continue;
-            commas++;
-            const bool before = i > 0 && line[i - 1] >= '0' && line[i - 1] <= '9';
-            const bool after = i + 1 < line.size() && line[i + 1] >= '0' && line[i + 1] <= '9';
-            commas_in_numbers += before && after;
-        }
-    }
-    decimal_comma = commas > 0 && commas == commas_in_numbers && points == 0 && (semicolons > 0 || gaps > 0);
-    if (semicolons > 0) return ';';
-    return commas > 0 && !decimal_comma ? ',' : ' ';
-}
-
-// Values of the sampled rows that have the usual number of columns, column by column.
-struct Sample {
-    std::vector<std::vector<double>> columns;
-
-    template <typename Predicate>
-    double share(size_t column, size_t width, const Predicate& holds) const {
-        const size_t rows = columns[column].size();
-        size_t good = 0;
-        double row[3] = {};
-        for (size_t i = 0; i < rows; i++) {
-            for (size_t k = 0; k < width; k++)
-                row[k] = columns[column + k][i];
-            good += holds(row);
-        }
-        return rows ? static_cast<double>(good) / static_cast<double>(rows) : 0.0;
-    }
-
-    // How far the three columns from `column` differ within a row, summed over the rows.
-    double spread_of(size_t column) const {
-        double sum = 0.0;
-        for (size_t i = 0; i < columns[column].size(); i++) {
-            const auto [low, high] =
-                std::minmax({columns[column][i], columns[column + 1][i], columns[column + 2][i]});
-            if (high > low) sum += high - low;
-        }
-        return sum;
-    }
-};
-
-Sample take_sample(const std::vector<std::string_view>& lines, char separator) {
-    std::vector<std::vector<double>> rows;
-    std::vector<size_t> widths(kMostColumns + 1);
-    for (const std::string_view line : lines) {
-        size_t numeric = 0;
-        rows.push_back(values_of(line, separator, numeric));
-        widths[rows.back().size()]++;
-    }
-    const size_t width = static_cast<size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
-    Sample sample;
-    sample.columns.resize(width);
-    for (const std::vector<double>& row : rows) {
-        if (row.size() != width) continue;
-        for (size_t c = 0; c < width; c++)
-            sample.columns[c].push_back(row[c]);
-    }
-    return sample;
-}
-
-bool is_unit(const double* v) {
-    const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    return square == 0.0 || std::abs(square - 1.0) < 0.02;
-}
-
-bool is_whole_color(const double* v) {
-    for (int k = 0; k < 3; k++)
-        if (!(v[k] >= 0.0 && v[k] <= 255.0 && v[k] == std::floor(v[k]))) return false;
-    return true;
-}
-
-bool is_fraction_color(const double* v) {
-    for (int k = 0; k < 3; k++)
-        if (!(v[k] >= 0.0 && v[k] <= 1.0)) return false;
-    return true;
-}
-
-// Guesses the columns' roles from what is in them.
-std::vector<int8_t> roles_from_values(const Sample& sample) {
-    const size_t width = sample.columns.size();
-    std::vector<int8_t> roles(width, kNoRole);
-    size_t first = 0;
-    // A running number before x y z.
-    const std::vector<double>& numbers = sample.columns[0];
-    bool running = width >= 4 && numbers.size() >= 3;
-    for (size_t i = 1; running && i < numbers.size(); i++)
-        running = numbers[i] > numbers[i - 1] && numbers[i] == std::floor(numbers[i]);
-    if (running && numbers[0] >= 0.0 && numbers[1] - numbers[0] == 1.0) first = 1;
-    auto give = [&](size_t column, Role role) {
-        for (size_t k = 0; k < 3; k++)
-            roles[column + k] = static_cast<int8_t>(role + static_cast<int>(k));
-    };
-    give(first, kRoleX);
-    auto free_triple = [&](size_t column) {
-        return roles[column] == kNoRole && roles[column + 1] == kNoRole && roles[column + 2] == kNoRole;
-    };
-    for (size_t c = first + 3; c + 3 <= width; c++) {
-        const double zero =
-            sample.share(c, 3, [](const double* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; });
-        if (zero > 0.5 || sample.share(c, 3, is_unit) < 0.95) continue;
-        give(c, kRoleNx);
-        break;
-    }
-    // Where an intensity or an opacity stands beside the colours, the three that differ least are the
-    // colours.
-    for (const auto& fits : {is_whole_color, is_fraction_color}) {
-        size_t best = width;
-        double best_spread = std::numeric_limits<double>::max();
-        for (size_t c = first + 3; c + 3 <= width; c++) {
-            if (has_role(roles, kRoleR) || !free_triple(c) || sample.share(c, 3, fits) < 0.99) continue;
-            const double flat =
-                sample.share(c, 3, [](const double* v) { return v[0] <= 1 && v[1] <= 1 && v[2] <= 1; });
-            const double spread = sample.spread_of(c);
-            if ((fits == is_whole_color && flat > 0.9) || !(spread < best_spread)) continue;
-            best = c;
-            best_spread = spread;
-        }
-        if (best < width) give(best, kRoleR);
-    }
-    return roles;
-}
-
-// Finds the first row and the header above it, and settles the separator and the columns.
-Layout find_layout(const ReadJob& job) {
-    Layout layout;
-    const std::string_view bytes = job.bytes.view();
-    std::vector<std::string_view> header;
-    Lines lines(bytes, bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0);
-    std::string_view line;
-    bool found = false;
-    while (!found && lines.next(line)) {
-        const std::string_view text = trimmed(line);
-        if (text.empty()) continue;
-        size_t numeric = 0;
-        std::string split(text);  // by every separator there is
-        std::replace_if(
-            split.begin(), split.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-        const std::vector<double> values = values_of(split, ' ', numeric);
-        if (!is_comment(text) && numeric >= 3) {
-            layout.data = lines.begin();
-            found = true;
-        } else if (values.size() == 1 && numeric == 1 && values[0] >= 0.0 &&
-                   values[0] == std::floor(values[0]) && values[0] < 1e15) {
-            layout.promised_points = static_cast<uint64_t>(values[0]);
-        } else {
-            header.push_back(line);
-            if (header.size() > kMostHeaderLines) break;
-        }
-    }
-    if (!found)
-        job.fail("is not a point cloud that can be read: no line in it begins with three numbers (x y z).");
-
-    const std::vector<std::string_view> sample_text = sample_lines(bytes, layout.data);
-    bool decimal_comma = false;
-    layout.separator = find_separator(sample_text, decimal_comma);
-    if (decimal_comma)
-        std::replace(job.bytes.data.get() + layout.data, job.bytes.data.get() + job.bytes.size, ',', '.');
-    const Sample sample = take_sample(sample_text, layout.separator);
-    const size_t width = sample.columns.size();
-    if (width < 3) job.fail("has " + std::to_string(width) + " columns; a point cloud needs x, y and z.");
-
-    if (!job.options.columns.empty()) {
-        layout.roles = roles_from_names(job.options.columns);
-        for (const Role role : {kRoleX, kRoleY, kRoleZ})
-            if (!has_role(layout.roles, role))
-                throw Error(
-                    "The columns were named without x, y and z; name all three, and '-' for one to skip.");
-        if (layout.roles.size() > width)
-            job.fail("has " + std::to_string(width) + " columns, but " + std::to_string(layout.roles.size()) +
-                     " were named.");
-        layout.roles.resize(width, kNoRole);
-    } else {
-        for (const std::string_view header_line : header) {
-            std::vector<std::string> names = names_of(header_line, layout.separator);
-            // R names the columns but not the column of row names before them.
-            if (names.size() + 1 == width && header_line.find('"') != header_line.npos)
-                names.insert(names.begin(), "");
-            std::vector<int8_t> roles = roles_from_names(names);
-            roles.resize(width, kNoRole);
-            if (has_role(roles, kRoleX) && has_role(roles, kRoleY) && has_role(roles, kRoleZ))
-                layout.roles = roles;
-        }
-        if (layout.roles.empty()) {
-            layout.roles = roles_from_values(sample);
-            if (!header.empty() && !is_comment(trimmed(header.back())))
-                job.report.warnings.emplace_back(
-                    "The header names no x, y and z; the columns were told apart by their values.");
-        }
-    }
-    for (size_t c = 0; c < width; c++)
-        if (layout.roles[c] != kNoRole) layout.last_column = c;
-    job.report.format = "text, " + std::to_string(width) + " columns: " + describe_roles(layout.roles);
-    return layout;
-}
+constexpr size_t kChunk = 1 << 19;  // bytes read by one thread at a time: a few milliseconds of work
 
 // Reads one line. False unless it has a value for every role, and numbers alone where roles are.
-bool parse_row(std::string_view line, const Layout& layout, std::array<double, kRoleCount>& row,
+bool parse_row(std::string_view line, const TextLayout& layout, std::array<double, kRoleCount>& row,
                size_t& columns) {
     const char* p = line.data();
     const char* end = p + line.size();
     double value = 0.0;
     bool clean = false;
     for (columns = 0; columns <= layout.last_column; columns++) {
-        if (!next_value(p, end, layout.separator, value, clean)) return false;
+        if (!next_text_value(p, end, layout.separator, value, clean)) return false;
         const int8_t role = layout.roles[columns];
         if (role == kNoRole) continue;
         if (!clean) return false;
@@ -386,66 +27,130 @@ bool parse_row(std::string_view line, const Layout& layout, std::array<double, k
     return true;
 }
 
+// The lines that begin within one stretch of the file, and what was found in them.
+struct Chunk {
+    size_t begin = 0;  // of its first line
+    size_t first = 0;  // the point that its first row becomes
+    size_t room = 0;   // no fewer than it has rows
+    size_t lines = 0;
+    size_t points = 0;
+    size_t bad = 0;
+    size_t first_bad = 0;  // line within the chunk, from 1
+    uint64_t promised = 0;
+    bool cut = false;
+};
+
+// Where the first line at or after `at` begins.
+size_t line_start(std::string_view bytes, size_t data, size_t at) {
+    if (at <= data) return data;
+    const size_t end = bytes.find('\n', at - 1);
+    return end == bytes.npos ? bytes.size() : end + 1;
+}
+
+size_t count_possible_rows(std::string_view bytes, const Chunk& chunk, size_t end, size_t least_length) {
+    size_t rows = 0;
+    TextLines lines(bytes.substr(0, end), chunk.begin);
+    std::string_view line;
+    while (lines.next(line))
+        rows += line.size() >= least_length;
+    return rows;
+}
+
+void read_chunk(std::string_view bytes, size_t end, const TextLayout& layout, size_t least_length,
+                Chunk& chunk, RawCloud& raw) {
+    TextLines lines(bytes.substr(0, end), chunk.begin);
+    std::string_view line;
+    std::array<double, kRoleCount> row{};
+    while (lines.next(line)) {
+        chunk.lines++;
+        size_t columns = 0;
+        if (parse_row(line, layout, row, columns) && line.size() >= least_length) {
+            raw.set(chunk.first + chunk.points++, row);
+            continue;
+        }
+        const std::string_view text = trimmed_text(line);
+        if (text.empty() || is_text_comment(text)) continue;
+        size_t numeric = 0;
+        const std::vector<double> values = text_values_of(text, layout.separator, numeric);
+        if (layout.promised_points && values.size() == 1 && values[0] >= 0.0 && values[0] < 1e15) {
+            chunk.promised += static_cast<uint64_t>(values[0]);
+        } else if (!lines.ended() && columns > 0) {
+            chunk.cut = true;
+        } else if (chunk.bad++ == 0) {
+            chunk.first_bad = chunk.lines;
+        }
+    }
+}
+
+// Closes the gaps that lines without a point left.
+void compact(const std::vector<Chunk>& chunks, RawCloud& raw) {
+    const auto close = [&](auto& values) {
+        if (values.empty()) return;
+        auto to = values.begin();
+        for (const Chunk& chunk : chunks) {
+            const auto from = values.begin() + static_cast<std::ptrdiff_t>(chunk.first);
+            const auto end = from + static_cast<std::ptrdiff_t>(chunk.points);
+            to = to == from ? end : std::move(from, end, to);
+        }
+        values.erase(to, values.end());
+    };
+    close(raw.positions);
+    close(raw.colors);
+    close(raw.normals);
+}
+
 }  // namespace
 
 RawCloud read_text(const ReadJob& job) {
     char* data = job.bytes.data.get();
     if (!std::memchr(data, '\n', job.bytes.size)) std::replace(data, data + job.bytes.size, '\r', '\n');
-    Layout layout = find_layout(job);
+    const TextLayout layout = find_text_layout(job);
     const std::string_view bytes = job.bytes.view();
-    const bool colors = has_role(layout.roles, kRoleR);
-    const bool normals = has_role(layout.roles, kRoleNx);
 
+    // First how many rows there can be, so that every chunk knows where its points go.
+    const size_t length = bytes.size() - layout.data;
+    std::vector<Chunk> chunks(length / kChunk + 1);
+    const auto end_of = [&](size_t i) { return i + 1 < chunks.size() ? chunks[i + 1].begin : bytes.size(); };
+    for (size_t i = 0; i < chunks.size(); i++)
+        chunks[i].begin = line_start(bytes, layout.data, layout.data + i * kChunk);
+    const size_t least_length = layout.separator == ' ' ? 2 * layout.last_column + 1 : layout.last_column + 1;
+    constexpr double kCounted = kFileRead + 0.1;
+    job.parallel(chunks.size(), 1, kFileRead, kCounted, [&](size_t i, size_t) {
+        chunks[i].room = count_possible_rows(bytes, chunks[i], end_of(i), least_length);
+    });
+    size_t room = 0;
+    for (Chunk& chunk : chunks) {
+        chunk.first = room;
+        room += chunk.room;
+    }
     RawCloud raw;
-    Lines lines(bytes, layout.data);
-    std::string_view line;
-    std::array<double, kRoleCount> row{};
-    size_t rows = 0;
+    raw.resize(room, layout.roles);
+    job.parallel(chunks.size(), 1, kCounted, kPointsRead, [&](size_t i, size_t) {
+        read_chunk(bytes, end_of(i), layout, least_length, chunks[i], raw);
+    });
+    compact(chunks, raw);
+
+    size_t lines = 0;
     size_t bad = 0;
     size_t first_bad = 0;
-    bool cut = false;
-    while (lines.next(line)) {
-        if (rows++ % 16384 == 0) {
-            job.step(0.1 + 0.7 * static_cast<double>(lines.at()) / static_cast<double>(bytes.size() + 1));
-            // Room for all rows once the first tell how long a row is.
-            if (rows > 1 && raw.positions.capacity() - raw.positions.size() < 16384) {
-                const double per_byte =
-                    static_cast<double>(raw.positions.size()) / static_cast<double>(lines.at());
-                const size_t expected =
-                    static_cast<size_t>(1.05 * per_byte * static_cast<double>(bytes.size())) + 32768;
-                raw.positions.reserve(expected);
-                if (colors) raw.colors.reserve(expected);
-                if (normals) raw.normals.reserve(expected);
-            }
-        }
-        size_t columns = 0;
-        if (parse_row(line, layout, row, columns)) {
-            raw.add(row, colors, normals);
-            continue;
-        }
-        const std::string_view text = trimmed(line);
-        if (text.empty() || is_comment(text)) continue;
-        size_t numeric = 0;
-        const std::vector<double> values = values_of(text, layout.separator, numeric);
-        if (layout.promised_points && values.size() == 1 && values[0] >= 0.0 && values[0] < 1e15) {
-            layout.promised_points = *layout.promised_points + static_cast<uint64_t>(values[0]);
-        } else if (!lines.ended() && columns > 0) {
-            cut = true;
-        } else if (bad++ == 0) {
-            first_bad = rows;
-        }
+    uint64_t promised = layout.promised_points.value_or(0);
+    for (const Chunk& chunk : chunks) {
+        if (bad == 0 && chunk.bad > 0) first_bad = lines + chunk.first_bad;
+        lines += chunk.lines;
+        bad += chunk.bad;
+        promised += chunk.promised;
     }
-    if (layout.promised_points && raw.positions.size() + bad < *layout.promised_points)
-        job.fail("is cut off: it promises " + std::to_string(*layout.promised_points) +
-                 " points, but holds " + std::to_string(raw.positions.size()) + "; copy it again.");
+    if (raw.size() + bad < promised)
+        job.fail("is cut off: it promises " + std::to_string(promised) + " points, but holds " +
+                 std::to_string(raw.size()) + "; copy it again.");
     if (bad > 0) {
-        const std::string what = std::to_string(bad) + " of its " + std::to_string(rows) +
+        const std::string what = std::to_string(bad) + " of its " + std::to_string(lines) +
                                  " lines are not rows of numbers like the others, the first of them line " +
                                  std::to_string(first_bad) + " of the data";
-        if (bad > 10 && bad * 20 > rows) job.fail("is damaged or not a point cloud: " + what + ".");
+        if (bad > 10 && bad * 20 > lines) job.fail("is damaged or not a point cloud: " + what + ".");
         job.report.warnings.push_back("The file was read, but " + what + "; they were left out.");
     }
-    if (cut)
+    if (std::any_of(chunks.begin(), chunks.end(), [](const Chunk& chunk) { return chunk.cut; }))
         job.report.warnings.emplace_back(
             "The last line is incomplete and was left out; the file may be cut off.");
     return raw;

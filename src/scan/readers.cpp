@@ -1,10 +1,14 @@
 #include "scan/readers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <mutex>
 #include <utility>
+
+#include "geometry/parallel.h"
 
 namespace treerec {
 
@@ -79,7 +83,7 @@ bool has_role(const std::vector<int8_t>& roles, Role role) {
 }
 
 std::string describe_roles(const std::vector<int8_t>& roles) {
-    static constexpr const char* kNames[] = {"x", "y", "z", "r", "g", "b", "nx", "ny", "nz"};
+    static constexpr const char* kNames[] = {"x", "y", "z", "r", "g", "b", "nx", "ny", "nz", "opacity"};
     std::string text;
     for (const int8_t role : roles)
         text += std::string(text.empty() ? "" : " ") + (role == kNoRole ? "-" : kNames[role]);
@@ -96,9 +100,149 @@ void ReadJob::step(double fraction) const {
     progress->update(fraction, "Reading");
 }
 
+void ReadJob::parallel(size_t count, size_t grain, double begin, double end,
+                       const std::function<void(size_t, size_t)>& body) const {
+    std::mutex mutex;  // progress never falls, and is asked by one thread at a time
+    size_t done = 0;
+    parallel_for(count, grain, [&](size_t from, size_t to) {
+        body(from, to);
+        const std::lock_guard lock(mutex);
+        done += to - from;
+        step(begin + (end - begin) * static_cast<double>(done) / static_cast<double>(count));
+    });
+}
+
+void RawCloud::resize(size_t count, const std::vector<int8_t>& roles) {
+    positions.resize(count);
+    if (has_role(roles, kRoleR)) colors.resize(count);
+    if (has_role(roles, kRoleNx)) normals.resize(count);
+    if (has_role(roles, kRoleOpacity)) opacities.resize(count);
+}
+
+void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {
+    positions.reserve(count);
+    if (has_role(roles, kRoleR)) colors.reserve(count);
+    if (has_role(roles, kRoleNx)) normals.reserve(count);
+    if (has_role(roles, kRoleOpacity)) opacities.reserve(count);
+}
+
+void RawCloud::add(const std::array<double, kRoleCount>& row, const std::vector<int8_t>& roles) {
+    positions.emplace_back(row[kRoleX], row[kRoleY], row[kRoleZ]);
+    if (has_role(roles, kRoleR)) colors.emplace_back(row[kRoleR], row[kRoleG], row[kRoleB]);
+    if (has_role(roles, kRoleNx)) normals.emplace_back(row[kRoleNx], row[kRoleNy], row[kRoleNz]);
+    if (has_role(roles, kRoleOpacity)) opacities.push_back(static_cast<float>(row[kRoleOpacity]));
+}
+
+size_t RawCloud::keep_only(const std::vector<uint8_t>& keep) {
+    const size_t before = positions.size();
+    const auto compact = [&](auto& values) {
+        if (values.empty()) return;
+        size_t kept = 0;
+        for (size_t i = 0; i < values.size(); i++)
+            if (keep[i]) values[kept++] = values[i];
+        values.resize(kept);
+    };
+    compact(positions);
+    compact(colors);
+    compact(normals);
+    compact(opacities);
+    return before - positions.size();
+}
+
+namespace {
+
+template <typename Target>
+void decode_values(const ValueColumn& column, size_t count, Target* target, size_t step) {
+    with_ply_type(column.type, [&](auto t) {
+        using T = decltype(t);
+        const char* p = column.first;
+        if (column.swap) {
+            for (size_t i = 0; i < count; i++, p += column.stride)
+                target[step * i] = static_cast<Target>(load_value<T>(p, true));
+        } else {
+            for (size_t i = 0; i < count; i++, p += column.stride)
+                target[step * i] = static_cast<Target>(load_value<T>(p, false));
+        }
+    });
+}
+
+}  // namespace
+
+void decode_column(const ValueColumn& column, size_t count, int8_t role, size_t begin, RawCloud& raw) {
+    if (role == kNoRole || count == 0) return;
+    if (role == kRoleOpacity)
+        decode_values(column, count, &raw.opacities[begin], 1);
+    else if (role >= kRoleNx)
+        decode_values(column, count, &raw.normals[begin][role - kRoleNx], 3);
+    else if (role >= kRoleR)
+        decode_values(column, count, &raw.colors[begin][role - kRoleR], 3);
+    else
+        decode_values(column, count, &raw.positions[begin][role], 3);
+}
+
+void settle_splats(const ReadJob& job, RawCloud& raw) {
+    // The constant of the degree-0 spherical harmonic, 1 / (2 sqrt(pi)).
+    constexpr float kHarmonic = 0.28209479177387814F;
+    // Splats that let nine tenths of the light through are haze around the surface, not surface.
+    constexpr double kLeastOpacity = 0.1;
+    for (Vec3& color : raw.colors)
+        for (int k = 0; k < 3; k++)
+            color[k] = color[k] == color[k] ? std::clamp(0.5F + kHarmonic * color[k], 0.0F, 1.0F) : 0.0F;
+    raw.color_white = 1.0F;
+    const double least = std::log(kLeastOpacity / (1.0 - kLeastOpacity));  // the inverse of the sigmoid
+    std::vector<uint8_t> keep(raw.size());
+    for (size_t i = 0; i < keep.size(); i++)
+        keep[i] = raw.opacities[i] >= least;
+    const size_t count = raw.size();
+    const size_t out = raw.keep_only(keep);
+    if (out == count) job.fail("is a Gaussian splat file, but all of its splats are nearly transparent.");
+    if (out > 0)
+        job.report.warnings.push_back(std::to_string(out) + " of " + std::to_string(count) +
+                                      " splats have an opacity below 10 % and were left out.");
+    raw.opacities.clear();
+}
+
+namespace {
+
+// What 10^0 to 10^22 are as doubles, exactly.
+constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                              1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+// "-12.345" where its digits make a whole number below 2^53: its quotient by a power of ten is the nearest
+// double (W. Clinger, "How to Read Floating Point Numbers Accurately", 1990). Anything else: false.
+bool parse_short_number(const char*& p, const char* end, double& value) {
+    const char* q = p;
+    const bool negative = q != end && *q == '-';
+    if (negative) q++;
+    uint64_t digits = 0;
+    int count = 0;
+    int places = 0;
+    for (; q != end && static_cast<unsigned char>(*q - '0') < 10; q++, count++)
+        digits = digits * 10 + static_cast<uint64_t>(*q - '0');
+    if (q != end && *q == '.') {
+        q++;
+        for (; q != end && static_cast<unsigned char>(*q - '0') < 10; q++, places++)
+            digits = digits * 10 + static_cast<uint64_t>(*q - '0');
+    }
+    count += places;
+    // 19 digits never overflow 64 bits.
+    if (count == 0 || count > 19 || places > 22 || digits > (uint64_t{1} << 53)) return false;
+    if (q != end && (*q == 'e' || *q == 'E')) return false;
+    const double magnitude = static_cast<double>(digits) / kPowers[places];
+    value = negative ? -magnitude : magnitude;
+    p = q;
+    return true;
+}
+
+}  // namespace
+
 bool parse_number(const char*& p, const char* end, double& value) {
     const char* begin = p;
     if (begin != end && *begin == '+' && begin + 1 != end && begin[1] != '-') begin++;
+    if (parse_short_number(begin, end, value)) {
+        p = begin;
+        return true;
+    }
     const std::from_chars_result result = std::from_chars(begin, end, value);
     if (result.ec == std::errc::invalid_argument) return false;
     if (result.ec == std::errc::result_out_of_range) {
