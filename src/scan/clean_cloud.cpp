@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nanoflann.hpp>
 
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
@@ -14,25 +12,8 @@ namespace treerec {
 namespace {
 
 constexpr size_t kMostSamples = 400000;
-constexpr int kMostNeighbours = 64;
 // Fragments that are a larger share of the points than this may be a tree.
 constexpr double kRemarkable = 0.2;
-// A point's neighbour distance must be this many times that of its neighbours.
-constexpr double kLocalContrast = 2.5;
-
-struct KdPoints {
-    const std::vector<Vec3>& points;
-
-    size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(size_t index, size_t axis) const { return points[index][static_cast<int>(axis)]; }
-    template <typename Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-};
-
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, KdPoints>, KdPoints, 3, uint32_t>;
 
 bool has_real_colors(const PointCloud& cloud) {
     for (const Color8& c : cloud.colors)
@@ -70,6 +51,8 @@ class Cleaning {
             points.push_back(samples_.points[s]);
         return points;
     }
+
+    const std::array<Range, 3>& ranges() const { return samples_.ranges; }
 
     // goes: by index into points(). Returns the share of the points that were taken.
     double take(const char* name, const std::vector<uint8_t>& goes) {
@@ -133,86 +116,6 @@ void clean_colors(PointCloud& cloud, const CleanOptions& options, CleanReport& r
 
 }  // namespace
 
-std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, int k, double deviations, double& spacing,
-                                   const Progress* progress) {
-    std::vector<uint8_t> goes(points.size());
-    spacing = 0.0;
-    const size_t neighbours = static_cast<size_t>(std::clamp(k, 1, kMostNeighbours));
-    if (points.size() <= neighbours + 1) return goes;
-
-    const KdPoints kd_points{points};
-    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    std::vector<double> distance(points.size());
-    std::vector<uint32_t> nearest(points.size() * neighbours);
-    parallel_for(points.size(), 4096, [&](size_t begin, size_t end) {
-        if (progress) progress->check();
-        std::array<uint32_t, kMostNeighbours + 1> found{};
-        std::array<float, kMostNeighbours + 1> squares{};
-        for (size_t i = begin; i < end; i++) {
-            // The first one found is the point itself, as all points are distinct.
-            tree.knnSearch(&points[i].x, neighbours + 1, found.data(), squares.data());
-            double sum = 0.0;
-            for (size_t n = 0; n < neighbours; n++) {
-                sum += std::sqrt(squares[n + 1]);
-                nearest[i * neighbours + n] = found[n + 1];
-            }
-            distance[i] = sum / static_cast<double>(neighbours);
-        }
-    });
-
-    std::vector<double> values = distance;
-    spacing = quantile(values, 0.95);
-    const double median = quantile(values, 0.5);
-    for (double& v : values)
-        v = std::abs(v - median);
-    const double limit = median + deviations * 1.4826 * quantile(values, 0.5);
-    std::vector<double> around(neighbours);
-    for (size_t i = 0; i < points.size(); i++) {
-        if (distance[i] <= limit) continue;
-        for (size_t n = 0; n < neighbours; n++)
-            around[n] = distance[nearest[i * neighbours + n]];
-        goes[i] = distance[i] > kLocalContrast * quantile(around, 0.5);
-    }
-    return goes;
-}
-
-std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spacing) {
-    std::vector<uint8_t> goes(points.size());
-    if (points.size() < 10) return goes;
-    const std::array<Range, 3> ranges = robust_ranges(points);
-    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
-    if (!(extent > 0.0)) return goes;
-    const std::vector<uint32_t> label = connected_components(points, std::max(0.03 * extent, 3.0 * spacing));
-
-    const size_t count = *std::max_element(label.begin(), label.end()) + size_t{1};
-    if (count == 1) return goes;
-    std::vector<size_t> size(count);
-    for (const uint32_t l : label)
-        size[l]++;
-    const size_t largest = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-
-    // A part with a share of the points is one of the tree's unless it stands well apart: a stem below a gap,
-    // a limb seen from one side.
-    const size_t substantial = std::max<size_t>(5, points.size() / 200);
-    const double near = 0.25 * extent;
-    std::vector<Vec3> main;
-    for (size_t i = 0; i < points.size(); i++)
-        if (label[i] == largest) main.push_back(points[i]);
-    const KdPoints kd_points{main};
-    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    std::vector<double> gap(count, std::numeric_limits<double>::max());
-    for (size_t i = 0; i < points.size(); i++) {
-        if (label[i] == largest || size[label[i]] < substantial) continue;
-        uint32_t found = 0;
-        float square = 0.0F;
-        tree.knnSearch(&points[i].x, 1, &found, &square);
-        gap[label[i]] = std::min<double>(gap[label[i]], std::sqrt(square));
-    }
-    for (size_t i = 0; i < points.size(); i++)
-        goes[i] = label[i] != largest && gap[label[i]] > near;
-    return goes;
-}
-
 CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress* progress) {
     CleanReport report;
     auto step = [&](double fraction) {
@@ -228,16 +131,18 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     step(0.3);
     double spacing = 0.0;
     if (options.remove_outliers || options.remove_fragments) {
-        const std::vector<uint8_t> outliers = find_outliers(cleaning.points(), options.neighbours,
-                                                            options.outlier_deviations, spacing, progress);
+        const std::vector<uint8_t> outliers =
+            find_outliers(cleaning.points(), cleaning.ranges(), options.neighbours,
+                          options.outlier_deviations, spacing, progress);
         if (options.remove_outliers) cleaning.take("Outliers", outliers);
     }
     step(0.7);
     // Before the fragments, which the ground would hold together.
-    if (options.remove_ground) cleaning.take("Ground", find_ground(cleaning.points()));
+    Ground ground;
+    if (options.remove_ground) cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
     step(0.8);
     if (options.remove_fragments) {
-        const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing));
+        const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing, progress));
         if (share > kRemarkable)
             report.warnings.push_back(std::to_string(std::lround(100.0 * share)) +
                                       " % of the points stand well apart from the rest and were left out. If "

@@ -17,17 +17,10 @@ constexpr double kLowPart = 0.3;       // of the height: where ground may lie
 constexpr double kLeastFilled = 0.4;   // share of the squares around that hold ground
 constexpr size_t kFewestColumns = 30;  // with ground
 constexpr int kTrials = 300;           // planes tried
+constexpr size_t kMostTried = 4096;    // low points that they are tried on
+constexpr int kWindow = 4;             // columns to each side that foretell how the ground runs on
 constexpr double kMostAcross = 512.0;  // columns along an axis
 constexpr double kFewestAcross = 24.0;
-
-// The ground's height: y = height + slope . (x, z) from a centre.
-struct Plane {
-    DVec2 centre{0.0};
-    double height = 0.0;
-    DVec2 slope{0.0};
-
-    double above(const Vec3& p) const { return p.y - height - glm::dot(slope, DVec2(p.x, p.z) - centre); }
-};
 
 // Square columns over the XZ plane, with the lowest point of each.
 class Columns {
@@ -63,7 +56,7 @@ class Columns {
     std::vector<int32_t> lowest_;  // by column; -1 where it is empty
 };
 
-bool plane_through(const Vec3& a, const Vec3& b, const Vec3& c, Plane& plane) {
+bool plane_through(const Vec3& a, const Vec3& b, const Vec3& c, Ground& plane) {
     const DVec3 normal = glm::cross(DVec3(b) - DVec3(a), DVec3(c) - DVec3(a));
     if (std::abs(normal.y) < 1e-9 || !is_finite(normal)) return false;
     plane.centre = DVec2(a.x, a.z);
@@ -73,11 +66,11 @@ bool plane_through(const Vec3& a, const Vec3& b, const Vec3& c, Plane& plane) {
 }
 
 // Least squares through the points within `tolerance` of `plane`.
-Plane refine(const std::vector<Vec3>& points, const Plane& plane, double tolerance) {
+Ground refine(const std::vector<Vec3>& points, const Ground& plane, double tolerance) {
     DVec3 mean(0.0);
     double count = 0.0;
     for (const Vec3& p : points) {
-        if (std::abs(plane.above(p)) > tolerance) continue;
+        if (std::abs(plane.above_plane(p)) > tolerance) continue;
         mean += DVec3(p);
         count += 1.0;
     }
@@ -85,7 +78,7 @@ Plane refine(const std::vector<Vec3>& points, const Plane& plane, double toleran
     mean /= count;
     double xx = 0.0, xz = 0.0, zz = 0.0, xy = 0.0, zy = 0.0;
     for (const Vec3& p : points) {
-        if (std::abs(plane.above(p)) > tolerance) continue;
+        if (std::abs(plane.above_plane(p)) > tolerance) continue;
         const DVec3 d = DVec3(p) - mean;
         xx += d.x * d.x;
         xz += d.x * d.z;
@@ -95,7 +88,7 @@ Plane refine(const std::vector<Vec3>& points, const Plane& plane, double toleran
     }
     const double determinant = xx * zz - xz * xz;
     if (determinant < 1e-9 * xx * zz || !(xx * zz > 0.0)) return plane;
-    Plane better;
+    Ground better;
     better.centre = DVec2(mean.x, mean.z);
     better.height = mean.y;
     better.slope = DVec2(xy * zz - zy * xz, zy * xx - xy * xz) / determinant;
@@ -103,17 +96,24 @@ Plane refine(const std::vector<Vec3>& points, const Plane& plane, double toleran
 }
 
 // The plane near most of the low points (Fischler and Bolles 1981), refined; inliers: how many are near it.
-Plane best_plane(const std::vector<Vec3>& low, double tolerance, size_t& inliers) {
+Ground best_plane(const std::vector<Vec3>& all, double tolerance, size_t& inliers, const Progress* progress) {
+    // Every n-th column tells as much as all of them.
+    const size_t stride = (all.size() + kMostTried - 1) / kMostTried;
+    std::vector<Vec3> low;
+    for (size_t i = 0; i < all.size(); i += stride)
+        low.push_back(all[i]);
+    if (progress) progress->check();
     Random random(1);
-    Plane best;
+    Ground best;
     inliers = 0;
-    auto count_near = [&](const Plane& plane) {
-        return static_cast<size_t>(std::count_if(
-            low.begin(), low.end(), [&](const Vec3& p) { return std::abs(plane.above(p)) <= tolerance; }));
+    auto count_near = [&](const Ground& plane) {
+        return static_cast<size_t>(std::count_if(low.begin(), low.end(), [&](const Vec3& p) {
+            return std::abs(plane.above_plane(p)) <= tolerance;
+        }));
     };
     const uint32_t size = static_cast<uint32_t>(low.size());
     for (int trial = 0; trial < kTrials; trial++) {
-        Plane plane;
+        Ground plane;
         const Vec3& a = low[random.below(size)];
         const Vec3& b = low[random.below(size)];
         if (!plane_through(a, b, low[random.below(size)], plane)) continue;
@@ -123,8 +123,9 @@ Plane best_plane(const std::vector<Vec3>& low, double tolerance, size_t& inliers
         best = plane;
     }
     for (int round = 0; round < 3; round++)
-        best = refine(low, best, tolerance);
-    inliers = count_near(best);
+        best = refine(all, best, tolerance);
+    inliers = static_cast<size_t>(std::count_if(
+        all.begin(), all.end(), [&](const Vec3& p) { return std::abs(best.above_plane(p)) <= tolerance; }));
     return best;
 }
 
@@ -167,19 +168,128 @@ bool is_wide_and_filled(const Columns& columns, const std::vector<uint8_t>& has_
     return middle - split > 0.8 && n > kLeastFilled * area;
 }
 
+// How the ground runs at column (x, z), above the plane, by the columns with ground around it; not finite
+// where these are too few.
+double foretell(const Columns& columns, const std::vector<uint8_t>& has_ground,
+                const std::vector<float>& relief, int x, int z) {
+    double n = 0.0, xx = 0.0, xz = 0.0, zz = 0.0, mean = 0.0, xr = 0.0, zr = 0.0, mx = 0.0, mz = 0.0;
+    for (int dz = std::max(-kWindow, -z); dz <= std::min(kWindow, columns.depth() - 1 - z); dz++) {
+        for (int dx = std::max(-kWindow, -x); dx <= std::min(kWindow, columns.width() - 1 - x); dx++) {
+            const size_t c = static_cast<size_t>((z + dz) * columns.width() + x + dx);
+            if (!has_ground[c]) continue;
+            const double r = static_cast<double>(relief[c]);
+            n += 1.0, mean += r, mx += dx, mz += dz;
+            xx += dx * dx, xz += dx * dz, zz += dz * dz, xr += dx * r, zr += dz * r;
+        }
+    }
+    if (n < 6.0) return std::numeric_limits<double>::quiet_NaN();
+    mean /= n, mx /= n, mz /= n;
+    xx -= n * mx * mx, xz -= n * mx * mz, zz -= n * mz * mz, xr -= n * mx * mean, zr -= n * mz * mean;
+    const double determinant = xx * zz - xz * xz;
+    // A slope from a narrow strip of columns would be a guess.
+    if (determinant < 0.05 * (xx + zz) * (xx + zz)) return mean;
+    return mean - mx * (xr * zz - zr * xz) / determinant - mz * (zr * xx - xr * xz) / determinant;
+}
+
+// Lets the ground grow from the columns on the plane over those next to it, as far as it runs on smoothly,
+// and writes its relief: in every column the height of the nearest columns with ground.
+void follow_relief(const std::vector<Vec3>& points, const Columns& columns, Ground& ground,
+                   std::vector<uint8_t>& has_ground, const Progress* progress) {
+    const int width = columns.width();
+    const int depth = columns.depth();
+    ground.relief.assign(has_ground.size(), 0.0F);
+    std::vector<int> front;
+    std::vector<uint8_t> waiting(has_ground.size());
+    auto each_neighbour = [&](int c, const auto& body) {
+        for (int z = std::max(0, c / width - 1); z <= std::min(depth - 1, c / width + 1); z++)
+            for (int x = std::max(0, c % width - 1); x <= std::min(width - 1, c % width + 1); x++)
+                body(z * width + x);
+    };
+    auto height_of = [&](int c) {
+        return ground.above_plane(points[static_cast<size_t>(columns.lowest()[static_cast<size_t>(c)])]);
+    };
+    auto push_around = [&](int from, std::vector<int>& into) {
+        each_neighbour(from, [&](int c) {
+            const size_t k = static_cast<size_t>(c);
+            if (has_ground[k] || waiting[k] || columns.lowest()[k] < 0) return;
+            waiting[k] = 1;
+            into.push_back(c);
+        });
+    };
+    for (int c = 0; c < width * depth; c++)
+        if (has_ground[static_cast<size_t>(c)])
+            ground.relief[static_cast<size_t>(c)] = static_cast<float>(height_of(c));
+    for (int c = 0; c < width * depth; c++)
+        if (has_ground[static_cast<size_t>(c)]) push_around(c, front);
+    while (!front.empty()) {
+        if (progress) progress->check();
+        // All of a front are judged before any joins, so that their order does not matter.
+        std::vector<int> joined;
+        for (const int c : front) {
+            waiting[static_cast<size_t>(c)] = 0;
+            const double told = foretell(columns, has_ground, ground.relief, c % width, c / width);
+            if (std::abs(height_of(c) - told) <= ground.tolerance) joined.push_back(c);
+        }
+        std::vector<int> next;
+        for (const int c : joined) {
+            has_ground[static_cast<size_t>(c)] = 1;
+            ground.relief[static_cast<size_t>(c)] = static_cast<float>(height_of(c));
+        }
+        for (const int c : joined)
+            push_around(c, next);
+        front.swap(next);
+    }
+    // Smooth where there is ground, then spread from there over the rest.
+    std::vector<uint8_t> known = has_ground;
+    std::vector<float> smooth = ground.relief;
+    for (int c = 0; c < width * depth; c++) {
+        if (!has_ground[static_cast<size_t>(c)]) continue;
+        const double told = foretell(columns, has_ground, ground.relief, c % width, c / width);
+        if (std::isfinite(told)) smooth[static_cast<size_t>(c)] = static_cast<float>(told);
+    }
+    std::vector<int> ring;
+    for (int c = 0; c < width * depth; c++)
+        if (known[static_cast<size_t>(c)]) ring.push_back(c);
+    while (!ring.empty()) {
+        if (progress) progress->check();
+        std::vector<int> next;
+        for (const int from : ring)
+            each_neighbour(from, [&](int c) {
+                if (known[static_cast<size_t>(c)] != 0) return;
+                known[static_cast<size_t>(c)] = 2;
+                next.push_back(c);
+            });
+        for (const int c : next) {
+            double sum = 0.0;
+            double n = 0.0;
+            each_neighbour(c, [&](int other) {
+                if (known[static_cast<size_t>(other)] != 1) return;
+                sum += static_cast<double>(smooth[static_cast<size_t>(other)]);
+                n += 1.0;
+            });
+            smooth[static_cast<size_t>(c)] = static_cast<float>(sum / n);
+        }
+        for (const int c : next)
+            known[static_cast<size_t>(c)] = 1;
+        ring.swap(next);
+    }
+    ground.relief.swap(smooth);
+}
+
 // Marks what grows out of the ground and ends below a tenth of the tree's height.
-void find_low_plants(const std::vector<Vec3>& points, const Plane& plane, double tolerance, double height,
-                     std::vector<uint8_t>& goes) {
+void find_low_plants(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges,
+                     const Ground& ground, double height, std::vector<uint8_t>& goes) {
+    const double tolerance = ground.tolerance;
     std::vector<Vec3> low;
     std::vector<size_t> index;
     for (size_t i = 0; i < points.size(); i++) {
-        const double above = plane.above(points[i]);
-        if (goes[i] || above < -tolerance || above > 0.1 * height) continue;
+        const double above = ground.above(points[i]);
+        if (goes[i] || above < -ground.tolerance || above > 0.1 * height) continue;
         low.push_back(points[i]);
         index.push_back(i);
     }
     if (low.empty()) return;
-    const std::vector<uint32_t> label = connected_components(low, tolerance);
+    const std::vector<uint32_t> label = connected_components(low, ranges, tolerance);
     struct Plant {
         double foot = std::numeric_limits<double>::max();
         double top = std::numeric_limits<double>::lowest();
@@ -187,8 +297,8 @@ void find_low_plants(const std::vector<Vec3>& points, const Plane& plane, double
     std::vector<Plant> plants(*std::max_element(label.begin(), label.end()) + size_t{1});
     for (size_t i = 0; i < low.size(); i++) {
         Plant& plant = plants[label[i]];
-        plant.foot = std::min(plant.foot, plane.above(low[i]));
-        plant.top = std::max(plant.top, plane.above(low[i]));
+        plant.foot = std::min(plant.foot, ground.above(low[i]));
+        plant.top = std::max(plant.top, ground.above(low[i]));
     }
     for (size_t i = 0; i < low.size(); i++) {
         const Plant& plant = plants[label[i]];
@@ -198,10 +308,11 @@ void find_low_plants(const std::vector<Vec3>& points, const Plane& plane, double
 
 }  // namespace
 
-std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
+std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground, const Progress* progress) {
     std::vector<uint8_t> goes(points.size());
+    ground = {};
     if (points.size() < 100) return goes;
-    const std::array<Range, 3> ranges = robust_ranges(points);
+    const std::array<Range, 3> ranges = robust_ranges(points, progress);
     const double height = ranges[1].size();
     const double across = std::max(ranges[0].size(), ranges[2].size());
     if (!(height > 0.0) || !(across > 0.0)) return goes;
@@ -217,38 +328,47 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points) {
             low.push_back(points[static_cast<size_t>(i)]);
     if (low.size() < kFewestColumns) return goes;
     size_t inliers = 0;
-    const Plane plane = best_plane(low, tolerance, inliers);
+    Ground found = best_plane(low, tolerance, inliers, progress);
     if (inliers < kFewestColumns) return goes;
-
-    // Next to nothing may lie below the ground: a crown has its stem below it.
-    size_t below = 0;
-    for (const Vec3& p : points)
-        below += plane.above(p) < -3.0 * tolerance && ranges[1].contains(p.y);
-    if (below * 500 > points.size()) return goes;
+    found.x = ranges[0];
+    found.z = ranges[2];
+    found.cell = cell;
+    found.width = columns.width();
+    found.depth = columns.depth();
+    found.tolerance = tolerance;
 
     std::vector<uint8_t> has_ground(columns.lowest().size());
     for (size_t c = 0; c < has_ground.size(); c++) {
         const int32_t i = columns.lowest()[c];
-        has_ground[c] = i >= 0 && std::abs(plane.above(points[static_cast<size_t>(i)])) <= tolerance;
+        has_ground[c] = i >= 0 && std::abs(found.above_plane(points[static_cast<size_t>(i)])) <= tolerance;
     }
     if (!is_wide_and_filled(columns, has_ground)) return goes;
+    follow_relief(points, columns, found, has_ground, progress);
+
+    // Next to nothing may lie below the ground: a crown has its stem below it.
+    size_t below = 0;
+    for (const Vec3& p : points)
+        below += found.above(p) < -3.0 * tolerance && ranges[1].contains(p.y);
+    if (below * 500 > points.size()) return goes;
+    ground = std::move(found);
+    ground.found = true;
 
     // What stands on the ground is seen in the layers right above it, all of them.
     constexpr int kLayers = 4;
     std::vector<uint8_t> layers(has_ground.size());
     for (const Vec3& p : points) {
         const int c = columns.column_of(p);
-        const double layer = (plane.above(p) - tolerance) / tolerance;
+        const double layer = (ground.above(p) - tolerance) / tolerance;
         if (c >= 0 && layer >= 0.0 && layer < kLayers)
             layers[static_cast<size_t>(c)] |= static_cast<uint8_t>(1 << static_cast<int>(layer));
     }
     constexpr uint8_t kAllLayers = (1 << kLayers) - 1;
     for (size_t i = 0; i < points.size(); i++) {
-        if (std::abs(plane.above(points[i])) > tolerance) continue;
+        if (std::abs(ground.above(points[i])) > tolerance) continue;
         const int c = columns.column_of(points[i]);
         goes[i] = c < 0 || layers[static_cast<size_t>(c)] != kAllLayers;
     }
-    find_low_plants(points, plane, tolerance, height, goes);
+    find_low_plants(points, ranges, ground, height, goes);
     return goes;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/parallel.h"
 #include "scan/clean_cloud.h"
 #include "scan/robust.h"
 #include "scan/scale.h"
@@ -11,6 +12,8 @@ namespace treerec {
 namespace {
 
 constexpr int kSlices = 40;
+constexpr size_t kPointsPerTask = size_t{1} << 17;
+constexpr size_t kLookedAt = 8192;  // points
 // How much more an upside-down stem must look like one. Both ends of a pruned tree look like stems.
 constexpr double kFlipMargin = 1.3;
 // Coordinates this large are a map's (UTM and the like), and maps are Z up.
@@ -129,12 +132,14 @@ bool is_on_map(const DVec3& origin) {
 // Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; no program puts
 // the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
 // without colours, which photos would have given it.
-UpAxis detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, bool& sure) {
+UpAxis detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, bool& sure,
+                 const Progress* progress) {
     sure = true;
     if (is_on_map(cloud.frame.origin)) return UpAxis::kZ;
 
-    const AxisView y = view_axis(cloud.positions, ranges, 1);
-    const AxisView z = view_axis(cloud.positions, ranges, 2);
+    const std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
+    const AxisView y = view_axis(points, ranges, 1);
+    const AxisView z = view_axis(points, ranges, 2);
     const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
     const double z_score = z.low_end.score + z.elongation_score;
     const double margin = cloud.has_colors() ? 0.2 : 0.4;
@@ -159,13 +164,13 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
     OrientReport report;
     if (cloud.empty()) throw Error("The cloud has no points.");
     if (progress) progress->check();
-    const std::array<Range, 3> ranges = robust_ranges(cloud.positions);
+    const std::array<Range, 3> ranges = robust_ranges(cloud.positions, progress);
     const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;
     } else {
         bool sure = false;
-        report.up = detect_up(cloud, ranges, sure);
+        report.up = detect_up(cloud, ranges, sure, progress);
         report.up_detected = true;
         if (!sure)
             report.warnings.push_back("The shape does not tell which way is up; " +
@@ -176,10 +181,13 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
 
     cloud.frame.up = report.up;
     cloud.frame.metres_per_unit = report.metres_per_unit;
-    for (Vec3& p : cloud.positions)
-        p = cloud.frame.turn_to_tree(DVec3(p) * report.metres_per_unit);
-    for (Vec3& n : cloud.normals)
-        n = cloud.frame.turn_to_tree(DVec3(n));
+    parallel_for(cloud.size(), kPointsPerTask, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        for (size_t i = begin; i < end; i++)
+            cloud.positions[i] = cloud.frame.turn_to_tree(DVec3(cloud.positions[i]) * report.metres_per_unit);
+        for (size_t i = begin; i < std::min(end, cloud.normals.size()); i++)
+            cloud.normals[i] = cloud.frame.turn_to_tree(DVec3(cloud.normals[i]));
+    });
     return report;
 }
 

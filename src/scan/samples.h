@@ -11,10 +11,12 @@
 
 namespace treerec {
 
-// Representatives in canonical order (by x, y, z; all distinct), whatever the order of the cloud's points.
+// Representatives in canonical order (by fine cells, then by x, y, z; all distinct), whatever the order of
+// the cloud's points.
 struct Samples {
     std::vector<Vec3> points;
     std::vector<uint32_t> of_point;  // by point of the cloud
+    std::array<Range, 3> ranges;     // robust_ranges() of the cloud
 };
 
 // Every distinct point, or one point per grid cell where there would be more than `limit`.
@@ -22,6 +24,9 @@ Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Pro
 
 // Labels the points by connected component, where points in touching cells (26 neighbours) are connected.
 // Labels are 0.. in the order of each component's first point. cell: metres.
-std::vector<uint32_t> connected_components(const std::vector<Vec3>& points, double cell);
+// ranges: robust_ranges() of the points or of a cloud that holds them.
+std::vector<uint32_t> connected_components(const std::vector<Vec3>& points,
+                                           const std::array<Range, 3>& ranges, double cell,
+                                           const Progress* progress = nullptr);
 
 }  // namespace treerec

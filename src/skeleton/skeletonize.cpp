@@ -46,7 +46,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     StageClock clock(result.stages);
 
     progress.update(0.0, "Thinning");
-    result.spacing = options.spacing > 0.0 ? options.spacing : automatic_spacing(cloud.positions);
+    result.spacing = options.spacing > 0.0 ? options.spacing : automatic_spacing(cloud.positions, &progress);
     const std::vector<Vec3> points = thin_points(cloud.positions, result.spacing, progress);
     if (points.size() < kLeastPoints)
         throw Error(

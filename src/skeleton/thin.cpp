@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "geometry/bounds.h"
+#include "geometry/cell_grid.h"
+#include "geometry/parallel.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kCellsPerAxis = 2097152.0;  // 21 bits per axis in one 64-bit key
-
-struct KeyedPoint {
-    uint64_t key;
-    Vec3 position;
-};
+constexpr size_t kCellsPerTask = 1024;
 
 bool finite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -27,86 +25,109 @@ bool before(const Vec3& a, const Vec3& b) {
     return a.z < b.z;
 }
 
-Bounds finite_bounds(const std::vector<Vec3>& points) {
+Bounds finite_bounds(const std::vector<Vec3>& points, size_t& count) {
     Bounds bounds;
-    for (const Vec3& p : points)
-        if (finite(p)) bounds.add(DVec3(p));
+    Vec3 low(std::numeric_limits<float>::max());
+    Vec3 high(std::numeric_limits<float>::lowest());
+    count = 0;
+    for (const Vec3& p : points) {
+        if (!finite(p)) continue;
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+        count++;
+    }
+    if (count == 0) return bounds;
+    bounds.add(DVec3(low));
+    bounds.add(DVec3(high));
     return bounds;
 }
 
 // Never so small that the cells of one axis would outgrow their bits.
-double safe_spacing(const Bounds& bounds, double spacing) {
+CellLayout safe_layout(const Bounds& bounds, double spacing) {
     const DVec3 size = bounds.size();
-    return std::max(spacing, std::max({size.x, size.y, size.z}) / (kCellsPerAxis - 2.0));
+    const double least = std::max({size.x, size.y, size.z}) / (CellLayout::kMostCells - 2.0);
+    // A cloud that is one place has one cell of any size.
+    return {bounds.min, std::max({spacing, least, std::numeric_limits<double>::min()})};
 }
 
-uint64_t cell_key(const Vec3& p, const DVec3& low, double inverse_spacing) {
-    const DVec3 cell = glm::floor((DVec3(p) - low) * inverse_spacing);
-    return (static_cast<uint64_t>(cell.y) << 42) | (static_cast<uint64_t>(cell.x) << 21) |
-           static_cast<uint64_t>(cell.z);
-}
-
-size_t occupied_cells(const std::vector<Vec3>& points, const Bounds& bounds, double spacing,
-                      std::vector<uint64_t>& keys) {
-    const double inverse = 1.0 / safe_spacing(bounds, spacing);
-    keys.clear();
-    for (const Vec3& p : points)
-        if (finite(p)) keys.push_back(cell_key(p, bounds.min, inverse));
-    std::sort(keys.begin(), keys.end());
-    return static_cast<size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+// The one of `members` nearest to the mean of the distinct ones. members: gets reordered.
+Vec3 middle_of(std::vector<Vec3>& members) {
+    if (members.size() == 1) return members.front();
+    std::sort(members.begin(), members.end(), before);
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    DVec3 mean(0.0);
+    for (const Vec3& p : members)
+        mean += DVec3(p);
+    mean /= static_cast<double>(members.size());
+    size_t best = 0;
+    double best_distance = std::numeric_limits<double>::max();
+    for (size_t i = 0; i < members.size(); i++) {
+        const DVec3 offset = DVec3(members[i]) - mean;
+        const double distance = glm::dot(offset, offset);
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = i;
+        }
+    }
+    return members[best];
 }
 
 }  // namespace
 
 std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress) {
-    const Bounds bounds = finite_bounds(points);
-    if (bounds.empty()) return {};
-    const double inverse = 1.0 / safe_spacing(bounds, spacing);
-    std::vector<KeyedPoint> keyed;
-    keyed.reserve(points.size());
-    for (const Vec3& p : points)
-        if (finite(p)) keyed.push_back({cell_key(p, bounds.min, inverse), p});
     progress.check();
-    std::sort(keyed.begin(), keyed.end(), [](const KeyedPoint& a, const KeyedPoint& b) {
-        return a.key != b.key ? a.key < b.key : before(a.position, b.position);
-    });
-    progress.check();
-
-    std::vector<Vec3> thinned;
-    for (size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
-        DVec3 mean(0.0);
-        size_t distinct = 0;
-        for (end = begin; end < keyed.size() && keyed[end].key == keyed[begin].key; end++) {
-            if (end > begin && keyed[end].position == keyed[end - 1].position) continue;
-            mean += DVec3(keyed[end].position);
-            distinct++;
-        }
-        mean /= static_cast<double>(distinct);
-        size_t best = begin;
-        double best_distance = std::numeric_limits<double>::max();
-        for (size_t i = begin; i < end; i++) {
-            const DVec3 offset = DVec3(keyed[i].position) - mean;
-            const double distance = glm::dot(offset, offset);
-            if (distance < best_distance) {
-                best_distance = distance;
-                best = i;
-            }
-        }
-        thinned.push_back(keyed[best].position);
+    size_t count = 0;
+    const Bounds bounds = finite_bounds(points, count);
+    if (count == 0) return {};
+    if (count < points.size()) {
+        std::vector<Vec3> good;
+        good.reserve(count);
+        std::copy_if(points.begin(), points.end(), std::back_inserter(good), finite);
+        return thin_points(good, spacing, progress);
     }
+    const CellGrid grid(points, safe_layout(bounds, spacing), &progress);
+    std::vector<Vec3> thinned(grid.size());
+    parallel_for(grid.size(), kCellsPerTask, [&](size_t begin, size_t end) {
+        progress.check();
+        std::vector<Vec3> members;
+        for (size_t c = begin; c < end; c++) {
+            members.clear();
+            for (const uint32_t i : grid.in_cell(c))
+                members.push_back(points[i]);
+            thinned[c] = middle_of(members);
+        }
+    });
     return thinned;
 }
 
-double automatic_spacing(const std::vector<Vec3>& points) {
-    const Bounds bounds = finite_bounds(points);
+double automatic_spacing(const std::vector<Vec3>& points, const Progress* progress) {
+    size_t finite_count = 0;
+    const Bounds bounds = finite_bounds(points, finite_count);
     double spacing = std::max(std::clamp(bounds.diagonal() / 2000.0, 0.001, 0.02), bounds.diagonal() * 1e-5);
-    if (points.size() <= kMostPoints) return spacing;
-    std::vector<uint64_t> keys;
-    keys.reserve(points.size());
-    // A scanned tree is between a line and a volume: the count falls with about the square of the spacing.
-    for (size_t count = occupied_cells(points, bounds, spacing, keys); count > kMostPoints;
-         count = occupied_cells(points, bounds, spacing, keys))
-        spacing *= std::clamp(std::sqrt(static_cast<double>(count) / kMostPoints), 1.05, 4.0);
+    if (finite_count <= kMostPoints) return spacing;
+    std::vector<Vec3> good;
+    if (finite_count < points.size())
+        std::copy_if(points.begin(), points.end(), std::back_inserter(good), finite);
+    const std::vector<Vec3>& counted = good.empty() ? points : good;
+    // The count falls with some power of the spacing: 2 for a dense surface, next to 0 where the points are
+    // far apart already. Two counts tell the power.
+    constexpr double kWanted = 0.99 * kMostPoints;
+    double power = 2.0;
+    double last_spacing = 0.0;
+    double last_count = 0.0;
+    for (;;) {
+        const double count =
+            static_cast<double>(guess_cells(counted, safe_layout(bounds, spacing), progress));
+        if (count <= kWanted) break;
+        if (last_count > count) power = std::log(last_count / count) / std::log(spacing / last_spacing);
+        last_spacing = spacing;
+        last_count = count;
+        const double excess = count / kWanted;
+        spacing *=
+            std::clamp(std::pow(excess, 1.0 / std::clamp(power, 0.2, 3.0)), 1.01, excess > 4.0 ? 2.0 : 1.3);
+    }
+    while (count_cells(counted, safe_layout(bounds, spacing), kMostPoints, progress) > kMostPoints)
+        spacing *= 1.02;
     return spacing;
 }
 

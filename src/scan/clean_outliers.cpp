@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nanoflann.hpp>
+
+#include "geometry/cell_grid.h"
+#include "geometry/parallel.h"
+#include "scan/clean_steps.h"
+#include "scan/robust.h"
+#include "scan/samples.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr int kMostNeighbours = 64;
+// A point's neighbour distance must be this many times that of its neighbours.
+constexpr double kLocalContrast = 2.5;
+constexpr size_t kTypical = 512;  // points that tell the typical distance
+constexpr double kReach = 0.75;   // of the limit: the cells in which a point is looked for company
+constexpr size_t kLeaf = 16;
+constexpr size_t kPointsPerTask = 512;
+
+struct KdPoints {
+    const std::vector<Vec3>& points;
+
+    size_t kdtree_get_point_count() const { return points.size(); }
+    float kdtree_get_pt(size_t index, size_t axis) const { return points[index][static_cast<int>(axis)]; }
+    template <typename Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+};
+
+using KdTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, KdPoints>, KdPoints, 3, uint32_t>;
+
+// Mean distances to the nearest neighbours, found when they are asked for.
+class Neighbours {
+  public:
+    // points: distinct, more than `count`.
+    Neighbours(const std::vector<Vec3>& points, size_t count, const Progress* progress)
+        : points_(points),
+          count_(count),
+          progress_(progress),
+          kd_points_{points},
+          tree_(3, kd_points_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)),
+          distance_(points.size(), -1.0F) {}
+
+    // which: distinct indices.
+    void find(const std::vector<uint32_t>& which) { search(which, nullptr); }
+
+    // Also the neighbours of each, `count` indices after one another.
+    std::vector<uint32_t> find_nearest(const std::vector<uint32_t>& which) {
+        std::vector<uint32_t> nearest(which.size() * count_);
+        search(which, &nearest);
+        return nearest;
+    }
+    double distance(uint32_t i) const { return distance_[i]; }
+
+  private:
+    void search(const std::vector<uint32_t>& which, std::vector<uint32_t>* nearest) {
+        parallel_for(which.size(), kPointsPerTask, [&](size_t begin, size_t end) {
+            if (progress_) progress_->check();
+            std::array<uint32_t, kMostNeighbours + 1> found{};
+            std::array<float, kMostNeighbours + 1> squares{};
+            for (size_t w = begin; w < end; w++) {
+                const uint32_t i = which[w];
+                if (!nearest && distance_[i] >= 0.0F) continue;
+                // The first one found is the point itself, as all points are distinct.
+                tree_.knnSearch(&points_[i].x, count_ + 1, found.data(), squares.data());
+                double sum = 0.0;
+                for (size_t n = 0; n < count_; n++) {
+                    sum += std::sqrt(static_cast<double>(squares[n + 1]));
+                    if (nearest) (*nearest)[w * count_ + n] = found[n + 1];
+                }
+                distance_[i] = static_cast<float>(sum / static_cast<double>(count_));
+            }
+        });
+    }
+
+    const std::vector<Vec3>& points_;
+    size_t count_;
+    const Progress* progress_;
+    KdPoints kd_points_;
+    KdTree tree_;
+    std::vector<float> distance_;
+};
+
+// The points with fewer than `least` others in the block of 3 x 3 x 3 cells around them.
+std::vector<uint32_t> thinly_surrounded(const std::vector<Vec3>& points, const CellLayout& layout,
+                                        size_t least, const Progress* progress) {
+    const CellGrid grid(points, layout, progress);
+    std::vector<uint32_t> around(grid.size());
+    grid.for_neighbour_runs(
+        [&](size_t c, size_t first, size_t last) { around[c] += grid.begin[last] - grid.begin[first]; });
+    std::vector<uint32_t> thin;
+    for (size_t c = 0; c < grid.size(); c++)
+        if (around[c] <= least) thin.insert(thin.end(), grid.in_cell(c).begin(), grid.in_cell(c).end());
+    return thin;
+}
+
+}  // namespace
+
+std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges, int k,
+                                   double deviations, double& spacing, const Progress* progress) {
+    std::vector<uint8_t> goes(points.size());
+    spacing = 0.0;
+    const size_t count = static_cast<size_t>(std::clamp(k, 1, kMostNeighbours));
+    if (points.size() <= count + 1) return goes;
+    if (progress) progress->check();
+    Neighbours neighbours(points, count, progress);
+
+    std::vector<uint32_t> which;
+    const size_t stride = std::max<size_t>(1, points.size() / kTypical);
+    for (size_t i = stride / 2; i < points.size(); i += stride)
+        which.push_back(static_cast<uint32_t>(i));
+    neighbours.find(which);
+    std::vector<double> values;
+    for (const uint32_t i : which)
+        values.push_back(neighbours.distance(i));
+    spacing = quantile(values, 0.95);
+    const double median = quantile(values, 0.5);
+    for (double& v : values)
+        v = std::abs(v - median);
+    const double limit = median + deviations * 1.4826 * quantile(values, 0.5);
+
+    // Whoever has enough points within reach is near them; the others are looked at closely.
+    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
+    which = thinly_surrounded(
+        points,
+        {{ranges[0].low, ranges[1].low, ranges[2].low}, std::max({kReach * limit, 1e-6 * extent, 1e-12})},
+        count, progress);
+    neighbours.find(which);
+    std::erase_if(which, [&](uint32_t i) { return neighbours.distance(i) <= limit; });
+    const std::vector<uint32_t> nearest = neighbours.find_nearest(which);
+    std::vector<uint32_t> around = nearest;
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    neighbours.find(around);
+    for (size_t w = 0; w < which.size(); w++) {
+        values.clear();
+        for (size_t n = 0; n < count; n++)
+            values.push_back(neighbours.distance(nearest[w * count + n]));
+        goes[which[w]] = neighbours.distance(which[w]) > kLocalContrast * quantile(values, 0.5);
+    }
+    return goes;
+}
+
+std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spacing,
+                                    const Progress* progress) {
+    std::vector<uint8_t> goes(points.size());
+    if (points.size() < 10) return goes;
+    const std::array<Range, 3> ranges = robust_ranges(points, progress);
+    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
+    if (!(extent > 0.0)) return goes;
+    const std::vector<uint32_t> label =
+        connected_components(points, ranges, std::max(0.03 * extent, 3.0 * spacing), progress);
+
+    const size_t count = *std::max_element(label.begin(), label.end()) + size_t{1};
+    if (count == 1) return goes;
+    std::vector<size_t> size(count);
+    for (const uint32_t l : label)
+        size[l]++;
+    const size_t largest = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+
+    // A part with a share of the points is one of the tree's unless it stands well apart: a stem below a gap,
+    // a limb seen from one side.
+    const size_t substantial = std::max<size_t>(5, points.size() / 200);
+    const double near = 0.25 * extent;
+    std::vector<Vec3> main;
+    for (size_t i = 0; i < points.size(); i++)
+        if (label[i] == largest) main.push_back(points[i]);
+    const KdPoints kd_points{main};
+    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    std::vector<double> gap(count, std::numeric_limits<double>::max());
+    for (size_t i = 0; i < points.size(); i++) {
+        if (label[i] == largest || size[label[i]] < substantial) continue;
+        uint32_t found = 0;
+        float square = 0.0F;
+        tree.knnSearch(&points[i].x, 1, &found, &square);
+        gap[label[i]] = std::min<double>(gap[label[i]], std::sqrt(square));
+    }
+    for (size_t i = 0; i < points.size(); i++)
+        goes[i] = label[i] != largest && gap[label[i]] > near;
+    return goes;
+}
+
+}  // namespace treerec
