@@ -3,7 +3,7 @@ extends Node3D
 ## Shows the tree that ./dev demo reconstructed last, in the editor too; in the game a camera goes
 ## round it. Without a tree it says how to make one.
 
-const _MADE_BY_DEMO: String = "../build/demo/tree.tscn"
+const _MADE_BY_DEMO: String = "res://demo/result/tree.tscn"
 
 @onready var _pivot: Node3D = $Pivot
 @onready var _camera: Camera3D = $Pivot/Camera
@@ -13,14 +13,13 @@ const _MADE_BY_DEMO: String = "../build/demo/tree.tscn"
 func _ready() -> void:
 	var in_editor: bool = Engine.is_editor_hint()
 	set_process(not in_editor)
-	var path: String = (
-		ProjectSettings.globalize_path("res://").path_join(_MADE_BY_DEMO).simplify_path()
-	)
-	if not FileAccess.file_exists(path):
+	if not ResourceLoader.exists(_MADE_BY_DEMO):
 		# In the editor this would change the scene.
 		_hint.visible = not in_editor
 		return
-	var scene: PackedScene = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE)
+	var scene: PackedScene = ResourceLoader.load(
+		_MADE_BY_DEMO, "", ResourceLoader.CACHE_MODE_IGNORE
+	)
 	var tree: TreeInstance3D = scene.instantiate() as TreeInstance3D
 	# Without an owner: it is never saved with this scene.
 	add_child(tree)

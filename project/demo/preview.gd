@@ -1,16 +1,18 @@
 extends SceneTree
-## Reconstructs a scan inside the engine, saves the tree as a scene and draws its stages and its
-## four sides. Needs a window (xvfb-run will do):
+## Reconstructs a scan inside the engine, saves the tree as a scene and as models and draws its
+## stages and its four sides. Needs a window (xvfb-run will do):
 ##
 ##     godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER
 ##         [--title TEXT] [options of 'treerec reconstruct']
 ##
-## It writes FOLDER/tree.tscn and FOLDER/preview.png.
+## It writes res://demo/result/tree.tscn, and in FOLDER tree.glb, tree.obj, report.json and
+## preview.png. What a user should read begins with "> ".
 
 const Plots: GDScript = preload("./plots.gd")
 const Sheet: GDScript = preload("./sheet.gd")
 const Studio: GDScript = preload("./studio.gd")
 
+const _SCENE: String = "res://demo/result/tree.tscn"
 const _WIDTH: int = 2000
 const _STAGE_HEIGHT: int = 600
 const _VIEW_HEIGHT: int = 640
@@ -24,6 +26,8 @@ const _OPTIONS: Dictionary[String, String] = {
 	"--leaves": "leaves",
 	"--up": "up",
 	"--scale": "scale",
+	"--height": "known_height",
+	"--length": "known_length",
 	"--spacing": "spacing",
 	"--columns": "columns",
 }
@@ -68,13 +72,14 @@ func _work() -> bool:
 	TreeInstance3D.threaded = false
 	instance.name = "Tree"
 	instance.reconstruction = _tree
-	if not _save_scene(instance):
+	if not _save_scene(instance) or not _save_files():
 		return false
-	_say("saved the scene")
+	_say("saved the scene and the models")
 	await instance.rebuilt
 	_say("built")
 	var saved: bool = await _draw(instance)
 	_say("drawn")
+	print("> ", _heading(_tree.measure(), instance))
 	return saved
 
 
@@ -97,8 +102,10 @@ func _read_arguments() -> bool:
 			_arguments[name] = value
 		elif name == "--seed":
 			_options["seed"] = value.to_int()
-		elif name in ["--scale", "--spacing"]:
+		elif name in ["--scale", "--height", "--spacing"]:
 			_options[_OPTIONS[name]] = value.to_float()
+		elif name == "--length":
+			_options["known_length"] = PackedFloat64Array(value.split_floats(","))
 		else:
 			_options[_OPTIONS[name]] = value
 	if _arguments["--scan"].is_empty() or _arguments["--out"].is_empty():
@@ -110,12 +117,27 @@ func _read_arguments() -> bool:
 func _save_scene(instance: TreeInstance3D) -> bool:
 	var scene: PackedScene = PackedScene.new()
 	var error: Error = scene.pack(instance)
-	var path: String = _arguments["--out"].path_join("tree.tscn")
+	DirAccess.make_dir_recursive_absolute(_SCENE.get_base_dir())
 	if error == OK:
-		error = ResourceSaver.save(scene, path)
+		error = ResourceSaver.save(scene, _SCENE)
 	if error != OK:
-		printerr("Could not save %s: %s." % [path, error_string(error)])
+		printerr("Could not save %s: %s." % [_SCENE, error_string(error)])
 	return error == OK
+
+
+func _save_files() -> bool:
+	for name: String in ["tree.glb", "tree.obj"]:
+		if _reconstructor.export_file(_tree, _arguments["--out"].path_join(name)) != OK:
+			printerr(_reconstructor.get_error_message())
+			return false
+	var path: String = _arguments["--out"].path_join("report.json")
+	var file: FileAccess = FileAccess.open(path, FileAccess.WRITE)
+	if file == null or not file.store_string(_reconstructor.get_report_json()):
+		printerr("Could not write %s." % path)
+		return false
+	for warning: String in _reconstructor.get_report()["warnings"]:
+		print("> Warning: ", warning)
+	return true
 
 
 func _draw(instance: TreeInstance3D) -> bool:

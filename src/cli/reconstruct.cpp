@@ -153,7 +153,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     ReportDetails details{scan, options, arguments.text("--leaves", "generic"), options.skeleton.seed, 0, 0};
     ExportOptions exports;
     exports.leaves = as_usage([&] { return leaf_preset(details.leaves); });
-    exports.textures = exports.leaves.enabled ? details.leaves : "generic";
+    exports.textures = details.leaves;
     exports.seed = options.skeleton.seed;
     set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
     // Before the long work, not after it.

@@ -37,7 +37,10 @@ void require_writable_format(const std::string& path) {
 }
 
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)
-    : tree_(tree), options_(options), progress_(progress) {}
+    : tree_(tree), options_(options), progress_(progress) {
+    // "none" has leaf rules, but no look.
+    if (!leaf_preset(options_.textures).enabled) options_.textures = ExportOptions().textures;
+}
 
 const Mesh& TreeExporter::bark() {
     if (!bark_) bark_ = build_branch_tubes(tree_, {}, progress_);

@@ -16,7 +16,7 @@ namespace treerec {
 
 struct ExportOptions {
     LeafRules leaves = leaf_preset("generic");
-    std::string textures = "generic";  // the preset whose bark and leaf pictures are used
+    std::string textures = "generic";  // the preset whose bark and leaf pictures are used; "none" means these
     uint64_t seed = 1;                 // of the leaves
 };
 

@@ -3,7 +3,8 @@ extends SceneTree
 ##
 ##     godot --headless --path project --script tests/demo/check_demo.gd -- FOLDER
 
-const FILES: PackedStringArray = ["tree.tscn", "tree.glb", "tree.obj", "report.json", "preview.png"]
+const SCENE: String = "res://demo/result/tree.tscn"
+const FILES: PackedStringArray = ["tree.glb", "tree.obj", "report.json", "preview.png"]
 const LIMIT_FRAMES: int = 2000
 # A cell shows something if more of its pixels than this differ from those at its edge.
 const LEAST_SHARE: float = 0.002
@@ -137,9 +138,9 @@ func _check_model() -> void:
 
 
 func _check_scene() -> void:
-	var text: String = FileAccess.get_file_as_string(_folder.path_join("tree.tscn"))
+	var text: String = FileAccess.get_file_as_string(SCENE)
 	_check(not "ArrayMesh" in text, "tree.tscn holds the tree, not its mesh")
-	var scene: PackedScene = load(_folder.path_join("tree.tscn")) as PackedScene
+	var scene: PackedScene = load(SCENE) as PackedScene
 	_check(scene != null, "the engine opens tree.tscn")
 	if scene == null:
 		return

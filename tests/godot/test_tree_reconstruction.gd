@@ -163,7 +163,7 @@ func test_leaf_presets() -> void:
 	check(made.leaf_preset in names, "An unknown preset was taken.")
 
 
-# What the inspector does: it stores the linked properties, sets the preset, and on undo sets all back.
+# As the inspector does: it keeps the linked properties, sets the preset, and undoes all.
 func test_undoing_a_preset_brings_the_tuned_values_back() -> void:
 	var made: TreeReconstruction = grown_tree(2)
 	made.leaf_preset = "oak"
