@@ -1,8 +1,10 @@
 #include "fidelity/score.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "error.h"
@@ -15,12 +17,13 @@ namespace treerec {
 
 namespace {
 
-constexpr double kSampleStep = 0.001;     // metres
 constexpr double kSame = 1e-6;            // metres: what rounding may part
 constexpr double kLongestWood = 20000.0;  // metres
 constexpr double kExplained = 0.02;       // metres
 constexpr double kMatch = 0.01;           // metres
 constexpr size_t kChunk = 1024;
+// Metres: where one class of thickness ends and the next begins.
+constexpr std::array<double, 4> kThicknesses = {0.005, 0.01, 0.025, 0.05};
 
 // The tree's segments in the tree space of another frame, in its metres.
 std::vector<WoodSegment> segments_in(const Tree& tree, const ScanFrame& frame) {
@@ -56,12 +59,12 @@ struct Sample {
     double other_radius;  // of the segment it met
 };
 
-// Samples every segment at about `kSampleStep`, in the middle of equal parts, against the other's axes.
+// Samples every segment about every `step` metres, in the middle of equal parts, against the other's axes.
 std::vector<Sample> sample_against(const std::vector<WoodSegment>& segments, const SegmentTree& other,
-                                   Progress* progress, const char* stage) {
+                                   double step, Progress* progress, const char* stage) {
     std::vector<size_t> first(segments.size() + 1, 0);
     for (size_t i = 0; i < segments.size(); i++) {
-        const double parts = std::ceil(glm::distance(segments[i].from, segments[i].to) / kSampleStep);
+        const double parts = std::ceil(glm::distance(segments[i].from, segments[i].to) / step);
         first[i + 1] = first[i] + static_cast<size_t>(std::max(1.0, parts));
     }
     std::vector<Sample> samples(first.back());
@@ -162,7 +165,8 @@ ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Pr
     return score;
 }
 
-SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* progress) {
+SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* progress, double step) {
+    if (!(step > 0.0)) throw Error("The samples of a skeleton must lie some way apart.");
     const std::vector<WoodSegment> reference_wood = segments_in(reference, reference.frame());
     const std::vector<WoodSegment> wood = segments_in(tree, reference.frame());
     SkeletonScore score;
@@ -180,8 +184,10 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
 
     SubProgress first(progress, 0.0, 0.5);
     SubProgress second(progress, 0.5, 1.0);
-    const std::vector<Sample> found = sample_against(wood, SegmentTree(reference_wood), &first, "Scoring");
-    const std::vector<Sample> wanted = sample_against(reference_wood, SegmentTree(wood), &second, "Scoring");
+    const std::vector<Sample> found =
+        sample_against(wood, SegmentTree(reference_wood), step, &first, "Scoring");
+    const std::vector<Sample> wanted =
+        sample_against(reference_wood, SegmentTree(wood), step, &second, "Scoring");
     for (int quarter = 0; quarter <= 4; quarter++) {
         const double factor = 0.25 * quarter;
         score.by_radius.push_back(
@@ -196,15 +202,31 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
     }
     score.chamfer_mm = 500.0 * (mean_distance(found) + mean_distance(wanted));
 
-    std::vector<double> errors;
-    errors.reserve(wanted.size());
-    for (const Sample& sample : wanted)
-        if (sample.distance <= std::max(kMatch, sample.radius))
-            errors.push_back(sample.other_radius / sample.radius - 1.0);
-    if (!errors.empty()) score.radius_error = quantile(errors, 0.5);
-    for (double& error : errors)
-        error = std::abs(error);
-    if (!errors.empty()) score.radius_error_abs = quantile(errors, 0.5);
+    const auto near = [](const Sample& s) { return std::max(kMatch, s.other_radius); };
+    score.match = agreement(kMatch, share_within(found, near), share_within(wanted, near));
+
+    const double sample_length = score.reference_length / static_cast<double>(wanted.size());
+    const auto errors_between = [&](double from, double to) {
+        std::vector<double> errors;
+        for (const Sample& sample : wanted)
+            if (sample.radius > from && sample.radius <= to &&
+                sample.distance <= std::max(kMatch, sample.radius))
+                errors.push_back(sample.other_radius / sample.radius - 1.0);
+        RadiusAgreement result{from, to, sample_length * static_cast<double>(errors.size()), 0.0, 0.0};
+        if (errors.empty()) return result;
+        result.error = quantile(errors, 0.5);
+        for (double& error : errors)
+            error = std::abs(error);
+        result.error_abs = quantile(errors, 0.5);
+        return result;
+    };
+    constexpr double kAnyRadius = std::numeric_limits<double>::infinity();
+    const RadiusAgreement all = errors_between(0.0, kAnyRadius);
+    score.radius_error = all.error;
+    score.radius_error_abs = all.error_abs;
+    for (size_t i = 0; i <= kThicknesses.size(); i++)
+        score.radius_by_thickness.push_back(errors_between(
+            i > 0 ? kThicknesses[i - 1] : 0.0, i < kThicknesses.size() ? kThicknesses[i] : kAnyRadius));
     if (progress) progress->update(1.0, "Scoring");
     return score;
 }

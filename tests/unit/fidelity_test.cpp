@@ -122,6 +122,30 @@ TEST(Score, MeasuresTheRadiusError) {
     EXPECT_NEAR(score.volume_error, 0.21, 1e-9);
 }
 
+TEST(Score, TellsRadiusErrorsByThickness) {
+    // One stem, and one twig that came out twice as thick; a second twig that was missed.
+    Tree truth;
+    const NodeId root = truth.add_root(DVec3(0.0), 0.1);
+    const NodeId top = truth.add_child(root, DVec3(0, 2, 0), 0.1);
+    const NodeId twig = truth.add_child(top, DVec3(1, 2, 0), 0.004);
+    Tree found = truth;
+    found.set_radius(twig, 0.008);
+    truth.add_child(root, DVec3(0, 0, 2), 0.02);
+    const SkeletonScore score = score_skeleton(found, truth);
+    ASSERT_EQ(score.radius_by_thickness.size(), 5u);
+    EXPECT_NEAR(score.radius_by_thickness[0].error, 1.0, 1e-9);
+    EXPECT_NEAR(score.radius_by_thickness[0].error_abs, 1.0, 1e-9);
+    EXPECT_NEAR(score.radius_by_thickness[0].length, 1.0, 0.01);
+    EXPECT_NEAR(score.radius_by_thickness[2].length, 0.02, 0.002);
+    EXPECT_EQ(score.radius_by_thickness[4].error, 0.0);
+    EXPECT_NEAR(score.radius_by_thickness[4].length, 2.0, 0.01);
+    // What was found is true; of 5 m, 2 m were missed, but for what lies within the stem's radius.
+    EXPECT_EQ(score.match.precision, 1.0);
+    EXPECT_NEAR(score.match.recall, 3.1 / 5.0, 1e-3);
+    EXPECT_NEAR(score_skeleton(found, truth, nullptr, 0.01).match.recall, score.match.recall, 0.01);
+    EXPECT_THROW(score_skeleton(found, truth, nullptr, 0.0), Error);
+}
+
 TEST(Score, ScanErrorIsTheNoise) {
     const Tree tree = grown(2);
     EXPECT_LT(score_scan(tree, bark_points(tree, 5000, 0.0, 3)).p95_mm, 0.01);

@@ -1,0 +1,37 @@
+// The benchmarks behind ./dev bench. Each prints its table to stdout and throws treerec::Error.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace treerec::bench {
+
+struct Settings {
+    std::string program;              // treerec itself
+    std::string record;               // the recorded accuracy table (tests/bench/accuracy.tsv)
+    std::string beside;               // another program to run beside ours
+    std::vector<std::string> args;    // handed to it after scan and folder
+    int repetitions = 0;              // 0: the benchmark's own
+    int seeds = 2;                    // of the synthetic table
+    size_t most_points = 10'000'000;  // of the scaling table
+};
+
+// Time and memory of every stage, and CGAL's bare Delaunay triangulation of the same thinned points.
+void bench_stages(const std::string& scan, const Settings& settings);
+// Whole runs of 10k to 10M points, made from one scan.
+void bench_scaling(const std::string& scan, const Settings& settings);
+// Whole runs of ours and of another program in turns.
+void bench_beside(const std::vector<std::string>& scans, const Settings& settings);
+// One line per real scan.
+void bench_scans(const std::vector<std::string>& scans, const Settings& settings);
+// Precision, recall, radius and DBH errors on grown trees.
+void bench_synth(const Settings& settings);
+// The reduced table of the same: compared with the recorded one (false: worse), or recorded.
+bool guard_accuracy(const Settings& settings);
+void record_accuracy(const Settings& settings);
+
+// Milliseconds of CGAL's Delaunay triangulation of points that lie so far apart, on one thread.
+double delaunay_floor_ms(const std::vector<float>& coordinates);
+
+}  // namespace treerec::bench

@@ -1,0 +1,138 @@
+// The benchmarks' program; ./dev bench builds and calls it.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "bench.h"
+#include "error.h"
+#include "file_bytes.h"
+
+namespace {
+
+using namespace treerec;
+using namespace treerec::bench;
+
+const char* const kUsage =
+    "usage: bench [options] [SCAN…]            time and memory of every stage\n"
+    "       bench --scaling [SCAN]             whole runs of 10k to 10M points made from a scan\n"
+    "       bench --scans [SCAN…|FOLDER]       one line per scan: time, memory, measurements, fit\n"
+    "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
+    "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
+    "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
+    "       bench --guard, --record            a small table of the same against the recorded one\n"
+    "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
+    "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
+
+struct CommandLine {
+    std::string mode;
+    std::string sample;
+    std::vector<std::string> scans;
+    Settings settings;
+};
+
+size_t whole(const std::string& word) {
+    if (word.empty() || word.find_first_not_of("0123456789") != std::string::npos || word.size() > 9)
+        throw Error("'" + word + "' is not a whole number.");
+    return std::stoul(word);
+}
+
+CommandLine parse(const std::vector<std::string>& words) {
+    CommandLine line;
+    for (size_t i = 0; i < words.size(); i++) {
+        const std::string& word = words[i];
+        const auto value = [&]() -> const std::string& {
+            if (i + 1 >= words.size()) throw Error(word + " needs a value.");
+            return words[++i];
+        };
+        if (word == "--") {
+            line.settings.args.assign(words.begin() + static_cast<ptrdiff_t>(i) + 1, words.end());
+            break;
+        }
+        if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--guard" ||
+            word == "--record" || word == "--beside" || word == "--help") {
+            if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
+            line.mode = word;
+            if (word == "--beside") line.settings.beside = value();
+        } else if (word == "--repetitions") {
+            line.settings.repetitions = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
+        } else if (word == "--seeds") {
+            line.settings.seeds = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
+        } else if (word == "--most-points") {
+            line.settings.most_points = whole(value());
+        } else if (word == "--program") {
+            line.settings.program = value();
+        } else if (word == "--sample") {
+            line.sample = value();
+        } else if (word == "--table") {
+            line.settings.record = value();
+        } else if (word.starts_with("--")) {
+            throw Error("There is no option " + word + ".");
+        } else {
+            line.scans.push_back(word);
+        }
+    }
+    return line;
+}
+
+// The files of a folder, by name; a file is itself.
+std::vector<std::string> files_of(const std::vector<std::string>& paths) {
+    std::vector<std::string> files;
+    for (const std::string& path : paths) {
+        if (!std::filesystem::is_directory(path_of(path))) {
+            files.push_back(path);
+            continue;
+        }
+        std::vector<std::string> inside;
+        for (const auto& entry : std::filesystem::directory_iterator(path_of(path)))
+            if (entry.is_regular_file()) inside.push_back(utf8_of(entry.path()));
+        std::sort(inside.begin(), inside.end());
+        files.insert(files.end(), inside.begin(), inside.end());
+    }
+    return files;
+}
+
+int run(CommandLine line) {
+    if (line.mode == "--help") {
+        std::fputs(kUsage, stdout);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--synth") {
+        bench_synth(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--guard" || line.mode == "--record") {
+        if (line.settings.record.empty()) throw Error("Name the recorded table with --table.");
+        if (line.mode == "--guard") return guard_accuracy(line.settings) ? EXIT_SUCCESS : EXIT_FAILURE;
+        record_accuracy(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.scans.empty() && line.mode == "--scans")
+        throw Error("Name scans, or a folder of scans, after --scans.");
+    if (line.scans.empty() && !line.sample.empty()) line.scans.push_back(line.sample);
+    const std::vector<std::string> scans = files_of(line.scans);
+    if (scans.empty()) throw Error("Name a scan.");
+    if (!line.mode.empty() && line.settings.program.empty())
+        throw Error("Name the treerec program with --program.");
+    if (line.mode == "--beside") {
+        bench_beside(scans, line.settings);
+    } else if (line.mode == "--scans") {
+        bench_scans(scans, line.settings);
+    } else {
+        for (const std::string& scan : scans)
+            line.mode == "--scaling" ? bench_scaling(scan, line.settings) : bench_stages(scan, line.settings);
+    }
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(parse({argv + 1, argv + argc}));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return EXIT_FAILURE;
+    }
+}

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bench.h"
+#include "child.h"
+#include "exchange/tree_files.h"
+#include "file_bytes.h"
+
+namespace treerec::bench {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Of all end branches, from their tip back to the last fork, the share shorter than 5 cm.
+double short_tips(const Tree& tree) {
+    constexpr double kShort = 0.05;
+    size_t tips = 0, brief = 0;
+    for (NodeId id : tree.nodes_of_kind(NodeKind::kLeaf)) {
+        double length = 0.0;
+        for (NodeId at = id; tree.node(at).parent != kNoNode;) {
+            const NodeId parent = tree.node(at).parent;
+            length += glm::distance(tree.node(at).position, tree.node(parent).position);
+            if (tree.node(parent).child_count > 1) break;
+            at = parent;
+        }
+        tips++;
+        brief += length < kShort;
+    }
+    return tips ? static_cast<double>(brief) / static_cast<double>(tips) : 0.0;
+}
+
+std::string last_line(const std::string& text) {
+    const size_t end = text.find_last_not_of("\r\n ");
+    if (end == std::string::npos) return "";
+    const size_t start = text.find_last_of("\r\n", end);
+    return text.substr(start == std::string::npos ? 0 : start + 1,
+                       end - (start == std::string::npos ? 0 : start + 1) + 1);
+}
+
+}  // namespace
+
+void bench_scans(const std::vector<std::string>& scans, const Settings& settings) {
+    std::printf("%-34s %8s %7s %7s %6s %6s %6s %8s %8s %9s %9s %7s %5s\n", "scan", "points", "wall s",
+                "CPU s", "MB", "nodes", "tips", "DBH cm", "height m", "median mm", "in 2 cm %", "<5cm %",
+                "warn");
+    for (const std::string& scan : scans) {
+        const ScratchFolder folder;
+        const std::string table = folder.file("tree.txt"), report = folder.file("report.json");
+        const std::string name = std::filesystem::path(scan).filename().string();
+        const ChildRun run = run_child({settings.program, "reconstruct", scan, "-o", folder.file("tree.glb"),
+                                        "-o", table, "--report", report, "--quiet"});
+        if (run.exit_code != 0) {
+            std::printf("%-34s %s\n", name.c_str(), last_line(run.output).c_str());
+            continue;
+        }
+        const Json facts = Json::parse(read_file(report).view());
+        const Tree tree = read_skeleton(table);
+        const double dbh = facts["dbh_m"].is_number() ? 100.0 * facts["dbh_m"].get<double>() : 0.0;
+        std::printf("%-34s %8zu %7.2f %7.2f %6.0f %6zu %6zu %8.1f %8.2f %9.1f %9.1f %7.1f %5zu\n",
+                    name.c_str(), facts["points_read"].get<size_t>(), run.wall_s, run.cpu_s, run.peak_mb,
+                    facts["nodes"].get<size_t>(), facts["tips"].get<size_t>(), dbh,
+                    facts["height_m"].get<double>(), facts["fit"]["median_mm"].get<double>(),
+                    100.0 * facts["fit"]["explained_2cm"].get<double>(), 100.0 * short_tips(tree),
+                    facts["warnings"].size());
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace treerec::bench
