@@ -51,7 +51,8 @@ std::vector<std::string> compare_accuracy(const std::vector<AccuracyRow>& record
 std::string accuracy_table(const std::vector<AccuracyRow>& rows);
 std::vector<AccuracyRow> parse_accuracy_table(const std::string& text);
 
-// The plain mean of everything but the settings; a class of thickness by its length. rows: not empty.
+// The mean of everything but the settings; length and DBH errors without sign and with a limit, a class of
+// thickness by its length. rows: not empty.
 AccuracyRow mean_of(const std::vector<AccuracyRow>& rows);
 
 }  // namespace treerec::bench

@@ -57,7 +57,8 @@ std::vector<AccuracyRow> filtered(const std::vector<AccuracyRow>& rows, const Fi
 }
 
 void print_summaries(const std::vector<AccuracyRow>& rows) {
-    std::printf("\nMeans over all habits; length (at most 100 %%) and DBH errors without sign:\n\n");
+    std::printf(
+        "\nMeans over all habits; length (at most 100 %%) and DBH errors (at most 30 %%) without sign:\n\n");
     print_header("habits");
     for (double noise : kNoises)
         for (double occlusion : kOcclusions)
