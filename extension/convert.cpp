@@ -24,8 +24,8 @@ std::string to_std(const String& p_text) {
 }
 
 // Both sides lay their values out as the same floats or integers.
-template <typename Packed, typename T>
-static Packed copy_values(const std::vector<T>& p_values) {
+template <typename Packed, typename T, typename Allocator>
+static Packed copy_values(const std::vector<T, Allocator>& p_values) {
     Packed packed;
     static_assert(sizeof(T) % sizeof(*packed.ptr()) == 0 && std::is_trivially_copyable_v<T>);
     packed.resize(int64_t(p_values.size() * (sizeof(T) / sizeof(*packed.ptr()))));

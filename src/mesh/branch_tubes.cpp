@@ -17,12 +17,13 @@ constexpr double kLeastShare = 1e-5;        // of the coordinates: thinner wood 
 constexpr double kCollar = 0.35;            // how much wider a branch leaves its parent, over its radius
 constexpr double kCollarRadius = 0.008;     // metres; thinner branches get no collar of their own
 constexpr double kRoundTipRadius = 0.006;   // metres; thinner tips are pointed
+constexpr double kFineTwigRadius = 0.004;   // metres; thinner tubes have a side less
 constexpr double kThinBendPerRing = 0.40;   // radians between rings at level 0, on twigs
 constexpr double kThickBendPerRing = 0.25;  // and where the eye rests
 constexpr double kThickRadius = 0.015;      // metres
 constexpr double kAxisSlack = 0.25;         // how far rings may leave out a bend, over the radius
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings
-constexpr size_t kBranchesPerChunk = 256;   // of parallel work
+constexpr size_t kBranchesPerChunk = 32;    // of parallel work
 
 struct Ring {
     DVec3 centre;
@@ -50,7 +51,8 @@ struct Tube {
 
 uint32_t sides_of(double radius, const TubeOptions& options) {
     const double wanted = 2.0 * kPi * radius / std::max(options.side_length, 1e-6);
-    const int most = std::max(options.maximum_sides, 3), least = std::clamp(options.minimum_sides, 3, most);
+    const int most = std::max(options.maximum_sides, 3);
+    const int least = std::clamp(options.minimum_sides - (radius < kFineTwigRadius ? 1 : 0), 3, most);
     const int sides =
         static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
     return static_cast<uint32_t>(std::max(3, sides >> std::clamp(options.level, 0, 8)));
@@ -335,7 +337,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
         mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
         mesh.colors[vertex] = color;
-        mesh.custom0[vertex] = custom0;
+        if (options.pivots) mesh.custom0[vertex] = custom0;
         vertex++;
     };
     const auto color_at = [&](const DVec3& centre, double along) {
@@ -452,7 +454,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     mesh.tangents.resize(vertices);
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
-    mesh.custom0.resize(vertices);
+    if (options.pivots) mesh.custom0.resize(vertices);
     mesh.indices.resize(indices);
     parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();

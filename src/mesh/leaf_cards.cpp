@@ -54,7 +54,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Prog
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
     mesh.indices.resize(leaves.size() * card_indices);
-    parallel_for(leaves.size(), 4096, [&](size_t begin, size_t end) {
+    parallel_for(leaves.size(), 1024, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         for (size_t i = begin; i < end; i++) {
             const LeafPlacement& leaf = leaves[i];

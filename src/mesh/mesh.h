@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 #include "geometry/bounds.h"
@@ -10,15 +13,34 @@
 
 namespace treerec {
 
+// Leaves what resize() adds unset: builders size a mesh once and fill it on several threads.
+template <typename T>
+struct UnsetAllocator : std::allocator<T> {
+    template <typename U>
+    struct rebind {
+        using other = UnsetAllocator<U>;
+    };
+    template <typename U>
+    void construct(U* at) {
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <typename U, typename... Values>
+    void construct(U* at, Values&&... values) {
+        ::new (static_cast<void*>(at)) U(std::forward<Values>(values)...);
+    }
+};
+template <typename T>
+using MeshArray = std::vector<T, UnsetAllocator<T>>;
+
 // All attributes have one entry per vertex, or are empty.
 struct Mesh {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals;   // unit
-    std::vector<Vec4> tangents;  // xyz unit, along +u; w = +1 or -1: the bitangent's sign as glTF defines it
-    std::vector<Vec2> uvs;       // v downwards in the picture (glTF and Godot)
-    std::vector<Vec4> colors;    // wind channels (design.md): sway, along, phase, ambient occlusion; 0..1
-    std::vector<Vec4> custom0;   // pivot of the branch xyz, branch level w
-    std::vector<uint32_t> indices;
+    MeshArray<Vec3> positions;
+    MeshArray<Vec3> normals;   // unit
+    MeshArray<Vec4> tangents;  // xyz unit, along +u; w = +1 or -1: the bitangent's sign as glTF defines it
+    MeshArray<Vec2> uvs;       // v downwards in the picture (glTF and Godot)
+    MeshArray<Vec4> colors;    // wind channels (design.md): sway, along, phase, ambient occlusion; 0..1
+    MeshArray<Vec4> custom0;   // pivot of the branch xyz, branch level w
+    MeshArray<uint32_t> indices;
 
     size_t triangle_count() const { return indices.size() / 3; }
 };

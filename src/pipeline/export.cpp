@@ -43,7 +43,11 @@ TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const
 }
 
 const Mesh& TreeExporter::bark() {
-    if (!bark_) bark_ = build_branch_tubes(tree_, {}, progress_);
+    if (!bark_) {
+        TubeOptions tubes;
+        tubes.pivots = false;
+        bark_ = build_branch_tubes(tree_, tubes, progress_);
+    }
     return *bark_;
 }
 

@@ -72,8 +72,9 @@ tinygltf::Model read(const std::string& path) {
     return model;
 }
 
-template <typename T>
-void expect_attribute(const tinygltf::Model& model, int accessor_index, const std::vector<T>& values) {
+template <typename T, typename Allocator>
+void expect_attribute(const tinygltf::Model& model, int accessor_index,
+                      const std::vector<T, Allocator>& values) {
     const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(accessor_index)];
     const tinygltf::BufferView& view = model.bufferViews[static_cast<size_t>(accessor.bufferView)];
     ASSERT_EQ(accessor.count, values.size());

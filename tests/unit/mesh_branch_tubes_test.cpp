@@ -113,6 +113,41 @@ TEST(BranchTubes, ManyRandomTreesAreSound) {
     }
 }
 
+// As a dense scan gives it: many thousand branches, segments from metres down to nanometres.
+TEST(BranchTubes, AHugeTreeStaysSoundAndLight) {
+    Tree tree = test::random_tree(11, 40000);
+    Random random(11);
+    for (const NodeId id : tree.depth_first()) {
+        if (id % 7 != 0 || id == tree.root()) continue;
+        const Node& node = tree.node(id);
+        const double near = std::pow(10.0, random.uniform(-9.0, -4.0));
+        tree.insert_before(id, node.position + near * random.direction(), node.radius);
+    }
+    const BranchList list = list_branches(tree);
+    ASSERT_GT(list.branches.size(), 10000u);
+    size_t finer = std::numeric_limits<size_t>::max();
+    for (int level = 0; level < 4; level++) {
+        const Mesh mesh = build_branch_tubes(tree, {.level = level});
+        expect_sound(mesh, tree);
+        ASSERT_GT(mesh.positions.size(), level == 0 ? 65536u : 1000u);
+        for (size_t i = 0; i < mesh.indices.size(); i += 3)
+            ASSERT_GT(glm::length(face_normal(mesh, i)), 0.0);
+        // Branches of four bent segments each: a ring of four or five sides for each, and a tip.
+        EXPECT_LT(mesh.triangle_count(), 14 * tree.size());
+        EXPECT_LT(mesh.triangle_count(), finer / 2);
+        finer = mesh.triangle_count();
+    }
+}
+
+TEST(BranchTubes, PivotsCanBeLeftOut) {
+    const Tree tree = test::random_tree(4, 500);
+    const Mesh with = build_branch_tubes(tree);
+    Mesh without = build_branch_tubes(tree, {.pivots = false});
+    EXPECT_TRUE(without.custom0.empty());
+    without.custom0 = with.custom0;
+    EXPECT_TRUE(same_bytes(with, without));
+}
+
 TEST(BranchTubes, WildTreesAreSound) {
     for (uint64_t seed = 0; seed < 300; seed++) {
         SCOPED_TRACE(seed);
