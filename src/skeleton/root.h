@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "skeleton/delaunay_graph.h"
+#include "skeleton/point_graph.h"
 #include "skeleton/paths.h"
 
 namespace treerec {

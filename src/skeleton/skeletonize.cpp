@@ -1,6 +1,6 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
-#include "skeleton/delaunay_graph.h"
+#include "skeleton/point_graph.h"
 #include "skeleton/leafiness.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
@@ -57,7 +57,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     clock.stop("Thinning", points.size());
 
     SubProgress triangulating(listener, 0.1, 0.55);
-    const PointGraph graph = delaunay_graph(points, triangulating);
+    const PointGraph graph = neighbour_graph(points, triangulating);
     const LocalScale first_scale = local_scale(graph, result.spacing);
     clock.stop("Triangulation", graph.neighbour.size() / 2);
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "skeleton/delaunay_graph.h"
+#include "skeleton/point_graph.h"
 #include "skeleton/paths.h"
 
 namespace treerec {
