@@ -45,6 +45,12 @@ class LimbFitter {
         for (size_t i = 0; i < count_; i++) {
             const int32_t slice = limb.slices[i];
             start_[i] = slices.centre[slice];
+            if (own_[i] > begin_[i]) {
+                DVec3 sum(0.0);
+                for (size_t m = begin_[i]; m < own_[i]; m++)
+                    sum += DVec3(points[members_[m]]);
+                start_[i] = sum / static_cast<double>(own_[i] - begin_[i]);
+            }
             stations_[i].bridged = slices.bridged[slice] != 0;
             for (const uint32_t v : slices.points_of(slice))
                 spacing_[i] += scale.spacing[v];
@@ -76,6 +82,8 @@ class LimbFitter {
         begin_.assign(count_ + 1, 0);
         for (size_t i = 0; i < count_; i++)
             begin_[i + 1] += slices_.points_of(limb.slices[i]).size();
+        for (size_t m = 0; m < limb.merged.size(); m++)
+            begin_[limb.merged_at[m] + 1] += slices_.points_of(limb.merged[m]).size();
         for (size_t a = 0; a < limb.absorbed.size(); a++)
             begin_[limb.absorbed_at[a] + 1] += slices_.points_of(limb.absorbed[a]).size();
         for (size_t i = 0; i < count_; i++)
@@ -83,11 +91,14 @@ class LimbFitter {
         members_.resize(begin_[count_]);
         std::vector<size_t> fill(begin_.begin(), begin_.end() - 1);
         own_.resize(count_);
-        for (size_t i = 0; i < count_; i++) {
+        for (size_t i = 0; i < count_; i++)
             for (const uint32_t v : slices_.points_of(limb.slices[i]))
                 members_[fill[i]++] = v;
+        for (size_t m = 0; m < limb.merged.size(); m++)
+            for (const uint32_t v : slices_.points_of(limb.merged[m]))
+                members_[fill[limb.merged_at[m]]++] = v;
+        for (size_t i = 0; i < count_; i++)
             own_[i] = fill[i];
-        }
         for (size_t a = 0; a < limb.absorbed.size(); a++)
             for (const uint32_t v : slices_.points_of(limb.absorbed[a]))
                 members_[fill[limb.absorbed_at[a]]++] = v;
@@ -269,7 +280,7 @@ class LimbFitter {
         double reach = 0.0;
         for (size_t m = begin_[count_ - 1]; m < own_[count_ - 1]; m++)
             reach = std::max(reach, glm::dot(DVec3(points_[members_[m]]) - tip.position, ahead));
-        tip.position += reach * ahead;
+        tip.position += 0.0 * reach * ahead;
     }
 
     // Lays the stations from `end` outward (step 1: to the tip, -1: to the base) on the line through the

@@ -19,6 +19,7 @@ constexpr double kLeafLinearity = 0.30;  // nothing but leaves below
 constexpr double kStrip = 0.6;           // of the known radius: what spreads less is a strip of bark
 constexpr double kStub = 0.6;            // surface radii that a branch must reach out, likewise
 constexpr double kStrayWood = 0.2;       // of a gap: with less wood beyond it, that is stray points
+constexpr double kLoopLength = 2.0;      // times its width that a loop of bark must at least be long
 constexpr int kSameFork = 5;             // stations
 constexpr int kSmoothWindow = 2;         // stations to each side
 
@@ -66,6 +67,23 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     return shape;
 }
 
+// The centre of each station's points, merged slices included.
+std::vector<DVec3> station_centres(const Limb& limb, const Slices& slices) {
+    std::vector<DVec3> centre(limb.slices.size());
+    std::vector<double> weight(limb.slices.size());
+    for (size_t i = 0; i < centre.size(); i++) {
+        centre[i] = slices.centre[limb.slices[i]];
+        weight[i] = static_cast<double>(slices.points_of(limb.slices[i]).size());
+    }
+    for (size_t m = 0; m < limb.merged.size(); m++) {
+        const int32_t at = limb.merged_at[m];
+        const double more = static_cast<double>(slices.points_of(limb.merged[m]).size());
+        weight[at] += more;
+        centre[at] += more / weight[at] * (slices.centre[limb.merged[m]] - centre[at]);
+    }
+    return centre;
+}
+
 // The axis of a limb, smoothed, and how far around it points are still its own: what side chains are compared
 // with.
 struct LimbAxis {
@@ -75,6 +93,19 @@ struct LimbAxis {
 
 LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& shape) {
     const int count = static_cast<int>(limb.slices.size());
+    const std::vector<DVec3> centre = station_centres(limb, slices);
+    std::vector<double> spread(limb.slices.size());  // sum of the points' distances from the station's centre
+    std::vector<double> members(limb.slices.size());
+    auto add = [&](int32_t slice, int32_t at) {
+        const double n = static_cast<double>(slices.points_of(slice).size());
+        spread[at] += n * std::hypot(shape.radius[slice], glm::distance(slices.centre[slice], centre[at]));
+        members[at] += n;
+    };
+    for (int i = 0; i < count; i++)
+        add(limb.slices[i], i);
+    for (size_t m = 0; m < limb.merged.size(); m++)
+        add(limb.merged[m], limb.merged_at[m]);
+
     LimbAxis axis;
     axis.position.resize(limb.slices.size());
     axis.surface.resize(limb.slices.size());
@@ -86,17 +117,16 @@ LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& s
         const int own = i > 0 && limb.slices[0] == 0 ? i - 1 : i;
         const int reach = std::min({kSmoothWindow, own, count - 1 - i});
         for (int j = i - reach; j <= i + reach; j++) {
-            sum += slices.centre[limb.slices[j]];
+            sum += centre[j];
             weight += 1.0;
         }
-        double members = 0.0;
-        for (int j = std::max(0, i - kSmoothWindow); j <= std::min(count - 1, i + kSmoothWindow); j++) {
-            const double n = static_cast<double>(slices.points_of(limb.slices[j]).size());
-            radius += n * shape.radius[limb.slices[j]];
-            members += n;
-        }
         axis.position[i] = sum / weight;
-        const double seen = members > 0.0 ? radius / members : 0.0;
+        double near = 0.0;
+        for (int j = std::max(0, i - kSmoothWindow); j <= std::min(count - 1, i + kSmoothWindow); j++) {
+            radius += spread[j];
+            near += members[j];
+        }
+        const double seen = near > 0.0 ? radius / near : 0.0;
         const double known = shape.known[limb.slices[i]];
         // A strip of thick wood runs on its bark, and other strips of it may lie right across.
         const double around = seen < kStrip * known ? 2.0 * known : std::max(seen, known);
@@ -164,7 +194,11 @@ class LimbFinder {
   public:
     LimbFinder(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
                const LimbOptions& options)
-        : slices_(slices), options_(options), shape_(measure_slices(slices, points, scale)) {}
+        : slices_(slices),
+          options_(options),
+          shape_(measure_slices(slices, points, scale)),
+          owner_(slices.size(), -1),
+          owner_station_(slices.size(), 0) {}
 
     std::vector<Limb> run() {
         Limb first;
@@ -216,7 +250,51 @@ class LimbFinder {
         const auto cut = static_cast<ptrdiff_t>(end);
         into.absorbed.insert(into.absorbed.end(), chain.begin(), chain.begin() + cut);
         into.absorbed_at.insert(into.absorbed_at.end(), stations.begin(), stations.begin() + cut);
+        for (size_t i = 0; i < end; i++)
+            own(chain[i], limb, stations[i]);
         await_sides(chain, end, limb, stations);
+    }
+
+    void own(int32_t slice, int32_t limb, int32_t station) {
+        owner_[slice] = limb;
+        owner_station_[slice] = station;
+    }
+
+    // Merges the part of the chain, from its base on, that forms a loop with the limb: the limb's slices
+    // beside its end lie further along. Says how many slices that were.
+    size_t merge_loop(std::span<const int32_t> chain, int32_t limb, Fit& fit) {
+        const LimbAxis& axis = axes_[limb];
+        std::vector<int32_t> stations;
+        int32_t station = fit.attach;
+        double aside = 0.0;
+        double length = glm::distance(slices_.centre[chain[0]], axis.position[fit.attach]);
+        size_t end = 0;
+        int32_t end_station = fit.attach;
+        for (size_t i = 0; i < chain.size(); i++) {
+            const DVec3& centre = slices_.centre[chain[i]];
+            station = nearest_station(axis, station, centre);
+            stations.push_back(station);
+            aside = std::max(aside, glm::distance(centre, axis.position[station]));
+            if (i > 0) length += glm::distance(centre, slices_.centre[chain[i - 1]]);
+            if (aside > options_.widest_loop) break;
+            if (length < kLoopLength * aside) continue;
+            for (const uint32_t beside : slices_.slices_beside(chain[i]))
+                if (owner_[beside] == limb && owner_station_[beside] > fit.attach) {
+                    end = i + 1;
+                    end_station = std::max(fit.attach, owner_station_[beside]);
+                }
+        }
+        if (end == 0) return 0;
+        Limb& into = limbs_[limb];
+        for (size_t i = 0; i < end; i++) {
+            into.merged.push_back(chain[i]);
+            into.merged_at.push_back(stations[i]);
+            own(chain[i], limb, stations[i]);
+        }
+        await_sides(chain, end, limb, stations);
+        axes_[limb] = smooth_axis(into, slices_, shape_);
+        fit.attach = std::max(stations[end - 1], std::min(end_station, stations[end - 1]));
+        return end;
     }
 
     void add_limb(Limb limb) {
@@ -226,6 +304,8 @@ class LimbFinder {
         if (limb.parent >= 0) sides_[static_cast<size_t>(limb.parent)].push_back(index);
         std::vector<int32_t> stations(limb.slices.size());
         std::iota(stations.begin(), stations.end(), 0);
+        for (const int32_t i : stations)
+            own(limb.slices[i], index, i);
         await_sides(limb.slices, stations.size(), index, stations);
         limbs_.push_back(std::move(limb));
     }
@@ -271,9 +351,16 @@ class LimbFinder {
             if (chain.empty()) return;
             // What leaves the limb may be a strip of another limb that leaves it at the same place.
             const int32_t side = side_under(chain, limb, fit.attach);
-            if (side < 0) break;
-            limb = side;
-            station = 0;
+            if (side >= 0) {
+                limb = side;
+                station = 0;
+                continue;
+            }
+            const size_t merged = merge_loop(chain, limb, fit);
+            if (merged == 0) break;
+            chain = chain.subspan(merged);
+            if (chain.empty()) return;
+            station = fit.attach;
         }
         const double length = glm::distance(slices_.centre[chain[0]], axes_[limb].position[fit.attach]) +
                               shape_.longest[chain[0]];
@@ -303,6 +390,8 @@ class LimbFinder {
     SliceShape shape_;
     std::vector<Limb> limbs_;
     std::vector<LimbAxis> axes_;
+    std::vector<int32_t> owner_;  // by slice: the limb that it is part of, -1 while that is open
+    std::vector<int32_t> owner_station_;
     std::vector<std::vector<int32_t>> sides_;  // the limbs on each limb
     std::priority_queue<Candidate> waiting_;
 };

@@ -77,6 +77,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
         extent = std::max(extent, glm::distance(DVec3(p), root.position));
     limb_options.minimum_branch =
         options.minimum_branch > 0.0 ? options.minimum_branch : std::max(kLeastBranch, kBranchShare * extent);
+    limb_options.widest_loop = kWidestRing * extent;
     AxisOptions axis_options;
     axis_options.fit_radii = options.fit_radii;
     axis_options.seed = options.seed;

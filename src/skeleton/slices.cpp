@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace treerec {
 
@@ -37,6 +38,32 @@ std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& sc
         level[v] = static_cast<int32_t>(std::min(measure[v], 1e9));
     }
     return level;
+}
+
+// Fills `beside`: a link is an edge no longer than the local reach.
+void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scale,
+                 const std::vector<uint32_t>& slice_of) {
+    std::vector<std::pair<uint32_t, uint32_t>> pairs;
+    for (uint32_t v = 0; v < graph.size(); v++)
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+            const uint32_t n = graph.neighbour[e];
+            const uint32_t a = slice_of[v];
+            const uint32_t b = slice_of[n];
+            if (a == b || slices.parent[a] == static_cast<int32_t>(b) ||
+                slices.parent[b] == static_cast<int32_t>(a))
+                continue;
+            if (graph.length[e] <= edge_reach(scale, v, n)) pairs.emplace_back(a, b);
+        }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    slices.beside_begin.assign(slices.size() + 1, 0);
+    slices.beside.reserve(pairs.size());
+    for (const auto& [a, b] : pairs) {
+        slices.beside_begin[a + 1]++;
+        slices.beside.push_back(b);
+    }
+    for (size_t s = 0; s < slices.size(); s++)
+        slices.beside_begin[s + 1] += slices.beside_begin[s];
 }
 
 }  // namespace
@@ -114,6 +141,7 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
         }
         slices.bridged[s] = !linked;
     }
+    find_beside(slices, graph, scale, slice_of);
     return slices;
 }
 

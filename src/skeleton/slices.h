@@ -18,10 +18,17 @@ struct Slices {
     std::vector<uint8_t> bridged;  // 1 where the way to the parent crosses a gap
     std::vector<uint32_t> begin;   // points of slice s: vertices[begin[s]] .. vertices[begin[s + 1])
     std::vector<uint32_t> vertices;
+    // The slices side by side with slice s that are neither its parent nor its child, ascending:
+    // beside[beside_begin[s]] .. beside[beside_begin[s + 1]).
+    std::vector<uint32_t> beside_begin;
+    std::vector<uint32_t> beside;
 
     size_t size() const { return parent.size(); }
     std::span<const uint32_t> points_of(size_t slice) const {
         return {vertices.data() + begin[slice], begin[slice + 1] - begin[slice]};
+    }
+    std::span<const uint32_t> slices_beside(size_t slice) const {
+        return {beside.data() + beside_begin[slice], beside_begin[slice + 1] - beside_begin[slice]};
     }
 };
 
