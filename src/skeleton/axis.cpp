@@ -323,7 +323,8 @@ class LimbFitter {
     std::vector<std::optional<DVec3>> centres_;
 };
 
-// Where the limb, continued backwards, comes nearest to leaving the parent's axis straight.
+}  // namespace
+
 void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<Station>& parent) {
     const double radius = parent[limb.attach].radius;
     size_t ahead = 0;
@@ -344,8 +345,6 @@ void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<
     }
     limb.attach = best_station;
 }
-
-}  // namespace
 
 std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slices& slices,
                                            const std::vector<Vec3>& points, const LocalScale& scale,

@@ -33,4 +33,8 @@ std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slice
                                            const std::vector<Vec3>& points, const LocalScale& scale,
                                            const AxisOptions& options, Progress& progress);
 
+// Moves the limb's `attach` back along its parent to where the limb, continued backwards, meets the axis most
+// nearly straight. own, parent: the stations of the limb and of its parent.
+void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<Station>& parent);
+
 }  // namespace treerec

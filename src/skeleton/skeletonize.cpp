@@ -10,6 +10,7 @@
 #include "skeleton/slices.h"
 #include "skeleton/thickness.h"
 #include "skeleton/thin.h"
+#include "skeleton/twigs.h"
 #include "tree/trunk.h"
 
 namespace treerec {
@@ -97,8 +98,13 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
-    infer_radii(axes, limbs);
     clock.stop("Radii", limbs.size());
+    TwigOptions twig_options;
+    twig_options.minimum_branch = limb_options.minimum_branch;
+    twig_options.least_escape = limb_options.least_escape;
+    add_twigs(points, graph, scale, paths, slices, twig_options, limbs, axes, progress);
+    clock.stop("Twigs", limbs.size());
+    infer_radii(axes, limbs);
 
     progress.update(0.95, "Simplification");
     result.tree = assemble_tree(axes, limbs, options.simplify_distance);

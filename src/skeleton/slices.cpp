@@ -52,7 +52,7 @@ void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scal
             if (a == b || slices.parent[a] == static_cast<int32_t>(b) ||
                 slices.parent[b] == static_cast<int32_t>(a))
                 continue;
-            if (graph.length[e] <= edge_reach(scale, v, n)) pairs.emplace_back(a, b);
+            if (graph.length[e] <= 2.0 * edge_reach(scale, v, n)) pairs.emplace_back(a, b);
         }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

@@ -1,0 +1,269 @@
+#include "skeleton/twigs.h"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+
+namespace treerec {
+
+namespace {
+
+constexpr double kTolerance = 0.3;         // point spacings off the bark: still explained by it
+constexpr double kLeastTolerance = 0.005;  // metres
+constexpr double kMostTolerance = 0.02;
+constexpr double kBarkRelief = 0.2;        // of the radius, likewise
+constexpr double kStub = 0.6;              // radii that a twig must reach out of thick wood
+constexpr double kGapFactor = 3.0;         // reaches: no twig crosses a wider gap
+constexpr int kLookAround = 2;             // stations to each side
+
+double distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
+    const DVec3 ab = b - a;
+    const double square = glm::dot(ab, ab);
+    t = square > 0.0 ? std::clamp(glm::dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
+    return glm::distance(p, a + t * ab);
+}
+
+// Where a point lies against a line of stations.
+struct Place {
+    int32_t station = 0;
+    double distance = 0.0;  // metres to the axis
+    double radius = 0.0;    // metres, of the line there
+};
+
+Place place_near(const std::vector<Station>& line, int32_t station, const DVec3& p) {
+    const int32_t last = static_cast<int32_t>(line.size()) - 1;
+    Place best{station, glm::distance(line[station].position, p), line[station].radius};
+    for (int32_t i = std::max(0, station - kLookAround); i < std::min(last, station + kLookAround); i++) {
+        double t;
+        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, t);
+        if (distance < best.distance)
+            best = {t < 0.5 ? i : i + 1, distance, line[i].radius + t * (line[i + 1].radius - line[i].radius)};
+    }
+    return best;
+}
+
+class TwigFinder {
+  public:
+    TwigFinder(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+               const PathTree& paths, const TwigOptions& options, std::vector<Limb>& limbs,
+               std::vector<std::vector<Station>>& axes)
+        : points_(points),
+          graph_(graph),
+          scale_(scale),
+          paths_(paths),
+          options_(options),
+          limbs_(limbs),
+          axes_(axes),
+          line_(points.size(), -1),
+          station_(points.size(), 0),
+          nearest_(points.size(), -1) {}
+
+    void take_slices(const Slices& slices) {
+        auto take = [&](int32_t slice, int32_t limb, int32_t at) {
+            for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
+                const Place place = place_near(axes_[limb], at, DVec3(points_[v]));
+                if (place.distance > (1.0 + kBarkRelief) * place.radius + tolerance(v)) continue;
+                line_[v] = limb;
+                station_[v] = place.station;
+            }
+        };
+        for (size_t l = 0; l < limbs_.size(); l++) {
+            const Limb& limb = limbs_[l];
+            const int32_t index = static_cast<int32_t>(l);
+            for (size_t i = 0; i < limb.slices.size(); i++)
+                take(limb.slices[i], index, static_cast<int32_t>(i));
+            for (size_t m = 0; m < limb.merged.size(); m++)
+                take(limb.merged[m], index, limb.merged_at[m]);
+            for (size_t a = 0; a < limb.absorbed.size(); a++)
+                take(limb.absorbed[a], index, limb.absorbed_at[a]);
+        }
+        // A path starts on wood.
+        for (const uint32_t v : paths_.order)
+            if (paths_.parent[v] < 0 && line_[v] < 0) {
+                line_[v] = 0;
+                station_[v] = place_near(axes_[0], 0, DVec3(points_[v])).station;
+            }
+    }
+
+    void run(Progress& progress) {
+        std::vector<float> outside(points_.size(), 0.0f);
+        using Entry = std::pair<float, uint32_t>;
+        std::vector<Entry> entries;
+        for (const uint32_t v : paths_.order)
+            if (line_[v] < 0) {
+                outside[v] = outside[paths_.parent[v]] + paths_.step[v];
+                entries.emplace_back(outside[v], v);
+            }
+        std::priority_queue<Entry> queue(std::less<Entry>(), std::move(entries));
+        size_t looked = 0;
+        while (!queue.empty()) {
+            if (++looked % 1024 == 0) progress.check();
+            const auto [length, v] = queue.top();
+            queue.pop();
+            if (line_[v] >= 0) continue;
+            const float now = path_to(v);
+            if (now < length) {
+                queue.emplace(now, v);
+                continue;
+            }
+            if (!path_.empty()) add_twig();
+        }
+    }
+
+  private:
+    double tolerance(uint32_t v) const {
+        return std::clamp(kTolerance * scale_.spacing[v], kLeastTolerance, kMostTolerance);
+    }
+
+    // Fills path_, from the base to v; its first vertex hangs on foot_. Empty where it would cross a gap.
+    float path_to(uint32_t v) {
+        path_.clear();
+        float length = 0.0f;
+        bool gap = false;
+        while (line_[v] < 0) {
+            path_.push_back(v);
+            length += paths_.step[v];
+            const uint32_t next = static_cast<uint32_t>(paths_.parent[v]);
+            gap = gap || paths_.step[v] > kGapFactor * edge_reach(scale_, v, next);
+            v = next;
+        }
+        foot_ = v;
+        std::reverse(path_.begin(), path_.end());
+        if (gap) path_.clear();
+        return length;
+    }
+
+    void add_twig() {
+        const int32_t parent = line_[foot_];
+        int32_t station = station_[foot_];
+        double escape = 0.0;
+        double surface = 0.0;
+        for (const uint32_t v : path_) {
+            const Place place = place_near(axes_[parent], station, DVec3(points_[v]));
+            station = place.station;
+            if (place.distance - place.radius <= escape) continue;
+            escape = place.distance - place.radius;
+            surface = place.radius;
+        }
+        if (escape < std::max(options_.least_escape, kStub * surface)) return;
+
+        gather();
+        Limb twig;
+        twig.parent = parent;
+        twig.attach = station_[foot_];
+        std::vector<Station> line = smooth_line(axes_[parent][twig.attach].position);
+        move_attach(twig, line, axes_[parent]);
+        double length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
+        for (size_t i = 1; i < line.size(); i++)
+            length += glm::distance(line[i].position, line[i - 1].position);
+        for (const uint32_t v : near_)
+            nearest_[v] = -1;
+        if (length < 1.01 * options_.minimum_branch) return;
+
+        const int32_t index = static_cast<int32_t>(limbs_.size());
+        limbs_.push_back(std::move(twig));
+        axes_.push_back(std::move(line));
+        for (size_t i = 0; i < path_.size(); i++) {
+            line_[path_[i]] = index;
+            station_[path_[i]] = static_cast<int32_t>(i);
+        }
+        for (size_t i = 0; i < path_.size(); i++)
+            mark_around(path_[i], index, static_cast<int32_t>(i), 2);
+    }
+
+    void mark_around(uint32_t v, int32_t index, int32_t at, int hops) {
+        for (uint32_t e = graph_.begin[v]; e < graph_.begin[v + 1]; e++) {
+            const uint32_t n = graph_.neighbour[e];
+            if (line_[n] >= 0) continue;
+            const Place place = place_near(axes_[index], at, DVec3(points_[n]));
+            if (place.distance > place.radius + tolerance(n)) continue;
+            line_[n] = index;
+            station_[n] = place.station;
+            if (hops > 1) mark_around(n, index, place.station, hops - 1);
+        }
+    }
+
+    // The free points around the path, each with the vertex of the path that it is nearest to.
+    void gather() {
+        near_.clear();
+        for (size_t i = 0; i < path_.size(); i++) {
+            near_.push_back(path_[i]);
+            nearest_[path_[i]] = static_cast<int32_t>(i);
+        }
+        for (size_t i = 0; i < path_.size(); i++) {
+            const uint32_t v = path_[i];
+            for (uint32_t e = graph_.begin[v]; e < graph_.begin[v + 1]; e++) {
+                const uint32_t n = graph_.neighbour[e];
+                if (line_[n] >= 0 || graph_.length[e] > scale_.spacing[v]) continue;
+                if (nearest_[n] < 0) {
+                    near_.push_back(n);
+                    nearest_[n] = static_cast<int32_t>(i);
+                } else if (path_[nearest_[n]] != n &&
+                           glm::distance(points_[n], points_[path_[nearest_[n]]]) > graph_.length[e]) {
+                    nearest_[n] = static_cast<int32_t>(i);
+                }
+            }
+        }
+    }
+
+    std::vector<Station> smooth_line(const DVec3& base) const {
+        std::vector<Station> line(path_.size());
+        std::vector<double> weight(path_.size(), 0.0);
+        for (const uint32_t v : near_) {
+            line[nearest_[v]].position += DVec3(points_[v]);
+            weight[nearest_[v]] += 1.0;
+        }
+        for (size_t i = 0; i < line.size(); i++)
+            line[i].position /= weight[i];
+        std::vector<DVec3> even(line.size());
+        for (size_t i = 0; i < line.size(); i++) {
+            const DVec3& before = i > 0 ? line[i - 1].position : base;
+            const DVec3 mean = i + 1 < line.size() ? 0.5 * (before + line[i + 1].position) : line[i].position;
+            DVec3 move = 0.5 * (mean - line[i].position);
+            const double most = 0.5 * tolerance(path_[i]);
+            if (glm::length(move) > most) move *= most / glm::length(move);
+            even[i] = line[i].position + move;
+        }
+        for (size_t i = 0; i < line.size(); i++)
+            line[i].position = even[i];
+        std::vector<double> distances;
+        for (size_t i = 0; i < line.size(); i++) {
+            distances.clear();
+            for (const uint32_t v : near_)
+                if (nearest_[v] == static_cast<int32_t>(i))
+                    distances.push_back(
+                        place_near(line, static_cast<int32_t>(i), DVec3(points_[v])).distance);
+            if (distances.size() < 2) continue;
+            const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
+            std::nth_element(distances.begin(), middle, distances.end());
+            line[i].radius = *middle;
+        }
+        return line;
+    }
+
+    const std::vector<Vec3>& points_;
+    const PointGraph& graph_;
+    const LocalScale& scale_;
+    const PathTree& paths_;
+    const TwigOptions& options_;
+    std::vector<Limb>& limbs_;
+    std::vector<std::vector<Station>>& axes_;
+    std::vector<int32_t> line_;     // by point: the limb whose bark it lies on, -1 for none
+    std::vector<int32_t> station_;  // and the station there
+    std::vector<int32_t> nearest_;  // scratch of gather()
+    std::vector<uint32_t> near_;
+    std::vector<uint32_t> path_;
+    uint32_t foot_ = 0;
+};
+
+}  // namespace
+
+void add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+               const PathTree& paths, const Slices& slices, const TwigOptions& options,
+               std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress) {
+    TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
+    finder.take_slices(slices);
+    finder.run(progress);
+}
+
+}  // namespace treerec
