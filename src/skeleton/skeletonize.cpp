@@ -99,6 +99,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     clock.stop("Radii", limbs.size());
+    infer_radii(axes, limbs);
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = limb_options.least_escape;
