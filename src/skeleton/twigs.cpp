@@ -13,7 +13,11 @@ constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;        // of the radius, likewise
 constexpr double kStub = 0.6;              // radii that a twig must reach out of thick wood
+constexpr double kDivergence = 0.0;        // of its length, likewise: what runs along the wood is bark,
+constexpr double kFarAside = 0.06;         // metres: but not so far out
 constexpr double kGapFactor = 3.0;         // reaches: no twig crosses a wider gap
+constexpr int kSmoothings = 3;
+constexpr double kMostMove = 0.5;  // tolerances
 constexpr int kLookAround = 2;             // stations to each side
 
 double distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
@@ -106,7 +110,7 @@ class TwigFinder {
                 queue.emplace(now, v);
                 continue;
             }
-            if (!path_.empty()) add_twig();
+            if (!path_.empty()) add_twig(length);
         }
     }
 
@@ -133,7 +137,7 @@ class TwigFinder {
         return length;
     }
 
-    void add_twig() {
+    void add_twig(double length) {
         const int32_t parent = line_[foot_];
         int32_t station = station_[foot_];
         double escape = 0.0;
@@ -145,15 +149,16 @@ class TwigFinder {
             escape = place.distance - place.radius;
             surface = place.radius;
         }
-        if (escape < std::max(options_.least_escape, kStub * surface)) return;
+        if (escape < std::max({options_.least_escape, kStub * surface, std::min(kFarAside, kDivergence * length)}))
+            return;
 
         gather();
         Limb twig;
         twig.parent = parent;
         twig.attach = station_[foot_];
         std::vector<Station> line = smooth_line(axes_[parent][twig.attach].position);
-        move_attach(twig, line, axes_[parent]);
-        double length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
+        twig.attach = place_near(axes_[parent], twig.attach, line.front().position).station;
+        length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
         for (size_t i = 1; i < line.size(); i++)
             length += glm::distance(line[i].position, line[i - 1].position);
         for (const uint32_t v : near_)
@@ -215,17 +220,18 @@ class TwigFinder {
         }
         for (size_t i = 0; i < line.size(); i++)
             line[i].position /= weight[i];
-        std::vector<DVec3> even(line.size());
-        for (size_t i = 0; i < line.size(); i++) {
-            const DVec3& before = i > 0 ? line[i - 1].position : base;
-            const DVec3 mean = i + 1 < line.size() ? 0.5 * (before + line[i + 1].position) : line[i].position;
-            DVec3 move = 0.5 * (mean - line[i].position);
-            const double most = 0.5 * tolerance(path_[i]);
-            if (glm::length(move) > most) move *= most / glm::length(move);
-            even[i] = line[i].position + move;
+        const std::vector<Station> seen = line;
+        for (int round = 0; round < kSmoothings; round++) {
+            DVec3 before = base;
+            for (size_t i = 0; i + 1 < line.size(); i++) {
+                const DVec3 here = line[i].position;
+                DVec3 move = 0.25 * before + 0.5 * here + 0.25 * line[i + 1].position - seen[i].position;
+                const double most = kMostMove * tolerance(path_[i]);
+                if (glm::length(move) > most) move *= most / glm::length(move);
+                line[i].position = seen[i].position + move;
+                before = here;
+            }
         }
-        for (size_t i = 0; i < line.size(); i++)
-            line[i].position = even[i];
         std::vector<double> distances;
         for (size_t i = 0; i < line.size(); i++) {
             distances.clear();
