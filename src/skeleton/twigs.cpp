@@ -8,7 +8,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kTolerance = 0.3;         // point spacings off the bark: still explained by it
+constexpr double kTolerance = 0.15;         // point spacings off the bark: still explained by it
 constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;        // of the radius, likewise
