@@ -280,7 +280,7 @@ class LimbFitter {
         double reach = 0.0;
         for (size_t m = begin_[count_ - 1]; m < own_[count_ - 1]; m++)
             reach = std::max(reach, glm::dot(DVec3(points_[members_[m]]) - tip.position, ahead));
-        tip.position += 0.0 * reach * ahead;
+        tip.position += reach * ahead;
     }
 
     // Lays the stations from `end` outward (step 1: to the tip, -1: to the base) on the line through the

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numeric>
 #include <utility>
 
+#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
 
 namespace treerec {
@@ -21,20 +21,6 @@ constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of thi
 constexpr int kScaleSmoothings = 3;
 constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
-
-struct KdPoints {
-    const std::vector<Vec3>& points;
-
-    size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(size_t index, size_t axis) const { return points[index][static_cast<int>(axis)]; }
-    template <typename Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-};
-
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, KdPoints>, KdPoints, 3, uint32_t>;
 
 using Edge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
 

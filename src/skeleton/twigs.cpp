@@ -1,8 +1,13 @@
 #include "skeleton/twigs.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <queue>
 #include <utility>
+
+#include "geometry/kd_tree.h"
+#include "geometry/parallel.h"
 
 namespace treerec {
 
@@ -13,11 +18,10 @@ constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;        // of the radius, likewise
 constexpr double kStub = 0.6;              // radii that a twig must reach out of thick wood
-constexpr double kDivergence = 0.0;        // of its length, likewise: what runs along the wood is bark,
-constexpr double kFarAside = 0.06;         // metres: but not so far out
 constexpr double kGapFactor = 3.0;         // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.5;  // tolerances
+constexpr size_t kOthers = 6;  // stations of any limb, nearest to a point
 constexpr int kLookAround = 2;             // stations to each side
 
 double distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
@@ -34,6 +38,7 @@ struct Place {
     double radius = 0.0;    // metres, of the line there
 };
 
+// The nearest place on the line within kLookAround stations of `station`.
 Place place_near(const std::vector<Station>& line, int32_t station, const DVec3& p) {
     const int32_t last = static_cast<int32_t>(line.size()) - 1;
     Place best{station, glm::distance(line[station].position, p), line[station].radius};
@@ -60,16 +65,14 @@ class TwigFinder {
           axes_(axes),
           line_(points.size(), -1),
           station_(points.size(), 0),
+          outside_(points.size(), 0.0f),
+          surface_(points.size(), 0.0f),
           nearest_(points.size(), -1) {}
 
     void take_slices(const Slices& slices) {
         auto take = [&](int32_t slice, int32_t limb, int32_t at) {
-            for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
-                const Place place = place_near(axes_[limb], at, DVec3(points_[v]));
-                if (place.distance > (1.0 + kBarkRelief) * place.radius + tolerance(v)) continue;
-                line_[v] = limb;
-                station_[v] = place.station;
-            }
+            for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
+                claim(v, limb, place_on_limb(limb, at, DVec3(points_[v])));
         };
         for (size_t l = 0; l < limbs_.size(); l++) {
             const Limb& limb = limbs_[l];
@@ -81,12 +84,44 @@ class TwigFinder {
             for (size_t a = 0; a < limb.absorbed.size(); a++)
                 take(limb.absorbed[a], index, limb.absorbed_at[a]);
         }
+        find_others();
         // A path starts on wood.
         for (const uint32_t v : paths_.order)
             if (paths_.parent[v] < 0 && line_[v] < 0) {
                 line_[v] = 0;
                 station_[v] = place_near(axes_[0], 0, DVec3(points_[v])).station;
             }
+    }
+
+    // Around a fork, a slice of one limb has points on the bark of another.
+    void find_others() {
+        std::vector<Vec3> stations;
+        std::vector<std::pair<int32_t, int32_t>> names;
+        for (size_t l = 0; l < axes_.size(); l++)
+            for (size_t i = 0; i < axes_[l].size(); i++) {
+                stations.emplace_back(axes_[l][i].position);
+                names.emplace_back(static_cast<int32_t>(l), static_cast<int32_t>(i));
+            }
+        const KdPoints kd_points{stations};
+        const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+        parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
+            std::array<uint32_t, kOthers> index;
+            std::array<float, kOthers> squared;
+            for (size_t v = begin; v < end; v++) {
+                if (line_[v] >= 0) continue;
+                const size_t found = tree.knnSearch(&points_[v].x, kOthers, index.data(), squared.data());
+                const DVec3 p(points_[v]);
+                Place nearest{0, std::numeric_limits<double>::max(), 0.0};
+                for (size_t k = 0; k < found && line_[v] < 0; k++) {
+                    const auto [limb, at] = names[index[k]];
+                    const Place place = place_on_limb(limb, at, p);
+                    claim(static_cast<uint32_t>(v), limb, place);
+                    if (place.distance - place.radius < nearest.distance - nearest.radius) nearest = place;
+                }
+                outside_[v] = static_cast<float>(nearest.distance - nearest.radius);
+                surface_[v] = static_cast<float>(nearest.radius);
+            }
+        });
     }
 
     void run(Progress& progress) {
@@ -110,11 +145,30 @@ class TwigFinder {
                 queue.emplace(now, v);
                 continue;
             }
-            if (!path_.empty()) add_twig(length);
+            if (!path_.empty()) add_twig();
         }
     }
 
   private:
+    // The nearest place around a limb's station, or on the way to it from its parent's axis.
+    Place place_on_limb(int32_t limb, int32_t at, const DVec3& p) const {
+        const std::vector<Station>& line = axes_[limb];
+        Place place = place_near(line, at, p);
+        if (at > 0 || limbs_[limb].parent < 0) return place;
+        double t;
+        const DVec3& fork = axes_[limbs_[limb].parent][limbs_[limb].attach].position;
+        const double distance = distance_to_segment(p, fork, line[0].position, t);
+        if (distance < place.distance) place = {0, distance, line[0].radius};
+        return place;
+    }
+
+    // Notes that the point lies on the bark of the limb, if it does.
+    void claim(uint32_t v, int32_t limb, const Place& place) {
+        if (place.distance > (1.0 + kBarkRelief) * place.radius + tolerance(v)) return;
+        line_[v] = limb;
+        station_[v] = place.station;
+    }
+
     double tolerance(uint32_t v) const {
         return std::clamp(kTolerance * scale_.spacing[v], kLeastTolerance, kMostTolerance);
     }
@@ -137,20 +191,18 @@ class TwigFinder {
         return length;
     }
 
-    void add_twig(double length) {
+    void add_twig() {
         const int32_t parent = line_[foot_];
         int32_t station = station_[foot_];
-        double escape = 0.0;
-        double surface = 0.0;
+        bool escapes = false;
         for (const uint32_t v : path_) {
             const Place place = place_near(axes_[parent], station, DVec3(points_[v]));
             station = place.station;
-            if (place.distance - place.radius <= escape) continue;
-            escape = place.distance - place.radius;
-            surface = place.radius;
+            const double outside = std::min<double>(outside_[v], place.distance - place.radius);
+            const double thickest = std::max<double>(surface_[v], place.radius);
+            escapes = escapes || outside >= std::max(options_.least_escape, kStub * thickest);
         }
-        if (escape < std::max({options_.least_escape, kStub * surface, std::min(kFarAside, kDivergence * length)}))
-            return;
+        if (!escapes) return;
 
         gather();
         Limb twig;
@@ -158,7 +210,7 @@ class TwigFinder {
         twig.attach = station_[foot_];
         std::vector<Station> line = smooth_line(axes_[parent][twig.attach].position);
         twig.attach = place_near(axes_[parent], twig.attach, line.front().position).station;
-        length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
+        double length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
         for (size_t i = 1; i < line.size(); i++)
             length += glm::distance(line[i].position, line[i - 1].position);
         for (const uint32_t v : near_)
@@ -256,6 +308,8 @@ class TwigFinder {
     std::vector<std::vector<Station>>& axes_;
     std::vector<int32_t> line_;     // by point: the limb whose bark it lies on, -1 for none
     std::vector<int32_t> station_;  // and the station there
+    std::vector<float> outside_;    // by free point: metres from the nearest limb's bark, twigs left aside
+    std::vector<float> surface_;    // and that limb's radius there
     std::vector<int32_t> nearest_;  // scratch of gather()
     std::vector<uint32_t> near_;
     std::vector<uint32_t> path_;
