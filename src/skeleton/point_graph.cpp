@@ -19,6 +19,7 @@ constexpr size_t kLeafSize = 12;
 constexpr size_t kScaleMax = 8;
 constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of this shortest edge
 constexpr int kScaleSmoothings = 3;
+constexpr float kStrayFactor = 2.5f;  // times the neighbours' spacing, at most
 constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
 
@@ -75,8 +76,8 @@ void connect_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vec
         std::fill(members.begin(), members.end(), 0u);
         for (uint32_t v = 0; v < points.size(); v++)
             members[part[v] = find(leader, v)]++;
-        const auto largest = static_cast<uint32_t>(
-            std::max_element(members.begin(), members.end()) - members.begin());
+        const auto largest =
+            static_cast<uint32_t>(std::max_element(members.begin(), members.end()) - members.begin());
         if (members[largest] == points.size()) return;
         std::fill(link.begin(), link.end(), std::pair(std::numeric_limits<float>::max(), Edge{}));
         for (uint32_t v = 0; v < points.size(); v++) {
@@ -193,8 +194,16 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
         }
         spacing.swap(smooth);
     }
+    // A stray point is not as far-reaching as it is far away.
+    for (size_t v = 0; v < count; v++) {
+        float sum = 0.0f;
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
+            sum += spacing[graph.neighbour[e]];
+        smooth[v] = std::min(spacing[v],
+                             kStrayFactor * sum / static_cast<float>(graph.begin[v + 1] - graph.begin[v]));
+    }
     LocalScale scale;
-    scale.set_spacing(std::move(spacing));
+    scale.set_spacing(std::move(smooth));
     return scale;
 }
 

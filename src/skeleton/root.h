@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "skeleton/point_graph.h"
 #include "skeleton/paths.h"
+#include "skeleton/point_graph.h"
 
 namespace treerec {
 

@@ -1,9 +1,9 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
-#include "skeleton/point_graph.h"
 #include "skeleton/leafiness.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
+#include "skeleton/point_graph.h"
 #include "skeleton/radii.h"
 #include "skeleton/root.h"
 #include "skeleton/skeleton.h"
@@ -22,6 +22,7 @@ constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest
 constexpr double kLeastBranch = 0.05;   // metres, likewise
 constexpr double kWidestRing = 0.05;    // of the tree's extent
 constexpr double kLeafyShare = 0.05;    // likewise: the shortest branch among leaves
+constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
 constexpr double kRawRadius = 0.002;    // metres
 
 // The shortest-path tree itself, for pictures.
@@ -37,6 +38,22 @@ Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec
         positions[v + 1] = DVec3(points[v]);
     }
     return Tree::from_arrays(parents, positions, radii, flags);
+}
+
+// Whether the points all lie on a plane, or on a line.
+bool is_flat(const std::vector<Vec3>& points) {
+    DVec3 mean(0.0);
+    for (const Vec3& p : points)
+        mean += DVec3(p);
+    mean /= static_cast<double>(points.size());
+    DMat3 covariance(0.0);
+    for (const Vec3& p : points) {
+        const DVec3 d = DVec3(p) - mean;
+        covariance += glm::outerProduct(d, d);
+    }
+    // The determinant is the product of the squared extents along the three main axes.
+    const double widest = (covariance[0][0] + covariance[1][1] + covariance[2][2]) / 3.0;
+    return !(glm::determinant(covariance) > kFlatness * kFlatness * widest * widest * widest);
 }
 
 }  // namespace
@@ -55,6 +72,10 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
             std::to_string(result.spacing) +
             " m apart, and a tree needs at least 10. Check that the file is complete, that its unit is "
             "right, and that the cleaning steps did not take too much.");
+    if (is_flat(points))
+        throw Error(
+            "All points lie on a plane or on a line, and a tree needs depth. Was a photo or a section "
+            "exported instead of the whole scan?");
     clock.stop("Thinning", points.size());
 
     SubProgress triangulating(listener, 0.1, 0.55);
@@ -103,7 +124,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = limb_options.least_escape;
-    add_twigs(points, graph, scale, paths, slices, twig_options, limbs, axes, progress);
+    add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());
     infer_radii(axes, limbs);
 

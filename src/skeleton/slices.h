@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "skeleton/point_graph.h"
 #include "skeleton/paths.h"
+#include "skeleton/point_graph.h"
 
 namespace treerec {
 

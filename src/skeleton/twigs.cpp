@@ -13,16 +13,18 @@ namespace treerec {
 
 namespace {
 
-constexpr double kTolerance = 0.15;         // point spacings off the bark: still explained by it
+constexpr double kTolerance = 0.15;        // point spacings off the bark: still explained by it
 constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
-constexpr double kBarkRelief = 0.2;        // of the radius, likewise
-constexpr double kStub = 0.6;              // radii that a twig must reach out of thick wood
-constexpr double kGapFactor = 3.0;         // reaches: no twig crosses a wider gap
+constexpr double kBarkRelief = 0.2;  // of the radius, likewise
+constexpr double kStub = 0.6;        // radii that a twig must reach out of thick wood
+constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
-constexpr double kMostMove = 0.5;  // tolerances
-constexpr size_t kOthers = 6;  // stations of any limb, nearest to a point
-constexpr int kLookAround = 2;             // stations to each side
+constexpr double kMostMove = 0.5;     // tolerances
+constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
+constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
+constexpr size_t kOthers = 6;         // stations of any limb, nearest to a point
+constexpr int kLookAround = 2;        // stations to each side
 
 double distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
     const DVec3 ab = b - a;
@@ -46,7 +48,8 @@ Place place_near(const std::vector<Station>& line, int32_t station, const DVec3&
         double t;
         const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, t);
         if (distance < best.distance)
-            best = {t < 0.5 ? i : i + 1, distance, line[i].radius + t * (line[i + 1].radius - line[i].radius)};
+            best = {t < 0.5 ? i : i + 1, distance,
+                    line[i].radius + t * (line[i + 1].radius - line[i].radius)};
     }
     return best;
 }
@@ -179,10 +182,12 @@ class TwigFinder {
         float length = 0.0f;
         bool gap = false;
         while (line_[v] < 0) {
-            path_.push_back(v);
-            length += paths_.step[v];
             const uint32_t next = static_cast<uint32_t>(paths_.parent[v]);
-            gap = gap || paths_.step[v] > kGapFactor * edge_reach(scale_, v, next);
+            const float step = paths_.step[v];
+            gap = gap || step > kGapFactor * edge_reach(scale_, v, next) ||
+                  (length < kStrayWood * step && step > kStrayFactor * scale_.reach[next]);
+            path_.push_back(v);
+            length += step;
             v = next;
         }
         foot_ = v;
