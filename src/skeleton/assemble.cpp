@@ -8,7 +8,7 @@ namespace treerec {
 namespace {
 
 constexpr double kRelativeTolerance = 0.1;  // of the local radius
-constexpr double kLeastTolerance = 0.002;   // metres
+constexpr double kLeastTolerance = 0.003;   // metres
 constexpr double kLongestSegment = 0.2;     // metres
 
 // How far station i is off the straight cone between a and b.

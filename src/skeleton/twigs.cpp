@@ -13,7 +13,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kTolerance = 0.15;        // point spacings off the bark: still explained by it
+constexpr double kTolerance = 0.12;        // point spacings off the bark: still explained by it
 constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;  // of the radius, likewise
@@ -23,6 +23,7 @@ constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.5;     // tolerances
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
+constexpr float kGather = 0.5f;            // point spacings: points so near to a path are one with it
 constexpr size_t kOthers = 6;         // stations of any limb, nearest to a point
 constexpr int kLookAround = 2;        // stations to each side
 
@@ -256,7 +257,7 @@ class TwigFinder {
             const uint32_t v = path_[i];
             for (uint32_t e = graph_.begin[v]; e < graph_.begin[v + 1]; e++) {
                 const uint32_t n = graph_.neighbour[e];
-                if (line_[n] >= 0 || graph_.length[e] > scale_.spacing[v]) continue;
+                if (line_[n] >= 0 || graph_.length[e] > kGather * scale_.spacing[v]) continue;
                 if (nearest_[n] < 0) {
                     near_.push_back(n);
                     nearest_[n] = static_cast<int32_t>(i);
