@@ -8,6 +8,7 @@
 #include "skeleton/root.h"
 #include "skeleton/skeleton.h"
 #include "skeleton/slices.h"
+#include "skeleton/stems.h"
 #include "skeleton/thickness.h"
 #include "skeleton/thin.h"
 #include "skeleton/twigs.h"
@@ -119,6 +120,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
+    straighten_stems(limbs, axes);
     clock.stop("Radii", limbs.size());
     infer_radii(axes, limbs);
     TwigOptions twig_options;
