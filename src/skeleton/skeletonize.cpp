@@ -75,8 +75,8 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
             "right, and that the cleaning steps did not take too much.");
     if (is_flat(points))
         throw Error(
-            "All points lie on a plane or on a line, and a tree needs depth. Was a photo or a section "
-            "exported instead of the whole scan?");
+            "All points lie on a plane or on a line, and a tree needs depth: this looks like a photo or a "
+            "section of a scan.");
     clock.stop("Thinning", points.size());
 
     SubProgress triangulating(listener, 0.1, 0.55);
