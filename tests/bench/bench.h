@@ -31,7 +31,7 @@ void bench_synth(const Settings& settings);
 bool guard_accuracy(const Settings& settings);
 void record_accuracy(const Settings& settings);
 
-// Milliseconds of CGAL's Delaunay triangulation of points that lie so far apart, on one thread.
+// CPU milliseconds of CGAL's Delaunay triangulation of the points: x, y, z of one after the other.
 double delaunay_floor_ms(const std::vector<float>& coordinates);
 
 }  // namespace treerec::bench

@@ -7,6 +7,7 @@
 
 #include "bench.h"
 #include "error.h"
+#include "exchange/ready_pictures.h"
 #include "file_bytes.h"
 
 namespace {
@@ -129,6 +130,7 @@ int run(CommandLine line) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    use_ready_pictures();
     try {
         return run(parse({argv + 1, argv + argc}));
     } catch (const std::exception& error) {

@@ -14,7 +14,7 @@ namespace treerec::bench {
 
 namespace {
 
-constexpr double kJitter = 0.05;  // metres, in every direction at most
+constexpr double kJitter = 0.05;  // metres: standard deviation along every axis
 
 // `count` points: a random part of the scan, or copies of it, each point moved a little.
 PointCloud resized(const PointCloud& scan, size_t count) {
@@ -32,9 +32,7 @@ PointCloud resized(const PointCloud& scan, size_t count) {
     }
     for (size_t i = 0; i < count; i++) {
         DVec3 p(scan.positions[i % scan.size()]);
-        if (i >= scan.size())
-            p += DVec3(random.uniform(-kJitter, kJitter), random.uniform(-kJitter, kJitter),
-                       random.uniform(-kJitter, kJitter));
+        if (i >= scan.size()) p += kJitter * DVec3(random.normal(), random.normal(), random.normal());
         cloud.positions.emplace_back(p);
     }
     return cloud;
