@@ -203,3 +203,49 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     tree.set_frame(frame);
     return tree;
 }
+
+constexpr size_t kBytesPerCell = 11;
+
+Dictionary to_dictionary(const treerec::Foliage& p_foliage, int p_format_version) {
+    PackedByteArray cells;
+    cells.resize(int64_t(p_foliage.cells.size() * kBytesPerCell));
+    uint8_t* write = cells.ptrw();
+    for (const treerec::FoliageCell& cell : p_foliage.cells) {
+        for (const uint16_t number : {cell.x, cell.y, cell.z, cell.points}) {
+            *write++ = uint8_t(number & 0xff);
+            *write++ = uint8_t(number >> 8);
+        }
+        write = std::copy(cell.color.begin(), cell.color.end(), write);
+    }
+    Dictionary data;
+    data["format_version"] = p_format_version;
+    data["place"] = to_bits({p_foliage.origin.x, p_foliage.origin.y, p_foliage.origin.z, p_foliage.edge});
+    data["colored"] = p_foliage.colored;
+    data["cells"] = cells;
+    return data;
+}
+
+treerec::Foliage foliage_from_dictionary(const Dictionary& p_data) {
+    const std::vector<double> place = from_bits(require_entry(p_data, "place", Variant::PACKED_INT64_ARRAY));
+    const PackedByteArray cells = require_entry(p_data, "cells", Variant::PACKED_BYTE_ARRAY);
+    treerec::Foliage foliage;
+    foliage.colored = require_entry(p_data, "colored", Variant::BOOL);
+    if (place.size() != 4 || size_t(cells.size()) % kBytesPerCell != 0) {
+        throw treerec::Error(
+            "The saved foliage is damaged: its lists differ in length. Reconstruct the tree again.");
+    }
+    foliage.origin = DVec3(place[0], place[1], place[2]);
+    foliage.edge = place[3];
+    foliage.cells.resize(size_t(cells.size()) / kBytesPerCell);
+    const uint8_t* read = cells.ptr();
+    for (treerec::FoliageCell& cell : foliage.cells) {
+        for (uint16_t* number : {&cell.x, &cell.y, &cell.z, &cell.points}) {
+            *number = uint16_t(read[0] | (read[1] << 8));
+            read += 2;
+        }
+        std::copy_n(read, 3, cell.color.begin());
+        read += 3;
+    }
+    treerec::check_foliage(foliage);
+    return foliage;
+}

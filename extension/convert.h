@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "geometry/vec.h"
 #include "mesh/mesh.h"
@@ -36,6 +37,12 @@ extern const int64_t kSurfaceFlags;
 // skeleton.
 godot::Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version);
 treerec::Tree tree_from_dictionary(const godot::Dictionary& p_data);
+
+// Likewise what a scan saw of the leaves: "place" holds the bits of the origin's x, y, z and the cells' edge,
+// "cells" 11 bytes for each: x, y, z and the number of points as 16-bit numbers, low byte first, and the
+// colour.
+godot::Dictionary to_dictionary(const treerec::Foliage& p_foliage, int p_format_version);
+treerec::Foliage foliage_from_dictionary(const godot::Dictionary& p_data);
 
 // Runs what may throw; the engine gets the error's sentence and the caller gets p_fallback.
 template <typename F, typename T>

@@ -152,6 +152,8 @@ const Option kOptions[] = {
      "Removes small clusters of points far from the rest."},
     {"remove_ground", OPTION_MEMBER(clean.remove_ground, bool), PROPERTY_HINT_NONE, "",
      "Removes the ground that the tree stands on."},
+    {"tell_leaves", OPTION_MEMBER(tell_leaves, bool), PROPERTY_HINT_NONE, "",
+     "Tells leaves from wood: the skeleton follows the wood, and the leaves become foliage."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Keeps at most one point per cell of this size; 0 chooses by the cloud."},
     {"minimum_branch", OPTION_MEMBER(skeleton.minimum_branch, double), PROPERTY_HINT_RANGE,

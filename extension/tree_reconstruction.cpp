@@ -267,7 +267,7 @@ PackedFloat32Array TreeReconstruction::build_leaf_buffer(int p_lod) const {
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(PackedFloat32Array(), [&] {
         const std::vector<treerec::LeafPlacement> leaves =
-            treerec::place_leaves(*get_tree(), get_leaf_rules(), uint64_t(get_seed()));
+            treerec::place_leaves(*get_tree(), get_leaf_rules(), uint64_t(get_seed()), *get_leaf_density());
         return to_godot(treerec::leaf_buffer(treerec::thin_leaves(leaves, p_lod)));
     });
 }

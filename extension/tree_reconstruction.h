@@ -4,12 +4,14 @@
 #include <godot_cpp/classes/multi_mesh.hpp>
 #include <godot_cpp/classes/resource.hpp>
 #include <godot_cpp/core/class_db.hpp>
+#include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "tree/tree.h"
 
@@ -22,16 +24,20 @@ class TreeReconstruction : public godot::Resource {
   public:
     enum NodeKind { NODE_KIND_LEAF, NODE_KIND_BRANCH, NODE_KIND_COMMON, NODE_KIND_TRUNK };
     enum LeafArrangement { LEAF_ARRANGEMENT_ALTERNATE, LEAF_ARRANGEMENT_OPPOSITE };
-    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 1 };
+    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 1, FOLIAGE_VERSION = 1 };
 
     // For the other classes of this extension.
     void set_tree(treerec::Tree p_tree);
     std::shared_ptr<const treerec::Tree> get_tree() const;
     treerec::LeafRules get_leaf_rules() const;
+    void set_leaf_density(treerec::Foliage p_foliage);
+    std::shared_ptr<const treerec::Foliage> get_leaf_density() const;
 
     // Stored properties.
     void set_skeleton(const godot::Dictionary& p_skeleton);
     godot::Dictionary get_skeleton() const;
+    void set_foliage(const godot::Dictionary& p_foliage);
+    godot::Dictionary get_foliage() const;
     void set_provenance(const godot::Dictionary& p_provenance);
     godot::Dictionary get_provenance() const { return provenance_; }
     void set_seed(int64_t p_seed);
@@ -40,6 +46,8 @@ class TreeReconstruction : public godot::Resource {
     godot::String get_leaf_preset() const;
     void set_leaves_enabled(bool p_enabled);
     bool are_leaves_enabled() const;
+    void set_foliage_followed(bool p_followed);
+    bool is_foliage_followed() const;
     void set_leaf_arrangement(LeafArrangement p_arrangement);
     LeafArrangement get_leaf_arrangement() const;
     void set_leaf_value(int p_index, double p_value);
@@ -70,6 +78,9 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedFloat32Array get_radii() const;
     godot::PackedInt32Array get_parents() const;
     godot::AABB get_aabb() const;
+    bool has_foliage() const;
+    godot::PackedVector3Array get_foliage_positions() const;
+    godot::PackedColorArray get_foliage_colors() const;
     godot::Dictionary measure() const;
 
     // Builders.
@@ -100,11 +111,13 @@ class TreeReconstruction : public godot::Resource {
     // Guards what the builders read, so that they may run while the main thread edits.
     mutable std::mutex mutex_;
     std::shared_ptr<const treerec::Tree> tree_ = std::make_shared<treerec::Tree>();
+    std::shared_ptr<const treerec::Foliage> foliage_ = std::make_shared<treerec::Foliage>();
     treerec::LeafRules leaf_rules_;
     int64_t seed_ = 1;
 
     godot::String leaf_preset_ = "generic";
     godot::Dictionary provenance_;
+    godot::Dictionary newer_foliage_;  // likewise
     godot::Dictionary
         newer_skeleton_;  // of a version that this one can't read; kept so that saving loses nothing
 };

@@ -65,7 +65,10 @@ void TreeReconstruction::set_leaf_preset(const String& p_name) {
     leaf_preset_ = p_name;
     {
         const std::lock_guard lock(mutex_);
+        // Whether the scan's foliage is followed is no matter of the kind of tree.
+        const bool follow = leaf_rules_.follow_foliage;
         leaf_rules_ = rules;
+        leaf_rules_.follow_foliage = follow;
     }
     notify_property_list_changed();
     emit_changed();
@@ -153,6 +156,11 @@ PackedStringArray TreeReconstruction::_get_linked_undo_properties(const StringNa
 void TreeReconstruction::_bind_properties() {
     ClassDB::bind_method(D_METHOD("set_skeleton", "skeleton"), &TreeReconstruction::set_skeleton);
     ClassDB::bind_method(D_METHOD("get_skeleton"), &TreeReconstruction::get_skeleton);
+    ClassDB::bind_method(D_METHOD("set_foliage", "foliage"), &TreeReconstruction::set_foliage);
+    ClassDB::bind_method(D_METHOD("get_foliage"), &TreeReconstruction::get_foliage);
+    ClassDB::bind_method(D_METHOD("set_foliage_followed", "followed"),
+                         &TreeReconstruction::set_foliage_followed);
+    ClassDB::bind_method(D_METHOD("is_foliage_followed"), &TreeReconstruction::is_foliage_followed);
     ClassDB::bind_method(D_METHOD("set_provenance", "provenance"), &TreeReconstruction::set_provenance);
     ClassDB::bind_method(D_METHOD("get_provenance"), &TreeReconstruction::get_provenance);
     ClassDB::bind_method(D_METHOD("set_seed", "seed"), &TreeReconstruction::set_seed);
@@ -174,6 +182,8 @@ void TreeReconstruction::_bind_properties() {
     ADD_PROPERTY(
         PropertyInfo(Variant::DICTIONARY, "skeleton", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
         "set_skeleton", "get_skeleton");
+    ADD_PROPERTY(PropertyInfo(Variant::DICTIONARY, "foliage", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
+                 "set_foliage", "get_foliage");
     ADD_PROPERTY(PropertyInfo(Variant::DICTIONARY, "provenance", PROPERTY_HINT_NONE, "",
                               PROPERTY_USAGE_DEFAULT | PROPERTY_USAGE_READ_ONLY),
                  "set_provenance", "get_provenance");
@@ -190,6 +200,8 @@ void TreeReconstruction::_bind_properties() {
                                    String::utf8(kLeafValues[i].hint)),
                       "set_leaf_value", "get_leaf_value", i);
     }
+    ADD_PROPERTY(PropertyInfo(Variant::BOOL, "foliage_followed"), "set_foliage_followed",
+                 "is_foliage_followed");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "maximum_leaves", PROPERTY_HINT_RANGE, "0,200000,1,or_greater"),
                  "set_maximum_leaves", "get_maximum_leaves");
 }
@@ -220,6 +232,9 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_radii"), &TreeReconstruction::get_radii);
     ClassDB::bind_method(D_METHOD("get_parents"), &TreeReconstruction::get_parents);
     ClassDB::bind_method(D_METHOD("get_aabb"), &TreeReconstruction::get_aabb);
+    ClassDB::bind_method(D_METHOD("has_foliage"), &TreeReconstruction::has_foliage);
+    ClassDB::bind_method(D_METHOD("get_foliage_positions"), &TreeReconstruction::get_foliage_positions);
+    ClassDB::bind_method(D_METHOD("get_foliage_colors"), &TreeReconstruction::get_foliage_colors);
     ClassDB::bind_method(D_METHOD("measure"), &TreeReconstruction::measure);
 
     ClassDB::bind_method(D_METHOD("build_mesh_arrays", "lod"), &TreeReconstruction::build_mesh_arrays,
@@ -242,5 +257,6 @@ void TreeReconstruction::_bind_methods() {
     BIND_ENUM_CONSTANT(LEAF_ARRANGEMENT_OPPOSITE);
     BIND_CONSTANT(NO_NODE);
     BIND_CONSTANT(FORMAT_VERSION);
+    BIND_CONSTANT(FOLIAGE_VERSION);
     ClassDB::bind_integer_constant("TreeReconstruction", "", "MESH_FLAGS", kSurfaceFlags);
 }

@@ -92,6 +92,7 @@ static std::string write_report(const treerec::Reconstruction& p_result, const P
     treerec::ExportOptions look;
     look.leaves = treerec::leaf_preset(details.leaves);
     look.seed = details.seed;
+    look.foliage = p_result.foliage;
     treerec::TreeExporter counter(p_result.tree, look, &p_progress);
     details.triangles = counter.triangles();
     details.leaf_count = counter.leaves();
@@ -122,6 +123,7 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     made->set_seed(int64_t(options.pipeline.skeleton.seed));
     made->set_leaf_preset(options.leaves);
     made->set_tree(std::move(result.tree));
+    made->set_leaf_density(std::move(result.foliage));
     Dictionary provenance;
     provenance["source"] = p_path;
     provenance["options"] = p_options.duplicate();
@@ -176,7 +178,8 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
         const Listener listener(this);
         listener.check();
         treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
-                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()), &listener);
+                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()), &listener,
+                             *p_tree->get_leaf_density());
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());

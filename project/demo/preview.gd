@@ -37,6 +37,7 @@ const _SWITCHES: Dictionary[String, Array] = {
 	"--no-clean-outliers": ["remove_outliers"],
 	"--no-clean-fragments": ["remove_fragments"],
 	"--no-clean-ground": ["remove_ground"],
+	"--all-wood": ["tell_leaves"],
 	"--quiet": [],
 }
 

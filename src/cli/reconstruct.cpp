@@ -68,6 +68,7 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_outliers = clean && !arguments.has("--no-clean-outliers");
     options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
+    options.tell_leaves = !arguments.has("--all-wood");
     // Enough for the summary; a report tells more exactly.
     if (!arguments.has("--report")) options.score_points = 4000;
     return options;
@@ -94,8 +95,12 @@ void print_summary(const Reconstruction& result, const std::vector<std::string>&
         std::printf("%s, ",
                     m.height < kBreastHeight ? "lower than breast height" : "no stem at breast height");
     std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
-    std::printf("%.0f %% of the points lie within 2 cm of the bark, half within %.1f mm\n",
-                100.0 * result.fit.explained_2cm, result.fit.median_mm);
+    if (result.leaf_points > 0)
+        std::printf("%.0f %% of the points are leaves\n", 100.0 * static_cast<double>(result.leaf_points) /
+                                                              static_cast<double>(result.cloud.size()));
+    std::printf("%.0f %% of the %s lie within 2 cm of the bark, half within %.1f mm\n",
+                100.0 * result.fit.explained_2cm, result.leaf_points > 0 ? "others" : "points",
+                result.fit.median_mm);
     for (const std::string& out : outs)
         std::printf("wrote %s\n", out.c_str());
     std::printf("%.1f s\n", seconds);
@@ -135,6 +140,7 @@ const Command& reconstruct_command() {
          {"--no-clean-outliers", "", "lone points stay"},
          {"--no-clean-fragments", "", "small far clusters stay"},
          {"--no-clean-ground", "", "the ground stays"},
+         {"--all-wood", "", "leaves are not told from wood: every point is followed"},
          {"--quiet", "", "print errors and warnings only"}},
         "SCAN: PLY, text (.xyz .txt .asc .pts .csv) or LAS."};
     return command;
@@ -170,6 +176,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     TerminalProgress progress(quiet);
     SubProgress reconstructing(&progress, 0.0, 0.9);
     const Reconstruction result = reconstruct_file(scan, options, &reconstructing);
+    exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();

@@ -5,6 +5,7 @@
 
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
+#include "foliage/near_wood.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "tree/branches.h"
@@ -18,6 +19,14 @@ constexpr double kFullHeight = 6.0;                   // metres; smaller trees b
 constexpr size_t kBranchesPerChunk = 256;
 constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that a snag can stand on
 constexpr double kSnagRadii = 6.0;   // a branch shorter than this many radii of its host is a snag
+
+// Following a scan's foliage.
+constexpr size_t kCellsPerChunk = 512;
+constexpr double kReach = 1.2;            // metres between a leaf and its branch, on a tree of full height
+constexpr double kLeastReachCells = 4.0;  // or that many cells, if that is more
+constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
+constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
+constexpr double kColorHue = 0.7;                          // of a leaf's hue, where the scan has colours
 
 // The rules of one tree, in its own measure.
 struct Scaled {
@@ -41,6 +50,7 @@ struct Placer {
     Placer(const Tree& t, const LeafRules& r, uint64_t s, const Crown& c)
         : tree(t), rules(r), size(scaled(r, c.height)), list(list_branches(t)), crown(c), seed(s) {}
 
+    LeafPlacement tip_leaf(const Branch& branch, const AxisPoint& end) const;
     void bear(const Branch& branch, std::vector<AxisPoint>& axis, std::vector<LeafPlacement>& leaves) const;
     LeafPlacement leaf_at(const AxisPoint& at, const DVec3& radial, bool terminal, NodeId tip,
                           uint64_t number) const;
@@ -89,14 +99,18 @@ LeafPlacement Placer::leaf_at(const AxisPoint& at, const DVec3& radial, bool ter
     return leaf;
 }
 
+LeafPlacement Placer::tip_leaf(const Branch& branch, const AxisPoint& end) const {
+    return leaf_at(end, end.direction, true, list.nodes[branch.end - 1], 0);
+}
+
 void Placer::bear(const Branch& branch, std::vector<AxisPoint>& axis,
                   std::vector<LeafPlacement>& leaves) const {
     sample_axis(tree, list, branch, 2e-5 * crown.coordinate, axis);
     if (axis.size() < 2) return;
     const NodeId tip = list.nodes[branch.end - 1];
     const AxisPoint end = axis.back();
-    uint64_t number = 0;
-    leaves.push_back(leaf_at(end, end.direction, true, tip, number++));
+    leaves.push_back(tip_leaf(branch, end));
+    uint64_t number = 1;
     // The tip bears leaves however thick a scan made it.
     const double stoutest = std::max(size.maximum_radius, 1.5 * end.radius);
     const double buried = branch.attach == kNoNode ? 0.0 : tree.node(branch.attach).radius;
@@ -136,6 +150,118 @@ std::vector<uint8_t> find_snags(const Tree& tree, const BranchList& list, double
     return snag;
 }
 
+// Leaves where a scan saw them.
+class Follower {
+  public:
+    Follower(const Placer& placer, const Foliage& foliage)
+        : placer_(placer),
+          foliage_(foliage),
+          wood_(placer.tree, placer.list, reach(placer, foliage), placer.size.maximum_radius,
+                2e-5 * placer.crown.coordinate),
+          usual_(usual_points(foliage)) {
+        const Scaled& size = placer.size;
+        per_cell_ = kSpraysPerVolume * foliage.edge * foliage.edge * foliage.edge /
+                    (size.internode * size.leaf_size * size.leaf_size);
+        if (!foliage.colored) return;
+        std::vector<double> shares;
+        for (const FoliageCell& cell : foliage.cells)
+            shares.push_back(red_share(cell));
+        std::sort(shares.begin(), shares.end());
+        greenest_ = shares[shares.size() / 20];
+        reddest_ = shares[shares.size() - 1 - shares.size() / 20];
+    }
+
+    // The sprays in one cell.
+    void fill(const FoliageCell& cell, std::vector<LeafPlacement>& leaves) const {
+        const uint64_t key = hash_seed(placer_.seed, key_of(cell));
+        Random random(key, 3);
+        const double density = std::clamp(cell.points / usual_, kLeastDensity, kMostDensity);
+        const double wanted = per_cell_ * density;
+        const auto count = static_cast<uint64_t>(wanted + random.uniform());
+        for (uint64_t k = 0; k < count; k++) {
+            const DVec3 p = foliage_.centre(cell) + foliage_.edge * DVec3(random.uniform(-0.5, 0.5),
+                                                                          random.uniform(-0.5, 0.5),
+                                                                          random.uniform(-0.5, 0.5));
+            const WoodSample* host = wood_.nearest(p);
+            if (!host) continue;
+            const AxisPoint& axis = host->at;
+            const DVec3 off = p - axis.position;
+            const DVec3 radial = normalized_or(off - axis.direction * glm::dot(off, axis.direction),
+                                               any_perpendicular(axis.direction));
+            AxisPoint at = axis;
+            // leaf_at() puts the petiole onto the bark: out to p, unless p lies in the wood.
+            if (glm::length(off) > axis.radius) at.position = p - radial * 0.9 * axis.radius;
+            at.direction = normalized_or(0.6 * axis.direction + normalized_or(off, radial), axis.direction);
+            const Branch& branch = placer_.list.branches[host->branch];
+            leaves.push_back(
+                placer_.leaf_at(at, radial, false, placer_.list.nodes[branch.end - 1], hash_seed(key, k)));
+            tint(cell, leaves.back());
+        }
+    }
+
+    // A spray at the end of a twig that the scan shows among leaves.
+    void finish(const Branch& branch, std::vector<AxisPoint>& axis,
+                std::vector<LeafPlacement>& leaves) const {
+        sample_axis(placer_.tree, placer_.list, branch, 2e-5 * placer_.crown.coordinate, axis);
+        if (axis.size() < 2) return;
+        const FoliageCell* cell = cell_near(axis.back().position);
+        if (!cell) return;
+        leaves.push_back(placer_.tip_leaf(branch, axis.back()));
+        tint(*cell, leaves.back());
+    }
+
+  private:
+    static double reach(const Placer& placer, const Foliage& foliage) {
+        const double scale = std::min(1.0, std::sqrt(placer.crown.height / kFullHeight));
+        return std::max(kReach * scale, kLeastReachCells * foliage.edge);
+    }
+    static uint64_t key_of(const FoliageCell& cell) {
+        return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) | cell.z;
+    }
+    static double red_share(const FoliageCell& cell) {
+        return (static_cast<double>(cell.color[0]) - cell.color[1]) /
+               std::max(1, cell.color[0] + cell.color[1] + cell.color[2]);
+    }
+
+    void tint(const FoliageCell& cell, LeafPlacement& leaf) const {
+        if (!foliage_.colored) return;
+        const double range = std::max(reddest_ - greenest_, 0.02);
+        const double hue = std::clamp((red_share(cell) - greenest_) / range, 0.0, 1.0);
+        leaf.hue = static_cast<float>(kColorHue * hue + (1.0 - kColorHue) * leaf.hue);
+    }
+
+    // The cell at p, or one of those that touch it; nullptr where there is none.
+    const FoliageCell* cell_near(const DVec3& p) const {
+        const DVec3 at = glm::floor((p - foliage_.origin) / foliage_.edge);
+        const FoliageCell* found = nullptr;
+        for (double x = at.x - 1.0; x <= at.x + 1.0; x += 1.0)
+            for (double y = at.y - 1.0; y <= at.y + 1.0; y += 1.0) {
+                if (!(x >= 0.0 && x <= UINT16_MAX && y >= 0.0 && y <= UINT16_MAX)) continue;
+                if (!(at.z >= -1.0 && at.z <= UINT16_MAX)) continue;
+                FoliageCell first;
+                first.x = static_cast<uint16_t>(x);
+                first.y = static_cast<uint16_t>(y);
+                first.z = static_cast<uint16_t>(std::max(at.z - 1.0, 0.0));
+                const uint64_t low = key_of(first);
+                const auto cell =
+                    std::lower_bound(foliage_.cells.begin(), foliage_.cells.end(), low,
+                                     [](const FoliageCell& c, uint64_t key) { return key_of(c) < key; });
+                if (cell == foliage_.cells.end() || cell->x != first.x || cell->y != first.y) continue;
+                if (cell->z > at.z + 1.0) continue;
+                if (x == at.x && y == at.y) return &*cell;
+                found = &*cell;
+            }
+        return found;
+    }
+
+    const Placer& placer_;
+    const Foliage& foliage_;
+    const NearWood wood_;
+    const double usual_;
+    double per_cell_ = 0.0;
+    double greenest_ = 0.0, reddest_ = 0.0;
+};
+
 // Fewer, larger leaves that cover the same area.
 void limit_count(std::vector<LeafPlacement>& leaves, size_t most) {
     if (leaves.size() <= most) return;
@@ -154,27 +280,47 @@ void limit_count(std::vector<LeafPlacement>& leaves, size_t most) {
     leaves = std::move(kept);
 }
 
+// Calls body(i, leaves) for all i, on several threads, and gathers the leaves in the order of i.
+template <typename Body>
+void gather(size_t count, size_t grain, std::vector<LeafPlacement>& leaves, const Body& body) {
+    std::vector<std::vector<LeafPlacement>> parts((count + grain - 1) / grain);
+    parallel_for(count, grain, [&](size_t begin, size_t end) {
+        std::vector<AxisPoint> axis;
+        for (size_t i = begin; i < end; i++)
+            body(i, axis, parts[begin / grain]);
+    });
+    size_t total = leaves.size();
+    for (const auto& part : parts)
+        total += part.size();
+    leaves.reserve(total);
+    for (const auto& part : parts)
+        leaves.insert(leaves.end(), part.begin(), part.end());
+}
+
 }  // namespace
 
-std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed) {
+std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
+                                        const Foliage& foliage) {
     std::vector<LeafPlacement> leaves;
     if (!rules.enabled || tree.size() < 2 || rules.maximum_leaves <= 0) return leaves;
     const Placer placer(tree, rules, seed, measure_crown(tree));
     const std::vector<Branch>& branches = placer.list.branches;
-    std::vector<std::vector<LeafPlacement>> parts((branches.size() + kBranchesPerChunk - 1) /
-                                                  kBranchesPerChunk);
     const std::vector<uint8_t> snag = find_snags(tree, placer.list, kStoutShare * placer.size.maximum_radius);
-    parallel_for(branches.size(), kBranchesPerChunk, [&](size_t begin, size_t end) {
-        std::vector<AxisPoint> axis;
-        for (size_t i = begin; i < end; i++)
-            if (!snag[i]) placer.bear(branches[i], axis, parts[begin / kBranchesPerChunk]);
-    });
-    size_t count = 0;
-    for (const auto& part : parts)
-        count += part.size();
-    leaves.reserve(count);
-    for (const auto& part : parts)
-        leaves.insert(leaves.end(), part.begin(), part.end());
+    using Leaves = std::vector<LeafPlacement>;
+    if (rules.follow_foliage && !foliage.empty()) {
+        const Follower follower(placer, foliage);
+        gather(branches.size(), kBranchesPerChunk, leaves,
+               [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
+                   if (!snag[i]) follower.finish(branches[i], axis, out);
+               });
+        gather(foliage.cells.size(), kCellsPerChunk, leaves,
+               [&](size_t i, std::vector<AxisPoint>&, Leaves& out) { follower.fill(foliage.cells[i], out); });
+    } else {
+        gather(branches.size(), kBranchesPerChunk, leaves,
+               [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
+                   if (!snag[i]) placer.bear(branches[i], axis, out);
+               });
+    }
     limit_count(leaves, static_cast<size_t>(rules.maximum_leaves));
     return leaves;
 }

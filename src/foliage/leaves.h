@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "foliage/foliage.h"
 #include "geometry/vec.h"
 #include "tree/tree.h"
 
@@ -27,6 +28,7 @@ struct LeafRules {
     double angle = 55.0;          // between the twig and the spray
     double droop = 20.0;          // towards the ground
     double angle_variation = 20.0;
+    bool follow_foliage = true;  // where the scan saw leaves (Foliage), the sprays stand there
     int maximum_leaves = 60000;  // beyond it fewer, larger leaves cover the same area
 };
 
@@ -52,6 +54,11 @@ struct LeafPlacement {
 // Sprays on the last `twig_length` of every branch, and one at every tip. An empty tree or a lone root has
 // none. seed: the same seed gives the same leaves. Each leaf's random numbers belong to its place
 // (hash_seed), so pruning one branch leaves the leaves of others alone.
-std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed);
+// foliage, unless it is empty or the rules do not follow it: sprays fill its cells instead, each on the
+// branch nearest to it and as many as the scan's density there asks for, none where there is no wood within
+// about a metre; twigs end in a spray only where the scan saw leaves. Its colours part the hues: the less
+// green, the higher.
+std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
+                                        const Foliage& foliage = {});
 
 }  // namespace treerec

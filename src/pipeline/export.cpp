@@ -52,7 +52,7 @@ const Mesh& TreeExporter::bark() {
 }
 
 const std::vector<LeafPlacement>& TreeExporter::placed() {
-    if (!placed_) placed_ = place_leaves(tree_, options_.leaves, options_.seed);
+    if (!placed_) placed_ = place_leaves(tree_, options_.leaves, options_.seed, options_.foliage);
     return *placed_;
 }
 
@@ -103,8 +103,8 @@ void TreeExporter::write(const std::string& path) {
 }
 
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures, const Progress* progress) {
-    TreeExporter(tree, {leaves, textures, seed}, progress).write(path);
+                 const std::string& textures, const Progress* progress, const Foliage& foliage) {
+    TreeExporter(tree, {leaves, textures, seed, foliage}, progress).write(path);
 }
 
 }  // namespace treerec

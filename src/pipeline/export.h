@@ -18,6 +18,7 @@ struct ExportOptions {
     LeafRules leaves = leaf_preset("generic");
     std::string textures = "generic";  // the preset whose bark and leaf pictures are used; "none" means these
     uint64_t seed = 1;                 // of the leaves
+    Foliage foliage = {};              // what the scan saw of them
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
@@ -54,6 +55,7 @@ void require_writable_format(const std::string& path);
 
 // One file: TreeExporter in one call.
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures = "generic", const Progress* progress = nullptr);
+                 const std::string& textures = "generic", const Progress* progress = nullptr,
+                 const Foliage& foliage = {});
 
 }  // namespace treerec

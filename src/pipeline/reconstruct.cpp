@@ -1,11 +1,13 @@
 #include "pipeline/reconstruct.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "scan/wood_leaf.h"
 
 namespace treerec {
 
@@ -15,12 +17,16 @@ namespace {
 constexpr double kReadEnd = 0.10;
 constexpr double kOrientEnd = 0.15;
 constexpr double kCleanEnd = 0.30;
+constexpr double kLeavesEnd = 0.40;
 constexpr double kSkeletonEnd = 0.97;
 
 // Below these shares the user is told: of explained points, and of wood whose radius was measured. Sparse
 // airborne scans of trees reach 0.005 of the latter, houses and balls not half of that.
 constexpr double kLeastExplained = 0.25;
 constexpr double kLeastMeasured = 0.003;
+
+// With fewer points of wood the tree is made from the leaves' too.
+constexpr size_t kLeastFollowed = 200;
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -32,6 +38,17 @@ void rebase_cloud(PointCloud& cloud, const ScanFrame& frame) {
     for (Vec3& p : cloud.positions)
         p = Vec3(DVec3(p) - base);
     cloud.frame = frame;
+}
+
+Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf) {
+    std::vector<Vec3> points;
+    std::vector<Color8> colors;
+    for (size_t i = 0; i < cloud.size(); i++) {
+        if (!leaf[i]) continue;
+        points.push_back(cloud.positions[i]);
+        if (cloud.has_colors()) colors.push_back(cloud.colors[i]);
+    }
+    return gather_foliage(points, colors);
 }
 
 }  // namespace
@@ -66,8 +83,22 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     clock.stop("Clean", result.cloud.size());
     cleaning.check();
 
-    SubProgress growing(progress, kCleanEnd, kSkeletonEnd);
-    SkeletonResult skeleton = skeletonize(result.cloud, options.skeleton, &growing);
+    SubProgress telling(progress, kCleanEnd, kLeavesEnd);
+    telling.update(0.0, "Leaves");
+    WoodLeaf told;
+    if (options.tell_leaves) told = tell_wood_from_leaves(result.cloud, &telling);
+    append(result.warnings, told.warnings);
+    clock.stop("Leaves", result.cloud.size());
+    telling.check();
+
+    SubProgress growing(progress, kLeavesEnd, kSkeletonEnd);
+    PointCloud followed;
+    if (told.foliage) {
+        followed = result.cloud;
+        followed.keep_only(told.wood_path);
+    }
+    const bool follow = followed.size() >= kLeastFollowed;
+    SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, options.skeleton, &growing);
     growing.check();
     append(result.warnings, skeleton.warnings);
     result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
@@ -79,14 +110,24 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     rebase_cloud(result.cloud, result.tree.frame());
 
     clock.restart();
+    PointCloud wood;
+    if (told.foliage) {
+        result.foliage = foliage_of(result.cloud, told.leaf);
+        result.leaf_points = static_cast<size_t>(std::count(told.leaf.begin(), told.leaf.end(), uint8_t{1}));
+        wood = result.cloud;
+        for (uint8_t& flag : told.leaf)
+            flag = !flag;
+        wood.keep_only(told.leaf);
+        clock.stop("Foliage", result.leaf_points);
+    }
+    const PointCloud& judged = wood.empty() ? result.cloud : wood;
     SubProgress scoring(progress, kSkeletonEnd, 1.0);
     result.measured = measure(result.tree);
-    result.fit = score_scan(result.tree, result.cloud, 0.0, &scoring, options.score_points);
+    result.fit = score_scan(result.tree, judged, 0.0, &scoring, options.score_points);
     if (result.fit.explained_2cm < kLeastExplained)
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
-                                  " % of the points lie within 2 cm of the wood that was found. Is it a "
-                                  "single tree, without leaves, "
-                                  "and are its units right?");
+                                  " % of the wood's points lie within 2 cm of the wood that was found. Is it "
+                                  "a single tree, and are its units right?");
     if (result.measured.measured_share < kLeastMeasured)
         result.warnings.emplace_back(
             "Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is it "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fidelity/score.h"
+#include "foliage/foliage.h"
 #include "pipeline/export.h"
 #include "progress.h"
 #include "scan/clean_cloud.h"
@@ -22,6 +23,7 @@ struct ReconstructOptions {
     ReadCloudOptions read;
     OrientOptions orient;
     CleanOptions clean;
+    bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;
     size_t score_points = 200000;  // about how many points the fit is measured on
 };
@@ -30,14 +32,16 @@ struct Reconstruction {
     PointCloud cloud;  // cleaned, in the tree's frame: its points lie on the tree
     Tree raw;          // before pruning and simplification; same frame
     Tree tree;         // root at (0,0,0), metres, Y up
+    Foliage foliage;   // what the scan saw of leaves, in the tree's frame; empty for a bare tree
     size_t points_read = 0;
-    double spacing = 0.0;  // metres: what the skeletonizer thinned to
+    size_t leaf_points = 0;  // of the cloud
+    double spacing = 0.0;    // metres: what the skeletonizer thinned to
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;
-    Measurements measured;              // of the tree
-    ScanScore fit;                      // of the tree to the cleaned cloud
-    std::vector<StageTime> stages;      // "Read", "Orient", "Clean", the skeletonizer's own, "Score"
+    Measurements measured;          // of the tree
+    ScanScore fit;                  // of the tree to the cleaned cloud's wood
+    std::vector<StageTime> stages;  // "Read", "Orient", "Clean", "Leaves", the skeletonizer's own, "Score"
     std::vector<std::string> warnings;  // of all stages, in order
 };
 

@@ -49,6 +49,7 @@ Json options_json(const ReportDetails& details) {
     json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
     json["columns"] = options.read.columns;
     json["leaves"] = details.leaves;
+    json["tell_leaves"] = options.tell_leaves;
     json["clean"] = clean;
     return json;
 }
@@ -89,6 +90,8 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["options"] = options_json(details);
     json["points_read"] = result.points_read;
     json["points"] = result.cloud.size();
+    json["leaf_points"] = result.leaf_points;
+    json["foliage_cells"] = result.foliage.cells.size();
     Json removed = Json::object();
     for (const CleanStep& step : result.clean.steps)
         removed[step.name] = step.removed;

@@ -19,8 +19,8 @@ struct ReportDetails {
 
 // report.json, UTF-8, numbers finite or null. Keys:
 //   format_version 1, version, scan, scan_format, seed, options {up, scale, known_height_m, known_length_m,
-//   spacing_m, columns, leaves, clean}
-//   points_read, points (after cleaning), removed {step: points}
+//   spacing_m, columns, leaves, tell_leaves, clean}
+//   points_read, points (after cleaning), leaf_points (of these), foliage_cells, removed {step: points}
 //   up, up_detected, metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
 //   its scale), origin [x y z in scan coordinates], spacing_m
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)

@@ -268,6 +268,12 @@ std::vector<uint8_t> follow_limbs(const Cells& cells, const CellPaths& tree, std
         if (!path[v] || cells.centres[v].y < crown_base) continue;
         (leaf[v] ? hidden : seen) += 1.0;
     }
+    // Up to the very top, so that the tree keeps its height.
+    uint32_t top = 0;
+    for (uint32_t v = 1; v < count; v++)
+        if (cells.centres[v].y > cells.centres[top].y) top = v;
+    for (; !path[top]; top = tree.parent[top])
+        path[top] = 1;
     hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
     return path;
 }

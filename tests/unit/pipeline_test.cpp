@@ -247,5 +247,37 @@ TEST(PipelineOnScans, ABirchOf46kPointsHasItsTapedHeightAndDbh) {
     EXPECT_LT(score_scan(result.tree, result.cloud).median_mm, 15.0);
 }
 
+TEST_F(Pipeline, LeavesBecomeFoliageAndTheSkeletonFollowsWood) {
+    const Tree grown = grow_tree({Habit::kBirch, 8.0, 4});
+    VirtualScanOptions options;
+    options.points = 60000;
+    options.leaves = 0.8;
+    write_cloud(path("leafy.ply"), scan_tree(grown, options).cloud);
+    const Reconstruction leafy = reconstruct_file(path("leafy.ply"), {});
+    EXPECT_FALSE(leafy.foliage.empty());
+    EXPECT_TRUE(leafy.foliage.colored);
+    EXPECT_GT(leafy.leaf_points, leafy.cloud.size() / 2);
+    EXPECT_LT(leafy.leaf_points, leafy.cloud.size());
+    // In the tree's own frame.
+    const Bounds bounds = leafy.tree.bounds();
+    for (const FoliageCell& cell : leafy.foliage.cells)
+        for (int axis = 0; axis < 3; axis++) {
+            EXPECT_GT(leafy.foliage.centre(cell)[axis], bounds.min[axis] - 1.0);
+            EXPECT_LT(leafy.foliage.centre(cell)[axis], bounds.max[axis] + 1.0);
+        }
+    EXPECT_NEAR(measure(leafy.tree).height, measure(grown).height, 0.05 * measure(grown).height);
+
+    ReconstructOptions all_wood;
+    all_wood.tell_leaves = false;
+    const Reconstruction plain = reconstruct_file(path("leafy.ply"), all_wood);
+    EXPECT_TRUE(plain.foliage.empty());
+    EXPECT_EQ(plain.leaf_points, 0u);
+    EXPECT_LT(leafy.tree.size(), plain.tree.size());
+
+    const Reconstruction bare = reconstruct_file(path("scan.ply"), {});
+    EXPECT_TRUE(bare.foliage.empty());
+    EXPECT_EQ(bare.leaf_points, 0u);
+}
+
 }  // namespace
 }  // namespace treerec
