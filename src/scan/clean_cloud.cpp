@@ -6,6 +6,7 @@
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
 #include "scan/samples.h"
+#include "scan/separate_trees.h"
 
 namespace treerec {
 
@@ -77,6 +78,28 @@ class Cleaning {
         return all > 0 ? static_cast<double>(removed) / static_cast<double>(all) : 0.0;
     }
 
+    // Leaves one tree of several. Says so in the report.
+    void take_others(const Ground& ground, double spacing, const PickOptions& options,
+                     const Progress* progress) {
+        const std::vector<Vec3> left = points();
+        const Separation separation = separate_trees(left, ground, spacing, progress);
+        std::vector<uint32_t> weights;
+        for (const uint32_t s : alive_)
+            weights.push_back(weights_[s]);
+        report_.pick = choose_tree(separation, left, weights, cloud_.frame, options, report_.warnings);
+        if (report_.pick.trees.empty()) return;
+        size_t removed = 0;
+        size_t kept = 0;
+        for (size_t i = 0; i < alive_.size(); i++) {
+            if (separation.of_point[i] == report_.pick.taken)
+                alive_[kept++] = alive_[i];
+            else
+                removed += weights[i];
+        }
+        alive_.resize(kept);
+        report_.steps.push_back({"Other trees", removed});
+    }
+
     void apply() {
         std::vector<uint8_t> sample_stays(samples_.points.size());
         for (const uint32_t s : alive_)
@@ -130,7 +153,7 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     Cleaning cleaning(cloud, report, progress);
     step(0.3);
     double spacing = 0.0;
-    if (options.remove_outliers || options.remove_fragments) {
+    if (options.remove_outliers || options.remove_fragments || options.pick.enabled) {
         const std::vector<uint8_t> outliers =
             find_outliers(cleaning.points(), cleaning.ranges(), options.neighbours,
                           options.outlier_deviations, spacing, progress);
@@ -140,7 +163,9 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     // Before the fragments, which the ground would hold together.
     Ground ground;
     if (options.remove_ground) cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
-    step(0.8);
+    step(0.75);
+    if (options.pick.enabled) cleaning.take_others(ground, spacing, options.pick, progress);
+    step(0.85);
     if (options.remove_fragments) {
         const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing, progress));
         if (share > kRemarkable)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "progress.h"
+#include "scan/pick_tree.h"
 #include "scan/point_cloud.h"
 
 namespace treerec {
@@ -53,20 +54,23 @@ struct CleanOptions {
     double outlier_deviations = 6.0;  // removed beyond median + this many robust standard deviations
     bool remove_fragments = true;     // small clusters far from the rest
     bool remove_ground = true;
+    PickOptions pick;  // which tree, where the cloud holds several
 };
 
 struct CleanStep {
-    std::string name;    // "Extreme colours", "Outliers", "Fragments", "Ground"
+    std::string name;    // "Extreme colours", "Outliers", "Ground", "Other trees", "Fragments"
     size_t removed = 0;  // points
 };
 
 struct CleanReport {
     std::vector<CleanStep> steps;
+    PickReport pick;
     std::vector<std::string> warnings;
 };
 
 // Cleans an oriented cloud. Never empties it: a step that would take more than 90 % of the points is left out
-// with a warning.
+// with a warning; one tree of many is no such step. Throws Error for an empty cloud and for a tree that there
+// is not, Cancelled on request.
 CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress* progress = nullptr);
 
 }  // namespace treerec

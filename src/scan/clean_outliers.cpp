@@ -2,11 +2,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
+#include "scan/kd_points.h"
 #include "scan/robust.h"
 #include "scan/samples.h"
 
@@ -21,20 +21,6 @@ constexpr size_t kTypical = 512;  // points that tell the typical distance
 constexpr double kReach = 0.75;   // of the limit: the cells in which a point is looked for company
 constexpr size_t kLeaf = 16;
 constexpr size_t kPointsPerTask = 512;
-
-struct KdPoints {
-    const std::vector<Vec3>& points;
-
-    size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(size_t index, size_t axis) const { return points[index][static_cast<int>(axis)]; }
-    template <typename Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-};
-
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, KdPoints>, KdPoints, 3, uint32_t>;
 
 // Mean distances to the nearest neighbours, found when they are asked for.
 class Neighbours {

@@ -197,7 +197,9 @@ TEST(ScanClean, SaysThatItLeftOutASecondTree) {
         points.push_back(p + Vec3(15.0F, 0.0F, 0.0F));
     PointCloud cloud = as_scanned(points, UpAxis::kY, 1.0, DVec3(0.0));
     orient_cloud(cloud, {UpAxis::kY, 1.0});
-    const CleanReport report = clean_cloud(cloud, {});
+    CleanOptions options;
+    options.pick.enabled = false;
+    const CleanReport report = clean_cloud(cloud, options);
     EXPECT_GT(removed_by(report, "Fragments"), points.size() / 3);
     ASSERT_EQ(report.warnings.size(), 1U);
     EXPECT_NE(report.warnings[0].find("apart"), std::string::npos) << report.warnings[0];
@@ -340,7 +342,7 @@ TEST(ScanClean, StepsCanBeSwitchedOff) {
     const size_t all = cloud.size();
     CleanOptions options;
     options.remove_extreme_colors = options.remove_outliers = options.remove_fragments =
-        options.remove_ground = false;
+        options.remove_ground = options.pick.enabled = false;
     EXPECT_TRUE(clean_cloud(cloud, options).steps.empty());
     EXPECT_EQ(cloud.size(), all);
     options.remove_fragments = true;

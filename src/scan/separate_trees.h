@@ -1,0 +1,53 @@
+// Which points belong to which tree. Internal to scan/.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "geometry/scan_frame.h"
+#include "scan/clean_steps.h"
+#include "scan/pick_tree.h"
+
+namespace treerec {
+
+// A stem that stands by itself: its slices, from the foot upwards.
+struct Stem {
+    DVec3 foot{0.0};             // tree space
+    DVec2 lean{0.0};             // run over rise, along x and z
+    double radius = 0.0;         // metres, root mean square over its slices
+    bool in_branches = false;    // seen only as the densest spot among low branches
+    std::vector<uint32_t> seed;  // points of its slices
+};
+
+struct Separation {
+    static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+    std::vector<Stem> stems;         // largest tree first; fewer than two: one tree
+    std::vector<uint32_t> of_point;  // index into stems, or kNone: low clutter, parts of trees without a stem
+};
+
+// Two trees count as two only where two stems are seen from the ground up, apart from each other, thick and
+// compact: forks, stems from one stool, hanging and lying branches stay with their tree. Where the cloud is
+// far wider than high and has ground below (an airborne scan), tree tops count instead of stems. Then all
+// trees grow at once over the points, along the shortest way from a stem, so that touching crowns part in
+// between (after Tao et al. 2015, "Segmenting tree crowns from terrestrial and mobile LiDAR data by exploring
+// ecological theories", and Livny et al. 2010, section 4.1).
+// points: distinct, in canonical order, metres, Y up, without ground. spacing: as from find_outliers().
+Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground, double spacing,
+                          const Progress* progress);
+
+// The stems alone; exposed for separate_trees().
+std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
+                             double spacing, bool on_ground, const Progress* progress);
+std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
+                            double spacing, const Progress* progress);
+
+// Which of them to take, with a sentence about it. points, weights (points of the cloud that each stands
+// for): those that were separated. Throws Error where there is no such tree.
+PickReport choose_tree(const Separation& separation, const std::vector<Vec3>& points,
+                       const std::vector<uint32_t>& weights, const ScanFrame& frame,
+                       const PickOptions& options, std::vector<std::string>& warnings);
+
+}  // namespace treerec
