@@ -24,6 +24,7 @@ const char* const kUsage =
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
+    "         --truth FOLDER (of --scans: its STEM_skeleton_corrected*.csv are compared),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
 
 struct CommandLine {
@@ -66,6 +67,8 @@ CommandLine parse(const std::vector<std::string>& words) {
             line.settings.program = value();
         } else if (word == "--sample") {
             line.sample = value();
+        } else if (word == "--truth") {
+            line.settings.truth = value();
         } else if (word == "--table") {
             line.settings.record = value();
         } else if (word.starts_with("--")) {

@@ -6,6 +6,7 @@
 #include "bench.h"
 #include "child.h"
 #include "exchange/tree_files.h"
+#include "fidelity/score.h"
 #include "file_bytes.h"
 
 namespace treerec::bench {
@@ -32,6 +33,17 @@ double short_tips(const Tree& tree) {
     return tips ? static_cast<double>(brief) / static_cast<double>(tips) : 0.0;
 }
 
+// The corrected skeleton of a scan, in the same coordinates: `folder`/STEM_skeleton_corrected….csv; or none.
+std::string truth_of(const std::string& scan, const std::string& folder) {
+    if (folder.empty()) return "";
+    const std::string start = stem_of(scan) + "_skeleton_corrected";
+    for (const auto& entry : std::filesystem::directory_iterator(path_of(folder))) {
+        const std::string path = utf8_of(entry.path());
+        if (extension_of(path) == "csv" && stem_of(path).starts_with(start)) return path;
+    }
+    return "";
+}
+
 std::string last_line(const std::string& text) {
     const size_t end = text.find_last_not_of("\r\n ");
     if (end == std::string::npos) return "";
@@ -43,9 +55,10 @@ std::string last_line(const std::string& text) {
 }  // namespace
 
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings) {
-    std::printf("%-34s %8s %7s %7s %6s %6s %6s %8s %8s %9s %9s %7s %5s\n", "scan", "points", "wall s",
-                "CPU s", "MB", "nodes", "tips", "DBH cm", "height m", "median mm", "in 2 cm %", "<5cm %",
+    std::printf("%-38s %8s %7s %7s %5s %6s %6s %7s %8s %22s %9s %6s %4s", "scan", "points", "wall s", "CPU s",
+                "MB", "nodes", "tips", "DBH cm", "height m", "mm median/mean/p95", "in 2 cm %", "<5cm %",
                 "warn");
+    std::printf(settings.truth.empty() ? "\n" : "  recall precision length %%\n");
     for (const std::string& scan : scans) {
         const ScratchFolder folder;
         const std::string table = folder.file("tree.txt"), report = folder.file("report.json");
@@ -53,18 +66,28 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
         const ChildRun run = run_child({settings.program, "reconstruct", scan, "-o", folder.file("tree.glb"),
                                         "-o", table, "--report", report, "--quiet"});
         if (run.exit_code != 0) {
-            std::printf("%-34s %s\n", name.c_str(), last_line(run.output).c_str());
+            std::printf("%-38s %s\n", name.c_str(), last_line(run.output).c_str());
             continue;
         }
         const Json facts = Json::parse(read_file(report).view());
         const Tree tree = read_skeleton(table);
         const double dbh = facts["dbh_m"].is_number() ? 100.0 * facts["dbh_m"].get<double>() : 0.0;
-        std::printf("%-34s %8zu %7.2f %7.2f %6.0f %6zu %6zu %8.1f %8.2f %9.1f %9.1f %7.1f %5zu\n",
-                    name.c_str(), facts["points_read"].get<size_t>(), run.wall_s, run.cpu_s, run.peak_mb,
+        const Json& fit = facts["fit"];
+        char surface[60];
+        std::snprintf(surface, sizeof surface, "%.1f / %.1f / %.1f", fit["median_mm"].get<double>(),
+                      fit["mean_mm"].get<double>(), fit["p95_mm"].get<double>());
+        std::printf("%-38s %8zu %7.2f %7.2f %5.0f %6zu %6zu %7.1f %8.2f %22s %9.1f %6.1f %4zu", name.c_str(),
+                    facts["points_read"].get<size_t>(), run.wall_s, run.cpu_s, run.peak_mb,
                     facts["nodes"].get<size_t>(), facts["tips"].get<size_t>(), dbh,
-                    facts["height_m"].get<double>(), facts["fit"]["median_mm"].get<double>(),
-                    100.0 * facts["fit"]["explained_2cm"].get<double>(), 100.0 * short_tips(tree),
-                    facts["warnings"].size());
+                    facts["height_m"].get<double>(), surface, 100.0 * fit["explained_2cm"].get<double>(),
+                    100.0 * short_tips(tree), facts["warnings"].size());
+        const std::string truth = truth_of(scan, settings.truth);
+        if (!truth.empty()) {
+            const SkeletonScore score = score_skeleton(tree, read_skeleton(truth));
+            std::printf("  %6.3f %9.3f %+8.1f", score.match.recall, score.match.precision,
+                        100.0 * score.length_error);
+        }
+        std::printf("\n");
         std::fflush(stdout);
     }
 }
