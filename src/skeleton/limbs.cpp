@@ -14,8 +14,6 @@ namespace {
 constexpr double kSurfaceFactor = 1.3;   // times the radius: still the parent's own surface
 constexpr double kSurfaceMargin = 1.0;   // and so many point spacings more: a strip's radius is too small
 constexpr double kSparseBranch = 3.0;    // point spacings that a branch must at least reach out
-constexpr double kWoodLinearity = 0.45;  // mean linearity of a limb's points: no leaves above,
-constexpr double kLeafLinearity = 0.30;  // nothing but leaves below
 constexpr double kStrip = 0.6;           // of the known radius: what spreads less is a strip of bark
 constexpr double kStub = 0.6;            // surface radii that a branch must reach out, likewise
 constexpr double kStrayWood = 0.2;       // of a gap: with less wood beyond it, that is stray points
@@ -151,22 +149,6 @@ int nearest_station(const LimbAxis& axis, int station, const DVec3& p) {
         }
     }
     return station;
-}
-
-// How long a limb along `chain` must be to count.
-double required_length(std::span<const int32_t> chain, const Slices& slices, const LimbOptions& options) {
-    if (options.linearity.empty() || options.leafy_branch <= options.minimum_branch)
-        return options.minimum_branch;
-    double sum = 0.0;
-    double count = 0.0;
-    for (const int32_t slice : chain)
-        for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
-            sum += options.linearity[v];
-            count += 1.0;
-        }
-    const double mean = count > 0.0 ? sum / count : kWoodLinearity;
-    const double leafy = std::clamp((kWoodLinearity - mean) / (kWoodLinearity - kLeafLinearity), 0.0, 1.0);
-    return options.minimum_branch + leafy * (options.leafy_branch - options.minimum_branch);
 }
 
 // A chain that may become a limb.
@@ -364,7 +346,7 @@ class LimbFinder {
         }
         const double length = glm::distance(slices_.centre[chain[0]], axes_[limb].position[fit.attach]) +
                               shape_.longest[chain[0]];
-        if (length < required_length(chain, slices_, options_)) {
+        if (length < options_.minimum_branch) {
             fit.stations.erase(fit.stations.begin(),
                                fit.stations.begin() + static_cast<ptrdiff_t>(fit.inside));
             absorb(chain, chain.size(), limb, fit.stations);

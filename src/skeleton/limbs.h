@@ -22,10 +22,6 @@ struct Limb {
 struct LimbOptions {
     double minimum_branch = 0.05;  // metres from its parent's axis that a limb must be long
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
-    // By point, from neighbourhood_linearity(); empty: no leaves are looked for. A limb whose points lie
-    // about like leaves must be up to leafy_branch (metres) long instead.
-    std::vector<float> linearity;
-    double leafy_branch = 0.0;
     double widest_loop = 0.25;  // metres: what lies further aside is no bark of its parent
 };
 

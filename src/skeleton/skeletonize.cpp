@@ -1,6 +1,5 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
-#include "skeleton/leafiness.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
@@ -22,7 +21,6 @@ constexpr size_t kLeastPoints = 10;
 constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
 constexpr double kLeastBranch = 0.05;   // metres, likewise
 constexpr double kWidestRing = 0.05;    // of the tree's extent
-constexpr double kLeafyShare = 0.05;    // likewise: the shortest branch among leaves
 constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
 constexpr double kRawRadius = 0.002;    // metres
 
@@ -110,8 +108,6 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     clock.stop("Thickness", points.size());
 
     progress.update(0.7, "Branches");
-    limb_options.linearity = neighbourhood_linearity(points, graph, progress);
-    limb_options.leafy_branch = kLeafyShare * extent;
 
     const Slices slices = cut_slices(points, graph, scale, paths, root.position);
     progress.check();

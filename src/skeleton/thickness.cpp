@@ -7,7 +7,7 @@ namespace treerec {
 
 namespace {
 
-constexpr std::array<double, 5> kTrials = {12.0, 6.0, 3.0, 1.5, 0.75};  // times the scale
+constexpr std::array<double, 2> kTrials = {6.0, 1.5};  // times the scale
 constexpr double kFineScale = 0.8;                                      // the final cut of thin wood
 constexpr double kRingScale = 0.4;    // of the radius: the point spacing to assume on thick wood
 constexpr double kOnSurface = 1.3;    // times the radius
