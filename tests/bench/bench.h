@@ -13,6 +13,7 @@ struct Settings {
     std::string beside;               // another program to run beside ours
     std::vector<std::string> args;    // handed to it after scan and folder
     std::string truth;                // the folder of corrected skeletons
+    std::string models;               // the folder of another program's tree files
     int repetitions = 0;              // 0: the benchmark's own
     int seeds = 2;                    // of the synthetic table
     size_t most_points = 10'000'000;  // of the scaling table
@@ -24,7 +25,8 @@ void bench_stages(const std::string& scan, const Settings& settings);
 void bench_scaling(const std::string& scan, const Settings& settings);
 // Whole runs of ours and of another program in turns.
 void bench_beside(const std::vector<std::string>& scans, const Settings& settings);
-// One line per real scan; with recall, precision and length where there is a corrected skeleton.
+// One line per real scan; with recall, precision and length where there is a corrected skeleton,
+// and with another program's tree of the same scan below.
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings);
 // Precision, recall, radius and DBH errors on grown trees.
 void bench_synth(const Settings& settings);

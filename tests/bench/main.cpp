@@ -25,6 +25,7 @@ const char* const kUsage =
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
     "         --truth FOLDER (of --scans: its STEM_skeleton_corrected*.csv are compared),\n"
+    "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
 
 struct CommandLine {
@@ -69,6 +70,8 @@ CommandLine parse(const std::vector<std::string>& words) {
             line.sample = value();
         } else if (word == "--truth") {
             line.settings.truth = value();
+        } else if (word == "--models") {
+            line.settings.models = value();
         } else if (word == "--table") {
             line.settings.record = value();
         } else if (word.starts_with("--")) {

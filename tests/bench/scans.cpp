@@ -8,6 +8,8 @@
 #include "exchange/tree_files.h"
 #include "fidelity/score.h"
 #include "file_bytes.h"
+#include "scan/read_cloud.h"
+#include "tree/measure.h"
 
 namespace treerec::bench {
 
@@ -52,12 +54,32 @@ std::string last_line(const std::string& text) {
                        end - (start == std::string::npos ? 0 : start + 1) + 1);
 }
 
+struct Place {
+    const PointCloud& cloud;
+    std::string truth;  // the corrected skeleton's file, or none
+};
+
+// What can be said about any program's tree: from its surface on.
+void print_fit(const Tree& tree, const Place& place) {
+    const ScanScore fit = score_scan(tree, place.cloud);
+    char surface[60];
+    std::snprintf(surface, sizeof surface, "%.1f / %.1f / %.1f", fit.median_mm, fit.mean_mm, fit.p95_mm);
+    const Measurements m = measure(tree);
+    std::printf(" %6zu %6zu %7.1f %8.2f %22s %9.1f %6.1f", m.nodes, m.tips, 100.0 * m.dbh, m.height, surface,
+                100.0 * fit.explained_2cm, 100.0 * short_tips(tree));
+    if (place.truth.empty()) return;
+    const SkeletonScore score = score_skeleton(tree, read_skeleton(place.truth));
+    std::printf("  %6.3f %9.3f %+8.1f", score.match.recall, score.match.precision,
+                100.0 * score.length_error);
+}
+
 }  // namespace
 
+// Surface figures are of all the scan's points, also of those that cleaning removes.
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings) {
-    std::printf("%-38s %8s %7s %7s %5s %6s %6s %7s %8s %22s %9s %6s %4s", "scan", "points", "wall s", "CPU s",
-                "MB", "nodes", "tips", "DBH cm", "height m", "mm median/mean/p95", "in 2 cm %", "<5cm %",
-                "warn");
+    std::printf("%-38s %8s %7s %7s %5s %4s %6s %6s %7s %8s %22s %9s %6s", "scan", "points", "wall s", "CPU s",
+                "MB", "warn", "nodes", "tips", "DBH cm", "height m", "mm median/mean/p95", "in 2 cm %",
+                "<5cm %");
     std::printf(settings.truth.empty() ? "\n" : "  recall precision length %%\n");
     for (const std::string& scan : scans) {
         const ScratchFolder folder;
@@ -70,24 +92,18 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
             continue;
         }
         const Json facts = Json::parse(read_file(report).view());
-        const Tree tree = read_skeleton(table);
-        const double dbh = facts["dbh_m"].is_number() ? 100.0 * facts["dbh_m"].get<double>() : 0.0;
-        const Json& fit = facts["fit"];
-        char surface[60];
-        std::snprintf(surface, sizeof surface, "%.1f / %.1f / %.1f", fit["median_mm"].get<double>(),
-                      fit["mean_mm"].get<double>(), fit["p95_mm"].get<double>());
-        std::printf("%-38s %8zu %7.2f %7.2f %5.0f %6zu %6zu %7.1f %8.2f %22s %9.1f %6.1f %4zu", name.c_str(),
-                    facts["points_read"].get<size_t>(), run.wall_s, run.cpu_s, run.peak_mb,
-                    facts["nodes"].get<size_t>(), facts["tips"].get<size_t>(), dbh,
-                    facts["height_m"].get<double>(), surface, 100.0 * fit["explained_2cm"].get<double>(),
-                    100.0 * short_tips(tree), facts["warnings"].size());
-        const std::string truth = truth_of(scan, settings.truth);
-        if (!truth.empty()) {
-            const SkeletonScore score = score_skeleton(tree, read_skeleton(truth));
-            std::printf("  %6.3f %9.3f %+8.1f", score.match.recall, score.match.precision,
-                        100.0 * score.length_error);
-        }
+        const PointCloud cloud = read_cloud(scan);
+        const Place place{cloud, truth_of(scan, settings.truth)};
+        std::printf("%-38s %8zu %7.2f %7.2f %5.0f %4zu", name.c_str(), facts["points_read"].get<size_t>(),
+                    run.wall_s, run.cpu_s, run.peak_mb, facts["warnings"].size());
+        print_fit(read_skeleton(table), place);
         std::printf("\n");
+        const std::string other = settings.models + "/" + stem_of(scan) + ".txt";
+        if (!settings.models.empty() && std::filesystem::exists(path_of(other))) {
+            std::printf("  %-36s %8s %7s %7s %5s %4s", "the other program's", "", "", "", "", "");
+            print_fit(read_skeleton(other), place);
+            std::printf("\n");
+        }
         std::fflush(stdout);
     }
 }
