@@ -57,6 +57,15 @@ void write_scale(ParsedOptions& r_options, const Variant& p_value) {
     }
 }
 
+bool are_finite(const PackedFloat64Array& p_numbers) {
+    for (int64_t i = 0; i < p_numbers.size(); i++) {
+        if (!std::isfinite(p_numbers[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 Variant read_known_height(const ParsedOptions& p_options) {
     return p_options.pipeline.orient.known_height.value_or(0.0);
 }
@@ -88,11 +97,7 @@ void write_known_length(ParsedOptions& r_options, const Variant& p_value) {
     if (numbers.is_empty()) {
         return;
     }
-    bool finite = true;
-    for (int64_t i = 0; i < numbers.size(); i++) {
-        finite = finite && std::isfinite(numbers[i]);
-    }
-    if (numbers.size() != 7 || !finite) {
+    if (numbers.size() != 7 || !are_finite(numbers)) {
         throw treerec::Error(
             "The option \"known_length\" must be seven numbers: two places in the scan and the metres "
             "between "
@@ -100,6 +105,40 @@ void write_known_length(ParsedOptions& r_options, const Variant& p_value) {
     }
     const double* n = numbers.ptr();
     r_options.pipeline.orient.known_length = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]};
+}
+
+Variant read_tree_number(const ParsedOptions& p_options) {
+    return int64_t(p_options.pipeline.clean.pick.number);
+}
+
+void write_tree_number(ParsedOptions& r_options, const Variant& p_value) {
+    const int64_t number = p_value;
+    if (number < 1) {
+        throw treerec::Error("The option \"tree_number\" must be 1, the largest tree, or more.");
+    }
+    r_options.pipeline.clean.pick.number = size_t(number);
+}
+
+Variant read_tree_position(const ParsedOptions& p_options) {
+    PackedFloat64Array numbers;
+    if (const std::optional<treerec::DVec3>& position = p_options.pipeline.clean.pick.position) {
+        for (int axis = 0; axis < 3; axis++) {
+            numbers.push_back((*position)[axis]);
+        }
+    }
+    return numbers;
+}
+
+void write_tree_position(ParsedOptions& r_options, const Variant& p_value) {
+    const PackedFloat64Array numbers = p_value;
+    r_options.pipeline.clean.pick.position.reset();
+    if (numbers.is_empty()) {
+        return;
+    }
+    if (numbers.size() != 3 || !are_finite(numbers)) {
+        throw treerec::Error("The option \"tree_position\" must be three numbers: a place in the scan.");
+    }
+    r_options.pipeline.clean.pick.position = treerec::DVec3(numbers[0], numbers[1], numbers[2]);
 }
 
 Variant read_columns(const ParsedOptions& p_options) {
@@ -152,6 +191,13 @@ const Option kOptions[] = {
      "Removes small clusters of points far from the rest."},
     {"remove_ground", OPTION_MEMBER(clean.remove_ground, bool), PROPERTY_HINT_NONE, "",
      "Removes the ground that the tree stands on."},
+    {"separate_trees", OPTION_MEMBER(clean.pick.enabled, bool), PROPERTY_HINT_NONE, "",
+     "Takes one tree where the scan holds several; without it everything in the scan is one tree."},
+    {"tree_number", read_tree_number, write_tree_number, PROPERTY_HINT_RANGE, "1,100,1,or_greater",
+     "Which of several trees: 1 is the largest, 2 the next."},
+    {"tree_position", read_tree_position, write_tree_position, PROPERTY_HINT_NONE, "",
+     "Which of several trees: the one that stands nearest to this place in the scan (x, y, z). Empty goes by "
+     "the number."},
     {"tell_leaves", OPTION_MEMBER(tell_leaves, bool), PROPERTY_HINT_NONE, "",
      "Tells leaves from wood: the skeleton follows the wood, and the leaves become foliage."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",

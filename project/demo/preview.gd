@@ -28,6 +28,8 @@ const _OPTIONS: Dictionary[String, String] = {
 	"--scale": "scale",
 	"--height": "known_height",
 	"--length": "known_length",
+	"--tree": "tree_number",
+	"--tree-at": "tree_position",
 	"--spacing": "spacing",
 	"--columns": "columns",
 }
@@ -37,6 +39,7 @@ const _SWITCHES: Dictionary[String, Array] = {
 	"--no-clean-outliers": ["remove_outliers"],
 	"--no-clean-fragments": ["remove_fragments"],
 	"--no-clean-ground": ["remove_ground"],
+	"--one-tree": ["separate_trees"],
 	"--all-wood": ["tell_leaves"],
 	"--quiet": [],
 }
@@ -101,12 +104,12 @@ func _read_arguments() -> bool:
 		i += 1
 		if _arguments.has(name):
 			_arguments[name] = value
-		elif name == "--seed":
-			_options["seed"] = value.to_int()
+		elif name in ["--seed", "--tree"]:
+			_options[_OPTIONS[name]] = value.to_int()
 		elif name in ["--scale", "--height", "--spacing"]:
 			_options[_OPTIONS[name]] = value.to_float()
-		elif name == "--length":
-			_options["known_length"] = PackedFloat64Array(value.split_floats(","))
+		elif name in ["--length", "--tree-at"]:
+			_options[_OPTIONS[name]] = PackedFloat64Array(value.split_floats(","))
 		else:
 			_options[_OPTIONS[name]] = value
 	if _arguments["--scan"].is_empty() or _arguments["--out"].is_empty():

@@ -28,27 +28,46 @@ auto as_usage(Call call) {
     }
 }
 
-// "x,y,z,x,y,z,metres".
-KnownLength known_length_from(const Arguments& arguments) {
-    const std::string word = arguments.text("--length", "");
-    std::array<double, 7> values{};
-    const char *at = word.data(), *const end = at + word.size();
-    for (size_t i = 0; i < values.size(); i++) {
+// "1,2.5,3": so many finite numbers. `as_in` is an example for the user.
+template <size_t kCount>
+std::array<double, kCount> numbers_from(const Arguments& arguments, const std::string& option,
+                                        const std::string& as_in) {
+    const std::string word = arguments.text(option, "");
+    std::array<double, kCount> values{};
+    const char* at = word.data();
+    const char* const end = at + word.size();
+    for (size_t i = 0; i < kCount; i++) {
         const auto [next, failure] = std::from_chars(at, end, values[i]);
-        const bool last = i + 1 == values.size();
-        if (failure != std::errc() || !std::isfinite(values[i]) ||
-            (last ? next != end : next == end || *next != ','))
-            throw UsageError(
-                "--length needs seven numbers, as in 0,0,0,0,0,5.2,1.8: two places in the scan's "
-                "coordinates and the metres between them. Not '" +
-                word + "'.");
+        const bool last = i + 1 == kCount;
+        const bool ends_well = last ? next == end : next != end && *next == ',';
+        if (failure != std::errc() || !std::isfinite(values[i]) || !ends_well)
+            throw UsageError(option + " needs " + std::to_string(kCount) + " numbers, as in " + as_in +
+                             ", not '" + word + "'.");
         at = last ? next : next + 1;
     }
-    const auto& v = values;
+    return values;
+}
+
+KnownLength known_length_from(const Arguments& arguments) {
+    const auto v =
+        numbers_from<7>(arguments, "--length", "0,0,0,0,0,5.2,1.8 (two places and the metres between)");
     const KnownLength known{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
     if (!(known.metres > 0.0) || known.from == known.to)
         throw UsageError("--length needs two different places, and a length above 0.");
     return known;
+}
+
+PickOptions pick_from(const Arguments& arguments) {
+    if (arguments.has("--one-tree") + arguments.has("--tree") + arguments.has("--tree-at") > 1)
+        throw UsageError("--one-tree, --tree and --tree-at say which tree is meant; give one of them.");
+    PickOptions pick;
+    pick.enabled = !arguments.has("--one-tree");
+    pick.number = arguments.whole("--tree", 1, 1, 1000000);
+    if (arguments.has("--tree-at")) {
+        const auto place = numbers_from<3>(arguments, "--tree-at", "12.5,3,0");
+        pick.position = DVec3(place[0], place[1], place[2]);
+    }
+    return pick;
 }
 
 ReconstructOptions options_from(const Arguments& arguments) {
@@ -68,6 +87,7 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_outliers = clean && !arguments.has("--no-clean-outliers");
     options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
+    options.clean.pick = pick_from(arguments);
     options.tell_leaves = !arguments.has("--all-wood");
     // Enough for the summary; a report tells more exactly.
     if (!arguments.has("--report")) options.score_points = 4000;
@@ -140,6 +160,9 @@ const Command& reconstruct_command() {
          {"--no-clean-outliers", "", "lone points stay"},
          {"--no-clean-fragments", "", "small far clusters stay"},
          {"--no-clean-ground", "", "the ground stays"},
+         {"--tree", "N", "which of several trees: 1 is the largest (default 1)"},
+         {"--tree-at", "X,Y,Z", "the tree that stands nearest to this place in the scan"},
+         {"--one-tree", "", "there is only one tree; nothing is taken for another one"},
          {"--all-wood", "", "leaves are not told from wood: every point is followed"},
          {"--quiet", "", "print errors and warnings only"}},
         "SCAN: PLY, text (.xyz .txt .asc .pts .csv) or LAS."};

@@ -33,6 +33,10 @@ void add_measurements(Json& json, const Measurements& m) {
     json["measured_share"] = m.measured_share;
 }
 
+Json vector_json(const DVec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
 Json options_json(const ReportDetails& details) {
     const ReconstructOptions& options = details.options;
     Json clean;
@@ -50,6 +54,10 @@ Json options_json(const ReportDetails& details) {
     json["columns"] = options.read.columns;
     json["leaves"] = details.leaves;
     json["tell_leaves"] = options.tell_leaves;
+    const PickOptions& pick = options.clean.pick;
+    json["tree"] = !pick.enabled || pick.position ? Json(nullptr) : Json(pick.number);
+    json["tree_at"] = pick.position ? vector_json(*pick.position) : Json(nullptr);
+    json["one_tree"] = !pick.enabled;
     json["clean"] = clean;
     return json;
 }
@@ -91,6 +99,9 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["points_read"] = result.points_read;
     json["points"] = result.cloud.size();
     json["leaf_points"] = result.leaf_points;
+    json["leaf_share"] = result.cloud.empty() ? 0.0
+                                              : static_cast<double>(result.leaf_points) /
+                                                    static_cast<double>(result.cloud.size());
     json["foliage_cells"] = result.foliage.cells.size();
     Json removed = Json::object();
     for (const CleanStep& step : result.clean.steps)
@@ -101,8 +112,13 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["metres_per_unit"] = result.orient.metres_per_unit;
     json["scale_guessed"] = result.orient.scale_guessed;
     json["scale_unknown"] = result.orient.scale_unknown;
-    const DVec3& origin = result.tree.frame().origin;
-    json["origin"] = {origin.x, origin.y, origin.z};
+    json["origin"] = vector_json(result.tree.frame().origin);
+    Json trees = Json::array();
+    for (const StandingTree& tree : result.clean.pick.trees)
+        trees.push_back(
+            {{"foot", vector_json(tree.foot)}, {"height_m", tree.height}, {"points", tree.points}});
+    json["trees"] = trees;
+    json["tree_taken"] = trees.empty() ? Json(nullptr) : Json(result.clean.pick.taken + 1);
     json["spacing_m"] = result.spacing;
     Json stages = Json::array();
     double total = 0.0;

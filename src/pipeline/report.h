@@ -18,16 +18,22 @@ struct ReportDetails {
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
-//   format_version 1, version, scan, scan_format, seed, options {up, scale, known_height_m, known_length_m,
-//   spacing_m, columns, leaves, tell_leaves, clean}
-//   points_read, points (after cleaning), leaf_points (of these), foliage_cells, removed {step: points}
+//   format_version 1, version, scan, scan_format, seed
+//   options {up, scale, known_height_m, known_length_m, spacing_m, columns, leaves, tell_leaves,
+//     tree (number; null where a place or no tree was asked for), tree_at [x y z], one_tree, clean}
+//   points_read, points (after cleaning), leaf_points and leaf_share (of these), foliage_cells,
+//   removed {step: points}
 //   up, up_detected, metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
-//   its scale), origin [x y z in scan coordinates], spacing_m
+//   its scale), origin [x y z in scan coordinates]
+//   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
+//   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
-//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than
-//   breast height, or without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3,
-//   measured_share, triangles, leaves fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned
-//   points and the bark (fidelity/score.h) warnings [sentence]
+//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than breast
+//   height, or without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3,
+//   measured_share, triangles, leaves
+//   fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark
+//   (fidelity/score.h)
+//   warnings [sentence]
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // The measurements alone, with the keys above.

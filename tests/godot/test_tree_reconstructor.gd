@@ -89,6 +89,8 @@ func test_bad_options_get_a_sentence() -> void:
 		{"up": "sideways"},
 		{"seed": "seven"},
 		{"scale": -3.0},
+		{"tree_number": 0},
+		{"tree_position": PackedFloat64Array([1.0, NAN, 2.0])},
 		{"known_height": -1.0},
 		{"known_height": 5.0, "scale": 1.0},
 		{"known_length": PackedFloat64Array([1.0, 2.0, 3.0])},

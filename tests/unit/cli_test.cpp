@@ -182,6 +182,37 @@ TEST_F(Cli, AKnownLengthSetsTheScale) {
     EXPECT_EQ(length["options"]["known_length_m"], 15.0);
 }
 
+TEST_F(Cli, TakesTheTreeThatIsAskedFor) {
+    // The same tree twice, and once more a third smaller.
+    std::string text;
+    for (const DVec3& p : small_scan()) {
+        for (const auto& [x, size] : {std::pair(0.0, 1.0), std::pair(12.0, 1.3), std::pair(24.0, 0.9)}) {
+            char line[100];
+            std::snprintf(line, sizeof line, "%.4f %.4f %.4f\n", size * p.x + x, size * p.y, size * p.z);
+            text += line;
+        }
+    }
+    put("s.xyz", text);
+    const auto foot_of = [&](const std::string& options) {
+        const Outcome outcome =
+            run("reconstruct s.xyz -o out/a.txt --report out/a.json --scale 1 --up z --quiet " + options);
+        EXPECT_EQ(outcome.code, 0) << outcome.error;
+        return nlohmann::json::parse(get("out/a.json"));
+    };
+    const auto largest = foot_of("");
+    ASSERT_EQ(largest["trees"].size(), 3u);
+    EXPECT_EQ(largest["tree_taken"], 1);
+    EXPECT_NEAR(largest["origin"][0].get<double>(), 12.0, 0.5);
+    EXPECT_NEAR(foot_of("--tree 3")["origin"][0].get<double>(), 24.0, 0.5);
+    const auto nearest = foot_of("--tree-at 1,-0.5,0");
+    EXPECT_NEAR(nearest["origin"][0].get<double>(), 0.0, 0.5);
+    EXPECT_EQ(nearest["options"]["tree_at"][1], -0.5);
+    EXPECT_EQ(run("reconstruct s.xyz -o out/b.txt --tree 9").code, 1);
+    const auto one = foot_of("--one-tree");
+    EXPECT_TRUE(one["trees"].empty());
+    EXPECT_TRUE(one["tree_taken"].is_null());
+}
+
 TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
     put("c.xyz", "1 2 3\n");
     put("c.txt", "1 2 3\n");
@@ -203,6 +234,9 @@ TEST_F(Cli, AWrongCommandLineExitsWithTwo) {
                               "reconstruct c.xyz -o out/a.glb --up w",
                               "reconstruct c.xyz -o out/a.glb --scale 0",
                               "reconstruct c.xyz -o out/a.glb --scale nan",
+                              "reconstruct c.xyz -o out/a.glb --tree 0",
+                              "reconstruct c.xyz -o out/a.glb --tree-at 1,2",
+                              "reconstruct c.xyz -o out/a.glb --tree-at 1,2,3 --tree 2",
                               "reconstruct c.xyz -o out/a.glb --height 0",
                               "reconstruct c.xyz -o out/a.glb --height 5 --scale 1",
                               "reconstruct c.xyz -o out/a.glb --length 1,2,3,4",
