@@ -23,6 +23,9 @@ struct Settings {
 void bench_stages(const std::string& scan, const Settings& settings);
 // Whole runs of 10k to 10M points, made from one scan.
 void bench_scaling(const std::string& scan, const Settings& settings);
+// The clouds of that table: a random part of the scan, or copies of it with 5 cm jitter, in any format that
+// write_cloud() knows.
+void write_resized(const std::string& scan, size_t count, const std::string& path);
 // Whole runs of ours and of another program in turns.
 void bench_beside(const std::vector<std::string>& scans, const Settings& settings);
 // One line per real scan; with recall, precision and length where there is a corrected skeleton,

@@ -18,6 +18,7 @@ using namespace treerec::bench;
 const char* const kUsage =
     "usage: bench [options] [SCAN…]            time and memory of every stage\n"
     "       bench --scaling [SCAN]             whole runs of 10k to 10M points made from a scan\n"
+    "       bench --resize N OUT SCAN          makes such a cloud, to look at or to run --beside on\n"
     "       bench --scans [SCAN…|FOLDER]       one line per scan: time, memory, measurements, fit\n"
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
@@ -31,6 +32,7 @@ const char* const kUsage =
 struct CommandLine {
     std::string mode;
     std::string sample;
+    std::string out;  // of --resize
     std::vector<std::string> scans;
     Settings settings;
 };
@@ -54,10 +56,14 @@ CommandLine parse(const std::vector<std::string>& words) {
             break;
         }
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--guard" ||
-            word == "--record" || word == "--beside" || word == "--help") {
+            word == "--record" || word == "--beside" || word == "--resize" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
+            if (word == "--resize") {
+                line.settings.most_points = whole(value());
+                line.out = value();
+            }
         } else if (word == "--repetitions") {
             line.settings.repetitions = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
         } else if (word == "--seeds") {
@@ -120,6 +126,10 @@ int run(CommandLine line) {
     if (line.scans.empty() && !line.sample.empty()) line.scans.push_back(line.sample);
     const std::vector<std::string> scans = files_of(line.scans);
     if (scans.empty()) throw Error("Name a scan.");
+    if (line.mode == "--resize") {
+        write_resized(scans.front(), line.settings.most_points, line.out);
+        return EXIT_SUCCESS;
+    }
     if (!line.mode.empty() && line.settings.program.empty())
         throw Error("Name the treerec program with --program.");
     if (line.mode == "--beside") {

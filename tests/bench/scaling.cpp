@@ -38,11 +38,12 @@ PointCloud resized(const PointCloud& scan, size_t count) {
     return cloud;
 }
 
+}  // namespace
+
 void write_resized(const std::string& scan, size_t count, const std::string& path) {
+    if (count < 10) throw Error("A cloud needs at least 10 points.");
     write_cloud(path, resized(read_cloud(scan), count));
 }
-
-}  // namespace
 
 void bench_scaling(const std::string& scan, const Settings& settings) {
     const ScratchFolder folder;
