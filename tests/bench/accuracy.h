@@ -16,8 +16,11 @@ struct AccuracyCase {
     double noise = 0.0;      // metres
     double occlusion = 0.0;  // share of every view
     double leaves = 0.0;     // share of full foliage
-    size_t points = 30000;
+    size_t points = 20000;
 };
+
+// What a scanner of one resolution gets: leaves return beams that would pass a winter tree by.
+size_t points_for(Habit habit, double leaves, size_t bare_points);
 
 inline constexpr size_t kThicknessClasses = 5;  // as SkeletonScore::radius_by_thickness
 

@@ -10,6 +10,7 @@ namespace treerec::bench {
 
 namespace {
 
+constexpr size_t kBarePoints = 20000;  // without leaves
 constexpr double kNoises[] = {0.0, 0.01, 0.02};
 constexpr double kOcclusions[] = {0.0, 0.3, 0.6};
 constexpr double kLeaves[] = {0.0, 0.4, 0.8};
@@ -104,9 +105,10 @@ bool fails_against_better(std::vector<AccuracyRow> rows) {
 
 void bench_synth(const Settings& settings) {
     std::printf(
-        "Grown trees, %d of each habit in each setting, 30000 points, no colours. Precision and recall of "
-        "length within the\nlarger of 1 cm and the radius.\n\n",
-        settings.seeds);
+        "Grown trees, %d of each habit in each setting, no colours; %zu points without leaves, up to %zu "
+        "with them.\n"
+        "Precision and recall of length within the larger of 1 cm and the radius.\n\n",
+        settings.seeds, kBarePoints, points_for(Habit::kBroadleaf, 0.8, kBarePoints));
     print_header("habit");
     std::vector<AccuracyRow> rows;
     for (Habit habit : all_habits())
@@ -115,8 +117,8 @@ void bench_synth(const Settings& settings) {
                 for (double leaves : kLeaves) {
                     std::vector<AccuracyRow> same;
                     for (int seed = 1; seed <= settings.seeds; seed++)
-                        same.push_back(measure_accuracy(
-                            {habit, static_cast<uint64_t>(seed), noise, occlusion, leaves, 30000}));
+                        same.push_back(measure_accuracy({habit, static_cast<uint64_t>(seed), noise, occlusion,
+                                                         leaves, points_for(habit, leaves, kBarePoints)}));
                     print_row(habit_name(habit), &same.front().setting, mean_of(same));
                     for (const AccuracyRow& row : same)
                         if (!row.failure.empty()) std::printf("  %s\n", row.failure.c_str());
