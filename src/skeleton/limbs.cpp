@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "geometry/segment.h"
+
 namespace treerec {
 
 namespace {
@@ -292,6 +294,14 @@ class LimbFinder {
         limbs_.push_back(std::move(limb));
     }
 
+    // From the way between the parent's axis and the limb's first station.
+    double distance_from_base(int32_t limb, const DVec3& p) const {
+        const DVec3& first = axes_[limb].position[0];
+        if (limbs_[limb].parent < 0) return glm::distance(first, p);
+        const DVec3& fork = axes_[limbs_[limb].parent].position[limbs_[limb].attach];
+        return distance_to_segment(p, fork, first);
+    }
+
     Fit lay_along(std::span<const int32_t> chain, int32_t limb, int32_t station) const {
         const LimbAxis& axis = axes_[limb];
         double spacing = 0.0;
@@ -307,7 +317,9 @@ class LimbFinder {
             const DVec3& centre = slices_.centre[chain[i]];
             station = nearest_station(axis, station, centre);
             fit.stations.push_back(station);
-            escapes.push_back(glm::distance(centre, axis.position[station]) - axis.surface[station]);
+            const double aside = station == 0 ? distance_from_base(limb, centre)
+                                              : glm::distance(centre, axis.position[station]);
+            escapes.push_back(aside - axis.surface[station]);
             if (out == chain.size() && escapes[i] >= std::max(least_escape, kStub * axis.surface[station]))
                 out = i;
         }

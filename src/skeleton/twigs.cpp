@@ -8,6 +8,7 @@
 
 #include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/segment.h"
 
 namespace treerec {
 
@@ -27,13 +28,6 @@ constexpr float kGather = 0.5f;            // point spacings: points so near to 
 constexpr size_t kOthers = 6;         // stations of any limb, nearest to a point
 constexpr int kLookAround = 2;        // stations to each side
 
-double distance_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
-    const DVec3 ab = b - a;
-    const double square = glm::dot(ab, ab);
-    t = square > 0.0 ? std::clamp(glm::dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
-    return glm::distance(p, a + t * ab);
-}
-
 // Where a point lies against a line of stations.
 struct Place {
     int32_t station = 0;
@@ -47,7 +41,7 @@ Place place_near(const std::vector<Station>& line, int32_t station, const DVec3&
     Place best{station, glm::distance(line[station].position, p), line[station].radius};
     for (int32_t i = std::max(0, station - kLookAround); i < std::min(last, station + kLookAround); i++) {
         double t;
-        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, t);
+        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, &t);
         if (distance < best.distance)
             best = {t < 0.5 ? i : i + 1, distance,
                     line[i].radius + t * (line[i + 1].radius - line[i].radius)};
@@ -106,6 +100,15 @@ class TwigFinder {
                 stations.emplace_back(axes_[l][i].position);
                 names.emplace_back(static_cast<int32_t>(l), static_cast<int32_t>(i));
             }
+        // And along the way from each fork to its limb's first station.
+        for (size_t l = 0; l < axes_.size(); l++) {
+            if (limbs_[l].parent < 0) continue;
+            const DVec3& fork = axes_[limbs_[l].parent][limbs_[l].attach].position;
+            for (const double t : {0.25, 0.5, 0.75}) {
+                stations.emplace_back(fork + t * (axes_[l][0].position - fork));
+                names.emplace_back(static_cast<int32_t>(l), 0);
+            }
+        }
         const KdPoints kd_points{stations};
         const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
@@ -159,9 +162,8 @@ class TwigFinder {
         const std::vector<Station>& line = axes_[limb];
         Place place = place_near(line, at, p);
         if (at > 0 || limbs_[limb].parent < 0) return place;
-        double t;
         const DVec3& fork = axes_[limbs_[limb].parent][limbs_[limb].attach].position;
-        const double distance = distance_to_segment(p, fork, line[0].position, t);
+        const double distance = distance_to_segment(p, fork, line[0].position);
         if (distance < place.distance) place = {0, distance, line[0].radius};
         return place;
     }
