@@ -13,15 +13,15 @@ namespace treerec {
 
 namespace {
 
-constexpr double kSurfaceFactor = 1.3;   // times the radius: still the parent's own surface
-constexpr double kSurfaceMargin = 1.0;   // and so many point spacings more: a strip's radius is too small
-constexpr double kSparseBranch = 3.0;    // point spacings that a branch must at least reach out
-constexpr double kStrip = 0.6;           // of the known radius: what spreads less is a strip of bark
-constexpr double kStub = 0.6;            // surface radii that a branch must reach out, likewise
-constexpr double kStrayWood = 0.2;       // of a gap: with less wood beyond it, that is stray points
-constexpr double kLoopLength = 2.0;      // times its width that a loop of bark must at least be long
-constexpr int kSameFork = 5;             // stations
-constexpr int kSmoothWindow = 2;         // stations to each side
+constexpr double kSurfaceFactor = 1.3;  // times the radius: still the parent's own surface
+constexpr double kSurfaceMargin = 1.0;  // and so many point spacings more: a strip's radius is too small
+constexpr double kSparseBranch = 3.0;   // point spacings that a branch must at least reach out
+constexpr double kStrip = 0.6;          // of the known radius: what spreads less is a strip of bark
+constexpr double kStub = 0.6;           // surface radii that a branch must reach out, likewise
+constexpr double kStrayWood = 0.2;      // of a gap: with less wood beyond it, that is stray points
+constexpr double kLoopLength = 2.0;     // times its width that a loop of bark must at least be long
+constexpr int kSameFork = 5;            // stations
+constexpr int kSmoothWindow = 2;        // stations to each side
 
 // First figures for each slice, before any fit.
 struct SliceShape {

@@ -22,7 +22,7 @@ struct Limb {
 struct LimbOptions {
     double minimum_branch = 0.05;  // metres from its parent's axis that a limb must be long
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
-    double widest_loop = 0.25;  // metres: what lies further aside is no bark of its parent
+    double widest_loop = 0.25;     // metres: what lies further aside is no bark of its parent
 };
 
 // Splits the tree of slices at its forks; the child with the longest way to a tip continues the limb. A side

@@ -1,5 +1,6 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
+#include "skeleton/bark.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
@@ -119,6 +120,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     straighten_stems(limbs, axes);
     clock.stop("Radii", limbs.size());
     infer_radii(axes, limbs);
+    drop_strips(limbs, axes, limb_options.least_escape);
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = limb_options.least_escape;

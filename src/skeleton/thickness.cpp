@@ -8,7 +8,7 @@ namespace treerec {
 namespace {
 
 constexpr std::array<double, 2> kTrials = {6.0, 1.5};  // times the scale
-constexpr double kFineScale = 0.8;                                      // the final cut of thin wood
+constexpr double kFineScale = 0.8;                     // the final cut of thin wood
 constexpr double kRingScale = 0.4;    // of the radius: the point spacing to assume on thick wood
 constexpr double kOnSurface = 1.3;    // times the radius
 constexpr double kLeastRadius = 1.0;  // trial spacings: a thinner circle is believed to a finer trial only

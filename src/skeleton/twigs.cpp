@@ -1,14 +1,11 @@
 #include "skeleton/twigs.h"
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <queue>
 #include <utility>
 
-#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
-#include "geometry/segment.h"
+#include "skeleton/bark.h"
 
 namespace treerec {
 
@@ -18,36 +15,12 @@ constexpr double kTolerance = 0.12;        // point spacings off the bark: still
 constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;  // of the radius, likewise
-constexpr double kStub = 0.6;        // radii that a twig must reach out of thick wood
 constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.5;     // tolerances
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
-constexpr float kGather = 0.5f;            // point spacings: points so near to a path are one with it
-constexpr size_t kOthers = 6;         // stations of any limb, nearest to a point
-constexpr int kLookAround = 2;        // stations to each side
-
-// Where a point lies against a line of stations.
-struct Place {
-    int32_t station = 0;
-    double distance = 0.0;  // metres to the axis
-    double radius = 0.0;    // metres, of the line there
-};
-
-// The nearest place on the line within kLookAround stations of `station`.
-Place place_near(const std::vector<Station>& line, int32_t station, const DVec3& p) {
-    const int32_t last = static_cast<int32_t>(line.size()) - 1;
-    Place best{station, glm::distance(line[station].position, p), line[station].radius};
-    for (int32_t i = std::max(0, station - kLookAround); i < std::min(last, station + kLookAround); i++) {
-        double t;
-        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, &t);
-        if (distance < best.distance)
-            best = {t < 0.5 ? i : i + 1, distance,
-                    line[i].radius + t * (line[i + 1].radius - line[i].radius)};
-    }
-    return best;
-}
+constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
 
 class TwigFinder {
   public:
@@ -61,6 +34,7 @@ class TwigFinder {
           options_(options),
           limbs_(limbs),
           axes_(axes),
+          bark_(limbs, axes),
           line_(points.size(), -1),
           station_(points.size(), 0),
           outside_(points.size(), 0.0f),
@@ -70,7 +44,7 @@ class TwigFinder {
     void take_slices(const Slices& slices) {
         auto take = [&](int32_t slice, int32_t limb, int32_t at) {
             for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
-                claim(v, limb, place_on_limb(limb, at, DVec3(points_[v])));
+                claim(v, bark_.on_limb(limb, at, DVec3(points_[v])));
         };
         for (size_t l = 0; l < limbs_.size(); l++) {
             const Limb& limb = limbs_[l];
@@ -93,40 +67,14 @@ class TwigFinder {
 
     // Around a fork, a slice of one limb has points on the bark of another.
     void find_others() {
-        std::vector<Vec3> stations;
-        std::vector<std::pair<int32_t, int32_t>> names;
-        for (size_t l = 0; l < axes_.size(); l++)
-            for (size_t i = 0; i < axes_[l].size(); i++) {
-                stations.emplace_back(axes_[l][i].position);
-                names.emplace_back(static_cast<int32_t>(l), static_cast<int32_t>(i));
-            }
-        // And along the way from each fork to its limb's first station.
-        for (size_t l = 0; l < axes_.size(); l++) {
-            if (limbs_[l].parent < 0) continue;
-            const DVec3& fork = axes_[limbs_[l].parent][limbs_[l].attach].position;
-            for (const double t : {0.25, 0.5, 0.75}) {
-                stations.emplace_back(fork + t * (axes_[l][0].position - fork));
-                names.emplace_back(static_cast<int32_t>(l), 0);
-            }
-        }
-        const KdPoints kd_points{stations};
-        const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
-            std::array<uint32_t, kOthers> index;
-            std::array<float, kOthers> squared;
             for (size_t v = begin; v < end; v++) {
                 if (line_[v] >= 0) continue;
-                const size_t found = tree.knnSearch(&points_[v].x, kOthers, index.data(), squared.data());
-                const DVec3 p(points_[v]);
-                Place nearest{0, std::numeric_limits<double>::max(), 0.0};
-                for (size_t k = 0; k < found && line_[v] < 0; k++) {
-                    const auto [limb, at] = names[index[k]];
-                    const Place place = place_on_limb(limb, at, p);
-                    claim(static_cast<uint32_t>(v), limb, place);
-                    if (place.distance - place.radius < nearest.distance - nearest.radius) nearest = place;
-                }
-                outside_[v] = static_cast<float>(nearest.distance - nearest.radius);
-                surface_[v] = static_cast<float>(nearest.radius);
+                const BarkPlace place = bark_.nearest(points_[v]);
+                if (place.limb < 0) continue;
+                claim(static_cast<uint32_t>(v), place);
+                outside_[v] = static_cast<float>(place.outside());
+                surface_[v] = static_cast<float>(place.radius);
             }
         });
     }
@@ -157,21 +105,10 @@ class TwigFinder {
     }
 
   private:
-    // The nearest place around a limb's station, or on the way to it from its parent's axis.
-    Place place_on_limb(int32_t limb, int32_t at, const DVec3& p) const {
-        const std::vector<Station>& line = axes_[limb];
-        Place place = place_near(line, at, p);
-        if (at > 0 || limbs_[limb].parent < 0) return place;
-        const DVec3& fork = axes_[limbs_[limb].parent][limbs_[limb].attach].position;
-        const double distance = distance_to_segment(p, fork, line[0].position);
-        if (distance < place.distance) place = {0, distance, line[0].radius};
-        return place;
-    }
-
     // Notes that the point lies on the bark of the limb, if it does.
-    void claim(uint32_t v, int32_t limb, const Place& place) {
+    void claim(uint32_t v, const BarkPlace& place) {
         if (place.distance > (1.0 + kBarkRelief) * place.radius + tolerance(v)) return;
-        line_[v] = limb;
+        line_[v] = place.limb;
         station_[v] = place.station;
     }
 
@@ -204,11 +141,11 @@ class TwigFinder {
         int32_t station = station_[foot_];
         bool escapes = false;
         for (const uint32_t v : path_) {
-            const Place place = place_near(axes_[parent], station, DVec3(points_[v]));
+            const BarkPlace place = place_near(axes_[parent], station, DVec3(points_[v]));
             station = place.station;
             const double outside = std::min<double>(outside_[v], place.distance - place.radius);
             const double thickest = std::max<double>(surface_[v], place.radius);
-            escapes = escapes || outside >= std::max(options_.least_escape, kStub * thickest);
+            escapes = escapes || outside >= required_escape(options_.least_escape, thickest);
         }
         if (!escapes) return;
 
@@ -240,7 +177,7 @@ class TwigFinder {
         for (uint32_t e = graph_.begin[v]; e < graph_.begin[v + 1]; e++) {
             const uint32_t n = graph_.neighbour[e];
             if (line_[n] >= 0) continue;
-            const Place place = place_near(axes_[index], at, DVec3(points_[n]));
+            const BarkPlace place = place_near(axes_[index], at, DVec3(points_[n]));
             if (place.distance > place.radius + tolerance(n)) continue;
             line_[n] = index;
             station_[n] = place.station;
@@ -314,6 +251,7 @@ class TwigFinder {
     const TwigOptions& options_;
     std::vector<Limb>& limbs_;
     std::vector<std::vector<Station>>& axes_;
+    const Bark bark_;               // of the limbs that are given
     std::vector<int32_t> line_;     // by point: the limb whose bark it lies on, -1 for none
     std::vector<int32_t> station_;  // and the station there
     std::vector<float> outside_;    // by free point: metres from the nearest limb's bark, twigs left aside

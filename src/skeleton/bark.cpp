@@ -1,0 +1,117 @@
+#include "skeleton/bark.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "geometry/segment.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr int kLookAround = 2;     // stations to each side
+constexpr size_t kNearest = 6;     // stations looked at
+constexpr size_t kNearestOf = 24;  // and so many where one limb is left aside
+constexpr double kStub = 0.6;      // radii that a branch must reach out of thick wood
+
+}  // namespace
+
+BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DVec3& p) {
+    const int32_t last = static_cast<int32_t>(line.size()) - 1;
+    BarkPlace best{-1, station, glm::distance(line[station].position, p), line[station].radius};
+    for (int32_t i = std::max(0, station - kLookAround); i < std::min(last, station + kLookAround); i++) {
+        double t;
+        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, &t);
+        if (distance < best.distance)
+            best = {-1, t < 0.5 ? i : i + 1, distance,
+                    line[i].radius + t * (line[i + 1].radius - line[i].radius)};
+    }
+    return best;
+}
+
+Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes)
+    : limbs_(limbs), axes_(axes), kd_points_{positions_} {
+    for (size_t l = 0; l < axes.size(); l++) {
+        const int32_t limb = static_cast<int32_t>(l);
+        for (size_t i = 0; i < axes[l].size(); i++) {
+            positions_.emplace_back(axes[l][i].position);
+            names_.emplace_back(limb, static_cast<int32_t>(i));
+        }
+        if (limbs[l].parent < 0) continue;
+        // And along the way from the fork to the limb's first station.
+        const DVec3& fork = axes[limbs[l].parent][limbs[l].attach].position;
+        for (const double t : {0.25, 0.5, 0.75}) {
+            positions_.emplace_back(fork + t * (axes[l][0].position - fork));
+            names_.emplace_back(limb, 0);
+        }
+    }
+    tree_ = std::make_unique<KdTree>(3, kd_points_, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+}
+
+BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
+    const std::vector<Station>& line = axes_[limb];
+    BarkPlace place = place_near(line, station, p);
+    place.limb = limb;
+    if (station > 0 || limbs_[limb].parent < 0) return place;
+    const DVec3& fork = axes_[limbs_[limb].parent][limbs_[limb].attach].position;
+    const double distance = distance_to_segment(p, fork, line[0].position);
+    if (distance < place.distance) place = {limb, 0, distance, line[0].radius};
+    return place;
+}
+
+BarkPlace Bark::nearest(const Vec3& p, int32_t except) const {
+    std::array<uint32_t, kNearestOf> index;
+    std::array<float, kNearestOf> squared;
+    const size_t found =
+        tree_->knnSearch(&p.x, except < 0 ? kNearest : kNearestOf, index.data(), squared.data());
+    BarkPlace best;
+    best.distance = std::numeric_limits<double>::max();
+    for (size_t k = 0; k < found; k++) {
+        const auto [limb, station] = names_[index[k]];
+        if (limb == except) continue;
+        const BarkPlace place = on_limb(limb, station, DVec3(p));
+        if (place.outside() < best.outside()) best = place;
+    }
+    return best;
+}
+
+double required_escape(double least_escape, double radius) {
+    return std::max(least_escape, kStub * radius);
+}
+
+void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, double least_escape) {
+    const Bark bark(limbs, axes);
+    std::vector<uint32_t> bears(limbs.size(), 0);
+    for (const Limb& limb : limbs)
+        if (limb.parent >= 0) bears[limb.parent]++;
+    std::vector<uint8_t> goes(limbs.size(), 0);
+    for (size_t l = limbs.size(); l-- > 1;) {
+        if (bears[l] > 0) continue;
+        bool escapes = false;
+        for (const Station& station : axes[l]) {
+            const BarkPlace place = bark.nearest(Vec3(station.position), static_cast<int32_t>(l));
+            escapes = escapes || place.limb < 0 || goes[place.limb] != 0 ||
+                      place.outside() >= required_escape(least_escape, place.radius);
+        }
+        if (escapes) continue;
+        goes[l] = 1;
+        bears[limbs[l].parent]--;
+    }
+    std::vector<int32_t> now(limbs.size());
+    size_t kept = 0;
+    for (size_t l = 0; l < limbs.size(); l++) {
+        if (goes[l] != 0) continue;
+        now[l] = static_cast<int32_t>(kept);
+        if (limbs[l].parent >= 0) limbs[l].parent = now[limbs[l].parent];
+        if (kept != l) {
+            limbs[kept] = std::move(limbs[l]);
+            axes[kept] = std::move(axes[l]);
+        }
+        kept++;
+    }
+    limbs.resize(kept);
+    axes.resize(kept);
+}
+
+}  // namespace treerec
