@@ -219,7 +219,8 @@ Dictionary to_dictionary(const treerec::Foliage& p_foliage, int p_format_version
     }
     Dictionary data;
     data["format_version"] = p_format_version;
-    data["place"] = to_bits({p_foliage.origin.x, p_foliage.origin.y, p_foliage.origin.z, p_foliage.edge});
+    data["place"] = to_bits(
+        {p_foliage.origin.x, p_foliage.origin.y, p_foliage.origin.z, p_foliage.edge, p_foliage.reach});
     data["colored"] = p_foliage.colored;
     data["cells"] = cells;
     return data;
@@ -230,12 +231,13 @@ treerec::Foliage foliage_from_dictionary(const Dictionary& p_data) {
     const PackedByteArray cells = require_entry(p_data, "cells", Variant::PACKED_BYTE_ARRAY);
     treerec::Foliage foliage;
     foliage.colored = require_entry(p_data, "colored", Variant::BOOL);
-    if (place.size() != 4 || size_t(cells.size()) % kBytesPerCell != 0) {
+    if (place.size() != 5 || size_t(cells.size()) % kBytesPerCell != 0) {
         throw treerec::Error(
             "The saved foliage is damaged: its lists differ in length. Reconstruct the tree again.");
     }
     foliage.origin = DVec3(place[0], place[1], place[2]);
     foliage.edge = place[3];
+    foliage.reach = place[4];
     foliage.cells.resize(size_t(cells.size()) / kBytesPerCell);
     const uint8_t* read = cells.ptr();
     for (treerec::FoliageCell& cell : foliage.cells) {

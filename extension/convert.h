@@ -38,9 +38,9 @@ extern const int64_t kSurfaceFlags;
 godot::Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version);
 treerec::Tree tree_from_dictionary(const godot::Dictionary& p_data);
 
-// Likewise what a scan saw of the leaves: "place" holds the bits of the origin's x, y, z and the cells' edge,
-// "cells" 11 bytes for each: x, y, z and the number of points as 16-bit numbers, low byte first, and the
-// colour.
+// Likewise what a scan saw of the leaves: "place" holds the bits of the origin's x, y, z, the cells' edge and
+// the reach, "cells" 11 bytes for each: x, y, z and the number of points as 16-bit numbers, low byte first,
+// and the colour.
 godot::Dictionary to_dictionary(const treerec::Foliage& p_foliage, int p_format_version);
 treerec::Foliage foliage_from_dictionary(const godot::Dictionary& p_data);
 

@@ -89,8 +89,9 @@ void check_foliage(const Foliage& foliage) {
     const std::string advice = ". Reconstruct the tree again.";
     if (foliage.cells.size() > kMostFoliageCells) throw Error(damaged + "it has too many cells" + advice);
     if (foliage.empty()) return;
-    if (!is_finite(foliage.origin) || !(foliage.edge > 0.0) || !(foliage.edge < kLargestEdge))
-        throw Error(damaged + "its place or the size of its cells can't be" + advice);
+    if (!is_finite(foliage.origin) || !(foliage.edge > 0.0) || !(foliage.edge < kLargestEdge) ||
+        !(foliage.reach >= 0.0) || !(foliage.reach < kLargestEdge))
+        throw Error(damaged + "its place or its sizes can't be" + advice);
     const FoliageCell* before = nullptr;
     for (const FoliageCell& cell : foliage.cells) {
         if (cell.points == 0) throw Error(damaged + "a cell is without points" + advice);

@@ -23,6 +23,7 @@ struct FoliageCell {
 struct Foliage {
     DVec3 origin{0.0};
     double edge = 0.0;
+    double reach = 0.0;  // metres: leaves may stand that far from wood (fronds); 0: as the leaf rules have it
     bool colored = false;
     std::vector<FoliageCell> cells;
 

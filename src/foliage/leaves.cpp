@@ -213,7 +213,7 @@ class Follower {
   private:
     static double reach(const Placer& placer, const Foliage& foliage) {
         const double scale = std::min(1.0, std::sqrt(placer.crown.height / kFullHeight));
-        return std::max(kReach * scale, kLeastReachCells * foliage.edge);
+        return std::max({kReach * scale, kLeastReachCells * foliage.edge, foliage.reach});
     }
     static uint64_t key_of(const FoliageCell& cell) {
         return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) | cell.z;

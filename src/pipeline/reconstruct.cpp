@@ -113,6 +113,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     PointCloud wood;
     if (told.foliage) {
         result.foliage = foliage_of(result.cloud, told.leaf);
+        result.foliage.reach = told.reach;
         result.leaf_points = static_cast<size_t>(std::count(told.leaf.begin(), told.leaf.end(), uint8_t{1}));
         wood = result.cloud;
         for (uint8_t& flag : told.leaf)

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "geometry/bounds.h"
+#include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
 
 namespace treerec {
@@ -13,60 +15,31 @@ namespace {
 
 constexpr double kFinestShare = 1.0 / 600.0;  // of the cloud's extent
 constexpr double kPointsPerCell = 3.0;
-constexpr double kCellsPerAxis = 2097152.0 - 8.0;
 constexpr uint64_t kStepX = uint64_t{1} << 42;
 constexpr uint64_t kStepY = uint64_t{1} << 21;
 constexpr uint64_t kAxisMask = kStepY - 1;
 constexpr size_t kGrain = 4096;
 constexpr int kMostTries = 12;
 
-// One cell's free margin, so that a neighbour's key never borrows from another axis.
-uint64_t cell_key(const Vec3& p, const DVec3& low, double inverse) {
-    const DVec3 cell = (DVec3(p) - low) * inverse + 1.0;
-    return static_cast<uint64_t>(cell.x) * kStepX + static_cast<uint64_t>(cell.y) * kStepY +
-           static_cast<uint64_t>(cell.z);
-}
-
 uint64_t coarse_key(uint64_t key, int shift) {
     return (((key / kStepX) >> shift) + 1) * kStepX + ((((key / kStepY) & kAxisMask) >> shift) + 1) * kStepY +
            ((key & kAxisMask) >> shift) + 1;
 }
 
-// How many cells are occupied, by open addressing.
-size_t count_cells(const std::vector<Vec3>& points, const DVec3& low, double size,
-                   std::vector<uint64_t>& table) {
-    size_t slots = 64;
-    while (slots < 2 * points.size())
-        slots *= 2;
-    table.assign(slots, 0);
-    const double inverse = 1.0 / size;
-    size_t count = 0;
-    for (const Vec3& p : points) {
-        const uint64_t key = cell_key(p, low, inverse);
-        size_t at = static_cast<size_t>((key * 0x9E3779B97F4A7C15ULL) >> 20) & (slots - 1);
-        while (table[at] != 0 && table[at] != key)
-            at = (at + 1) & (slots - 1);
-        count += table[at] == 0;
-        table[at] = key;
-    }
-    return count;
-}
-
-double choose_size(const std::vector<Vec3>& points, const Bounds& bounds, const Progress& progress) {
+CellLayout choose_layout(const std::vector<Vec3>& points, const Progress& progress) {
+    Bounds bounds;
+    for (const Vec3& p : points)
+        bounds.add(DVec3(p));
     const DVec3 extent = bounds.size();
-    const double longest = std::max({extent.x, extent.y, extent.z, 1e-6});
-    double size = std::max(longest * kFinestShare, longest / kCellsPerAxis);
-    std::vector<uint64_t> table;
+    CellLayout layout{bounds.min, std::max({extent.x, extent.y, extent.z, 1e-6}) * kFinestShare};
     for (int i = 0; i < kMostTries; i++) {
-        progress.check();
-        const size_t count = count_cells(points, bounds.min, size, table);
-        const double wanted =
-            kPointsPerCell * static_cast<double>(count) / static_cast<double>(points.size());
+        const auto count = static_cast<double>(guess_cells(points, layout, &progress));
+        const double wanted = kPointsPerCell * count / static_cast<double>(points.size());
         if (wanted <= 1.03) break;
         // The number of cells falls with a power of their size between one and three.
-        size *= std::clamp(std::pow(wanted, 0.5), 1.04, 4.0);
+        layout.cell *= std::clamp(std::sqrt(wanted), 1.04, 4.0);
     }
-    return size;
+    return layout;
 }
 
 // Calls visit(neighbour) for the occupied cells around each cell of [begin, end), itself too, row by row of
@@ -194,45 +167,34 @@ CellShape shape_of(const std::vector<Gathered>& cells, size_t own, Rows& rows, f
 }  // namespace
 
 Cells make_cells(const std::vector<Vec3>& points, const Progress& progress) {
-    Bounds bounds;
-    for (const Vec3& p : points)
-        bounds.add(DVec3(p));
+    CellGrid grid(points, choose_layout(points, progress), &progress);
     Cells cells;
-    cells.size = choose_size(points, bounds, progress);
-    struct Keyed {
-        uint64_t key;
-        uint32_t point;
-    };
-    std::vector<Keyed> keyed(points.size());
-    const double inverse = 1.0 / cells.size;
-    for (size_t i = 0; i < points.size(); i++)
-        keyed[i] = {cell_key(points[i], bounds.min, inverse), static_cast<uint32_t>(i)};
-    progress.check();
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-        return a.key != b.key ? a.key < b.key : a.point < b.point;
-    });
-    progress.check();
+    cells.size = grid.layout.cell;
     cells.of_point.resize(points.size());
-    for (size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
-        DVec3 sum(0.0);
-        for (end = begin; end < keyed.size() && keyed[end].key == keyed[begin].key; end++) {
-            sum += DVec3(points[keyed[end].point]);
-            cells.of_point[keyed[end].point] = static_cast<uint32_t>(cells.keys.size());
+    cells.centres.resize(grid.size());
+    parallel_for(grid.size(), kGrain, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t c = begin; c < end; c++) {
+            DVec3 sum(0.0);
+            for (const uint32_t i : grid.in_cell(c)) {
+                sum += DVec3(points[i]);
+                cells.of_point[i] = static_cast<uint32_t>(c);
+            }
+            cells.centres[c] = Vec3(sum / static_cast<double>(grid.in_cell(c).size()));
         }
-        cells.keys.push_back(keyed[begin].key);
-        cells.centres.emplace_back(sum / static_cast<double>(end - begin));
-    }
+    });
+    cells.keys = std::move(grid.keys);
     find_near(cells, progress);
     return cells;
 }
 
-CellShapes measure_shapes(const Cells& cells, const Progress& progress) {
+void measure_shapes(const Cells& cells, int first, int last, CellShapes& shapes, const Progress& progress) {
     const size_t count = cells.count();
-    CellShapes shapes(count * kShapeScales);
+    shapes.resize(count * kShapeScales);
     std::vector<uint64_t> keys;
     std::vector<uint32_t> order(count);
     std::vector<uint32_t> of_cell(count);
-    for (int scale = 0; scale < kShapeScales; scale++) {
+    for (int scale = first; scale <= last; scale++) {
         progress.check();
         const float coarseness = static_cast<float>(1 << scale);
         // Keys of the finest grid are in order; those of a coarser one are not.
@@ -244,10 +206,10 @@ CellShapes measure_shapes(const Cells& cells, const Progress& progress) {
         std::vector<Gathered> gathered;
         for (size_t begin = 0, end = 0; begin < count; begin = end) {
             Gathered cell;
-            const Vec3 first = cells.centres[sorted[begin].second];
+            const Vec3 start = cells.centres[sorted[begin].second];
             Vec3 sum(0.0F);
             for (end = begin; end < count && sorted[end].first == sorted[begin].first; end++) {
-                const Vec3 d = cells.centres[sorted[end].second] - first;
+                const Vec3 d = cells.centres[sorted[end].second] - start;
                 sum += d;
                 add_product(cell.scatter, d, 1.0F);
                 of_cell[sorted[end].second] = static_cast<uint32_t>(keys.size());
@@ -255,7 +217,7 @@ CellShapes measure_shapes(const Cells& cells, const Progress& progress) {
             cell.number = static_cast<float>(end - begin);
             sum /= cell.number;
             add_product(cell.scatter, sum, -cell.number);
-            cell.mean = first + sum;
+            cell.mean = start + sum;
             keys.push_back(sorted[begin].first);
             gathered.push_back(cell);
         }
@@ -269,7 +231,6 @@ CellShapes measure_shapes(const Cells& cells, const Progress& progress) {
         for (size_t i = 0; i < count; i++)
             shapes[i * kShapeScales + static_cast<size_t>(scale)] = coarse[of_cell[i]];
     }
-    return shapes;
 }
 
 }  // namespace treerec

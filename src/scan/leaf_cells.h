@@ -12,7 +12,7 @@ namespace treerec {
 // Cells in the order of their keys. Metres.
 struct Cells {
     double size = 0.0;               // edge length
-    std::vector<uint64_t> keys;      // x, y, z in 21 bits each, rising
+    std::vector<uint64_t> keys;      // as CellLayout's, rising
     std::vector<Vec3> centres;       // the mean of a cell's points
     std::vector<uint32_t> of_point;  // by point
     std::vector<uint32_t>
@@ -40,6 +40,7 @@ struct CellShape {
 inline constexpr int kShapeScales = 4;
 using CellShapes = std::vector<CellShape>;  // kShapeScales for each cell
 
-CellShapes measure_shapes(const Cells& cells, const Progress& progress);
+// Fills in the scales first..last (0 to kShapeScales - 1).
+void measure_shapes(const Cells& cells, int first, int last, CellShapes& shapes, const Progress& progress);
 
 }  // namespace treerec

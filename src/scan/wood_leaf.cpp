@@ -7,6 +7,7 @@
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "scan/leaf_cells.h"
+#include "scan/leaf_limbs.h"
 #include "scan/leaf_paths.h"
 #include "scan/samples.h"
 
@@ -20,12 +21,14 @@ constexpr size_t kGrain = 4096;
 
 // A tree with a smaller share of leaves counts as bare: leafless trees of dense twigs reach 0.3 by chance.
 constexpr double kLeastShare = 0.4;
-// A cloud with fewer cells along its extent shows neither leaves nor twigs, unless it is filled as no bare
-// crown is.
-constexpr double kLeastResolution = 115.0;
+// A cloud with fewer cells along its extent, or with fewer ones finer than a leaf, shows neither leaves nor
+// twigs, unless it is filled as no bare crown is.
+constexpr double kLeastResolution = 95.0;
+constexpr double kFineCell = 0.06;  // metres
+constexpr double kLeastFineResolution = 60.0;
 constexpr double kFilledCells = 0.58;  // of the cells around
 constexpr double kFilledScatter = 0.5;
-constexpr double kMostShare = 0.95;  // that the threshold follows
+constexpr double kMostShare = 0.85;  // that the threshold follows
 constexpr double kThresholdShare =
     0.5;  // of the logit of the share: between the most likely and the even-handed
 constexpr int kSmoothings = 3;
@@ -39,7 +42,8 @@ struct Term {
     float weight;  // of the standardised value; the sum is the logit of being leaf at even odds
 };
 // By scale: linearity, planarity, scatter, occupied, crowd.
-constexpr std::array<std::array<Term, 5>, kShapeScales> kShapeTerms{{
+using ShapeTerms = std::array<std::array<Term, 5>, kShapeScales>;
+constexpr ShapeTerms kShapeTerms{{
     {{{0.4209F, 0.2340F, -0.425F},
       {0.2754F, 0.1797F, -0.203F},
       {0.3027F, 0.1816F, 0.528F},
@@ -60,6 +64,27 @@ constexpr std::array<std::array<Term, 5>, kShapeScales> kShapeTerms{{
       {0.5064F, 0.1801F, 0.470F},
       {0.6387F, 0.2271F, -0.890F},
       {4.113F, 0.7961F, 1.988F}}},
+}};
+// The same for shapes on the coarser grids alone, which are quick to find.
+constexpr float kQuickBias = -0.6825F;
+constexpr double kSurelyBare = -1.6;  // leafy clouds have a mean above -1.4, most bare ones one below -1.6
+constexpr ShapeTerms kQuickTerms{{
+    {{{0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}},
+    {{{0.3997F, 0.2186F, -0.168F},
+      {0.2666F, 0.1669F, -0.030F},
+      {0.3336F, 0.1836F, 0.165F},
+      {0.4283F, 0.1876F, 0.442F},
+      {2.778F, 0.6209F, -0.512F}}},
+    {{{0.3375F, 0.1858F, -0.217F},
+      {0.2553F, 0.1533F, 0.189F},
+      {0.4072F, 0.1842F, 0.061F},
+      {0.5084F, 0.2021F, 0.225F},
+      {3.366F, 0.7300F, -0.591F}}},
+    {{{0.0F, 1.0F, 0.0F},
+      {0.0F, 1.0F, 0.0F},
+      {0.5064F, 0.1801F, 0.553F},
+      {0.6387F, 0.2271F, -1.276F},
+      {4.113F, 0.7961F, 2.616F}}},
 }};
 struct PathTerm {
     float CellPath::*member;
@@ -86,28 +111,36 @@ constexpr double kLeastGreenGap = 0.1;    // between the groups' means
 constexpr double kLeastGreenShare = 0.05;
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 
-// A limb that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
-// as large as that many cells.
-constexpr double kHiddenShare = 0.15;  // of the crown's extent
-constexpr float kHiddenCells = 8.0F;
-constexpr uint32_t kLeastPiece = 8;
 constexpr double kMuchHidden = 0.3;
 
 float value_of(float value, const Term& term) {
     return term.weight * std::clamp((value - term.mean) / term.deviation, -kReach, kReach);
 }
 
-float logit_by_shape(const CellShape* shapes, const CellPath& path) {
-    float sum = kBias;
+float sum_of_terms(const CellShape* shapes, const ShapeTerms& all) {
+    float sum = 0.0F;
     for (size_t s = 0; s < kShapeScales; s++) {
-        const std::array<Term, 5>& terms = kShapeTerms[s];
+        const std::array<Term, 5>& terms = all[s];
         sum += value_of(shapes[s].linearity, terms[0]) + value_of(shapes[s].planarity, terms[1]) +
                value_of(shapes[s].scatter, terms[2]) + value_of(shapes[s].occupied / 26.0F, terms[3]) +
                value_of(shapes[s].crowd, terms[4]);
     }
+    return sum;
+}
+
+float logit_by_shape(const CellShape* shapes, const CellPath& path) {
+    float sum = kBias + sum_of_terms(shapes, kShapeTerms);
     for (const PathTerm& p : kPathTerms)
         sum += value_of(path.*p.member, p.term);
     return sum;
+}
+
+// A first look: by the coarser shapes alone, whether the mean over the points is far on the side of wood.
+bool surely_bare(const Cells& cells, const CellShapes& shapes) {
+    double sum = 0.0;
+    for (const uint32_t v : cells.of_point)
+        sum += sum_of_terms(&shapes[v * kShapeScales], kQuickTerms);
+    return sum / static_cast<double>(cells.of_point.size()) + kQuickBias < kSurelyBare;
 }
 
 double logit(double p) {
@@ -223,59 +256,15 @@ void smooth(std::vector<float>& logits, const Cells& cells, const Progress& prog
     }
 }
 
-double extent_of(const std::vector<Vec3>& points, const std::vector<uint8_t>* only) {
+double extent_of(const std::vector<Vec3>& points) {
     double extent = 0.0;
+    std::vector<float> values(points.size());
     for (int axis = 0; axis < 3; axis++) {
-        std::vector<float> values;
         for (size_t v = 0; v < points.size(); v++)
-            if (!only || (*only)[v]) values.push_back(points[v][axis]);
-        if (values.empty()) return 0.0;
+            values[v] = points[v][axis];
         extent = std::max<double>(extent, quantile(values, 0.99) - quantile(values, 0.01));
     }
     return extent;
-}
-
-// Turns wood that hangs in the leaves without a way to the ground into leaf when it is small, and marks what
-// the skeleton should follow.
-std::vector<uint8_t> follow_limbs(const Cells& cells, const CellPaths& tree, std::vector<uint8_t>& leaf,
-                                  double& hidden_share) {
-    const size_t count = cells.count();
-    const float scale = static_cast<float>(1.0 / cells.size);
-    const float least =
-        std::max(kHiddenCells, static_cast<float>(kHiddenShare * extent_of(cells.centres, &leaf)) * scale);
-    std::vector<uint32_t> wood(count, 0);     // wood cells from here on
-    std::vector<float> through(count, 0.0F);  // the longest way onward through leaves alone
-    for (auto v = tree.order.rbegin(); v != tree.order.rend(); ++v) {
-        wood[*v] += leaf[*v] ? 0 : 1;
-        const uint32_t p = tree.parent[*v];
-        if (p == *v) continue;
-        wood[p] += wood[*v];
-        if (!leaf[*v]) continue;
-        const float step = scale * glm::distance(cells.centres[p], cells.centres[*v]);
-        through[p] = std::max(through[p], through[*v] + step);
-    }
-    std::vector<uint8_t> path(count, 0);
-    std::vector<float> leaf_heights;
-    for (size_t v = 0; v < count; v++)
-        if (leaf[v]) leaf_heights.push_back(cells.centres[v].y);
-    const double crown_base = leaf_heights.empty() ? 0.0 : quantile(leaf_heights, 0.1);
-    double hidden = 0.0, seen = 0.0;
-    for (const uint32_t v : tree.order) {
-        const uint32_t p = tree.parent[v];
-        const bool hangs = p != v && !path[p];
-        if (!leaf[v] && hangs && wood[v] < kLeastPiece) leaf[v] = 1;
-        path[v] = !leaf[v] || wood[v] >= kLeastPiece || through[v] >= least;
-        if (!path[v] || cells.centres[v].y < crown_base) continue;
-        (leaf[v] ? hidden : seen) += 1.0;
-    }
-    // Up to the very top, so that the tree keeps its height.
-    uint32_t top = 0;
-    for (uint32_t v = 1; v < count; v++)
-        if (cells.centres[v].y > cells.centres[top].y) top = v;
-    for (; !path[top]; top = tree.parent[top])
-        path[top] = 1;
-    hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
-    return path;
 }
 
 }  // namespace
@@ -287,15 +276,11 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     if (samples.points.size() < kLeastPoints) return result;
     const Cells cells = make_cells(samples.points, progress);
     const size_t count = cells.count();
-    const CellShapes shapes = measure_shapes(cells, progress);
-    const CellPaths paths = trace_paths(cells, progress);
-
-    std::vector<float> logits(count);
-    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
-        progress.check();
-        for (size_t v = begin; v < end; v++)
-            logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths.paths[v]);
-    });
+    CellShapes shapes;
+    measure_shapes(cells, 1, kShapeScales - 1, shapes, progress);
+    const bool colored = cloud.has_colors();
+    if (!colored && surely_bare(cells, shapes)) return result;
+    measure_shapes(cells, 0, 0, shapes, progress);
     std::vector<uint32_t> weights(count, 0);
     double filled = 0.0, scattered = 0.0;
     for (const uint32_t v : cells.of_point) {
@@ -305,16 +290,27 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     }
     filled /= static_cast<double>(samples.points.size());
     scattered /= static_cast<double>(samples.points.size());
+    const double resolution = extent_of(cells.centres) / cells.size;
+    const bool resolved = resolution > kLeastResolution ||
+                          (cells.size < kFineCell && resolution > kLeastFineResolution) ||
+                          (filled > kFilledCells && scattered > kFilledScatter);
+    if (!colored && !resolved) return result;
+    const CellPaths paths = trace_paths(cells, progress);
+
+    std::vector<float> logits(count);
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t v = begin; v < end; v++)
+            logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths.paths[v]);
+    });
     double share = find_share(logits, weights, progress);
 
-    const bool resolved = extent_of(cells.centres, nullptr) > kLeastResolution * cells.size ||
-                          (filled > kFilledCells && scattered > kFilledScatter);
     std::vector<uint32_t> cell_of_point(cloud.size());
     for (size_t i = 0; i < cloud.size(); i++)
         cell_of_point[i] = cells.of_point[samples.of_point[i]];
     std::vector<float> green;
     GreenGroups groups;
-    if (cloud.has_colors()) {
+    if (colored) {
         green = excess_green(cloud, cell_of_point, count);
         groups = part_greens(green, weights);
     }
@@ -332,7 +328,10 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     std::vector<uint8_t> leaf(count);
     for (size_t v = 0; v < count; v++)
         leaf[v] = logits[v] > threshold;
-    const std::vector<uint8_t> path = follow_limbs(cells, paths, leaf, result.hidden_share);
+    const Limbs limbs = follow_limbs(cells, shapes, paths, leaf, progress);
+    result.hidden_share = limbs.hidden_share;
+    result.fronds = limbs.fronds;
+    result.reach = limbs.reach;
     progress.check();
 
     result.foliage = true;
@@ -349,7 +348,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             is_leaf = logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
         }
         result.leaf[i] = is_leaf;
-        result.wood_path[i] = path[v] || !is_leaf;
+        result.wood_path[i] = limbs.path[v] || !is_leaf;
         leaves += is_leaf;
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
@@ -357,6 +356,9 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +
             " % of the limbs in the crown were guessed from the paths through the leaves.");
+    if (result.fronds)
+        result.warnings.emplace_back(
+            "The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.");
     return result;
 }
 

@@ -19,6 +19,8 @@ struct WoodLeaf {
     // paths of limbs that the leaves hide.
     std::vector<uint8_t> wood_path;
     double hidden_share = 0.0;  // of the limbs' length in the crown: followed through leaves, not seen
+    bool fronds = false;        // a palm: the skeleton should be one stem
+    double reach = 0.0;         // metres: how far fronds reach from it
     std::vector<std::string> warnings;
 };
 

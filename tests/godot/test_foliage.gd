@@ -92,10 +92,10 @@ func test_refuses_damaged_foliage() -> void:
 		var less: Dictionary = good.duplicate(true)
 		less.erase(key)
 		spoilt.append(less)
-	for place: int in 4:
+	for place: int in 5:
 		for number: float in [NAN, INF, -INF]:
 			var bad: Dictionary = good.duplicate(true)
-			var numbers: PackedFloat64Array = [0.0, 0.0, 0.0, 0.1]
+			var numbers: PackedFloat64Array = [0.0, 0.0, 0.0, 0.1, 0.0]
 			numbers[place] = number
 			bad["place"] = bits(numbers)
 			spoilt.append(bad)
@@ -123,7 +123,7 @@ static func foliage_at(center: Vector3) -> Dictionary:
 				cells.append_array(PackedByteArray([x, 0, y, 0, z, 0, 3 + x, 0, 90, 120, 40 + z]))
 	return {
 		"format_version": TreeReconstruction.FOLIAGE_VERSION,
-		"place": bits(PackedFloat64Array([corner.x, corner.y, corner.z, edge])),
+		"place": bits(PackedFloat64Array([corner.x, corner.y, corner.z, edge, 0.0])),
 		"colored": true,
 		"cells": cells,
 	}

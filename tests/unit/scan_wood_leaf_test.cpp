@@ -159,6 +159,34 @@ TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
         EXPECT_FALSE(tell_wood_from_leaves(real_scan(folder, file)).foliage) << file;
 }
 
+TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    for (const char* file : {"rtls_leafy_urban.txt", "itsme_tropical_tree_1.txt",
+                             "itsme_buttressed_tree_1.txt", "pytlidar_palm_1.las"}) {
+        PointCloud cloud = real_scan(folder, file);
+        clean_cloud(cloud, {});
+        const WoodLeaf told = tell_wood_from_leaves(cloud);
+        ASSERT_TRUE(told.foliage) << file;
+        const bool palm = std::string(file).starts_with("pytlidar_palm");
+        EXPECT_EQ(told.fronds, palm) << file;
+        EXPECT_FALSE(told.warnings.empty()) << file;
+        float top = -1e30F, followed = -1e30F;
+        size_t leaves_followed = 0;
+        for (size_t i = 0; i < cloud.size(); i++) {
+            top = std::max(top, cloud.positions[i].y);
+            if (told.wood_path[i]) followed = std::max(followed, cloud.positions[i].y);
+            leaves_followed += told.leaf[i] && told.wood_path[i];
+        }
+        EXPECT_GT(followed, top - 0.1F) << file;
+        EXPECT_LT(leaves_followed, cloud.size() / (palm ? 50 : 5)) << file;
+        if (palm) {
+            EXPECT_GT(told.reach, 2.0);
+            EXPECT_LT(told.reach, 5.0);
+        }
+    }
+}
+
 TEST(WoodLeafScans, TheSplitTreeIsSplitAlike) {
     const char* folder = std::getenv("TREEREC_SCANS");
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";

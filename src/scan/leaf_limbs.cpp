@@ -1,0 +1,195 @@
+#include "scan/leaf_limbs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "geometry/quantile.h"
+
+namespace treerec {
+
+namespace {
+
+// A limb that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
+// as large as that many cells.
+constexpr double kHiddenShare = 0.15;  // of the crown's extent
+constexpr float kHiddenCells = 8.0F;
+constexpr uint32_t kLeastPiece = 8;
+constexpr double kCrownBase = 0.1;    // of the leaves are lower
+constexpr double kFootGap = 0.15;     // of the crown's height, below its base
+constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well below the crown are bark
+
+// A palm. Broad-leaved crowns have 0.17 to 0.25 of the planarity, palms 0.35.
+constexpr double kMostCrownWood = 0.01;  // cells of wood in the crown, per cell of leaf
+constexpr double kHubShare = 0.05;       // of the height: the leaves' paths start as near to one another
+constexpr double kLeastPlanarity = 0.29;
+constexpr double kRibCells = 3.0;   // wood that far from the stem, above the hub, is a rib of a frond
+constexpr double kStemCells = 1.5;  // radius of the stem that is followed through the fronds
+
+struct Crown {
+    double base = 0.0;    // height
+    double foot = 0.0;    // height: well below the crown
+    double extent = 0.0;  // the longest side
+    DVec3 middle{0.0};
+    DVec3 top{0.0};  // the highest leaf
+    size_t cells = 0;
+};
+
+Crown measure_crown(const Cells& cells, const std::vector<uint8_t>& leaf) {
+    Crown crown;
+    std::array<std::vector<float>, 3> values;
+    crown.top.y = -1e30;
+    for (size_t v = 0; v < cells.count(); v++) {
+        if (!leaf[v]) continue;
+        crown.cells++;
+        for (int axis = 0; axis < 3; axis++)
+            values[static_cast<size_t>(axis)].push_back(cells.centres[v][axis]);
+        if (cells.centres[v].y > crown.top.y) crown.top = DVec3(cells.centres[v]);
+    }
+    if (crown.cells == 0) return crown;
+    crown.base = quantile(values[1], kCrownBase);
+    crown.foot = crown.base - kFootGap * (crown.top.y - crown.base);
+    for (int axis = 0; axis < 3; axis++) {
+        std::vector<float>& v = values[static_cast<size_t>(axis)];
+        crown.extent = std::max<double>(crown.extent, quantile(v, 0.99) - quantile(v, 0.01));
+        crown.middle[axis] = quantile(v, 0.5);
+    }
+    return crown;
+}
+
+// Small clumps of leaf below the crown are rough bark.
+void clear_foot(const Cells& cells, const Crown& crown, std::vector<uint8_t>& leaf) {
+    const size_t least = static_cast<size_t>(kLeastClump * static_cast<double>(crown.cells)) + 1;
+    std::vector<uint8_t> seen(cells.count(), 0);
+    std::vector<uint32_t> clump;
+    for (uint32_t seed = 0; seed < cells.count(); seed++) {
+        if (!leaf[seed] || seen[seed] || cells.centres[seed].y >= crown.foot) continue;
+        clump.assign(1, seed);
+        seen[seed] = 1;
+        bool low = true;
+        for (size_t i = 0; i < clump.size(); i++)
+            for (uint32_t e = cells.near_begin[clump[i]]; e < cells.near_begin[clump[i] + 1]; e++) {
+                const uint32_t u = cells.near[e];
+                if (!leaf[u] || seen[u]) continue;
+                seen[u] = 1;
+                low = low && cells.centres[u].y < crown.foot;
+                clump.push_back(u);
+            }
+        if (low && clump.size() < least)
+            for (const uint32_t v : clump)
+                leaf[v] = 0;
+    }
+}
+
+bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
+                const std::vector<uint8_t>& leaf, const Crown& crown, DVec3& hub) {
+    size_t wood = 0;
+    double planarity = 0.0;
+    float low = cells.centres[0].y;
+    for (size_t v = 0; v < cells.count(); v++) {
+        low = std::min(low, cells.centres[v].y);
+        if (leaf[v])
+            planarity += shapes[v * kShapeScales + 1].planarity;
+        else
+            wood += cells.centres[v].y > crown.base;
+    }
+    const auto leaves = static_cast<double>(crown.cells);
+    if (static_cast<double>(wood) > kMostCrownWood * leaves || planarity < kLeastPlanarity * leaves)
+        return false;
+    // Where the way from each leaf meets wood.
+    std::vector<uint32_t> from(cells.count());
+    DVec3 sum(0.0);
+    double square = 0.0, met = 0.0;
+    for (const uint32_t v : tree.order) {
+        const uint32_t p = tree.parent[v];
+        from[v] = leaf[v] && p != v ? from[p] : v;
+        if (!leaf[v] || leaf[from[v]]) continue;
+        const DVec3 at(cells.centres[from[v]]);
+        sum += at;
+        square += at.y * at.y;
+        met += 1.0;
+    }
+    if (met < 0.5 * leaves) return false;
+    hub = sum / met;
+    const double spread = std::sqrt(std::max(0.0, square / met - hub.y * hub.y));
+    return spread < kHubShare * (crown.top.y - low);
+}
+
+double distance_to(const DVec3& p, const DVec3& from, const DVec3& to) {
+    const DVec3 along = to - from;
+    const double length = glm::dot(along, along);
+    const double t = length > 0.0 ? std::clamp(glm::dot(p - from, along) / length, 0.0, 1.0) : 0.0;
+    return glm::distance(p, from + t * along);
+}
+
+// The stem of a palm: all wood, and on from the hub through the crown's middle to its top.
+void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub,
+                 Limbs& limbs) {
+    const double radius = kStemCells * cells.size;
+    std::vector<float> reaches;
+    for (size_t v = 0; v < cells.count(); v++) {
+        const DVec3 p(cells.centres[v]);
+        const double off =
+            std::min(distance_to(p, hub, crown.middle), distance_to(p, crown.middle, crown.top));
+        // Wood off the stem is a frond's rib.
+        if (!leaf[v] && p.y > hub.y && off > kRibCells * cells.size) leaf[v] = 1;
+        limbs.path[v] = !leaf[v] || off < radius;
+        if (leaf[v]) reaches.push_back(static_cast<float>(off));
+    }
+    limbs.reach = quantile(reaches, 0.99);
+}
+
+}  // namespace
+
+Limbs follow_limbs(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
+                   std::vector<uint8_t>& leaf, const Progress& progress) {
+    const size_t count = cells.count();
+    Limbs limbs;
+    limbs.path.assign(count, 0);
+    const Crown crown = measure_crown(cells, leaf);
+    if (crown.cells == 0) {
+        limbs.path.assign(count, 1);
+        return limbs;
+    }
+    clear_foot(cells, crown, leaf);
+    progress.check();
+    DVec3 hub(0.0);
+    limbs.fronds = has_fronds(cells, shapes, tree, leaf, crown, hub);
+    if (limbs.fronds) {
+        follow_stem(cells, leaf, crown, hub, limbs);
+        return limbs;
+    }
+    const auto scale = static_cast<float>(1.0 / cells.size);
+    const float least = std::max(kHiddenCells, static_cast<float>(kHiddenShare * crown.extent) * scale);
+    std::vector<uint32_t> wood(count, 0);     // wood cells from here on
+    std::vector<float> through(count, 0.0F);  // the longest way onward through leaves alone
+    for (auto v = tree.order.rbegin(); v != tree.order.rend(); ++v) {
+        wood[*v] += leaf[*v] ? 0 : 1;
+        const uint32_t p = tree.parent[*v];
+        if (p == *v) continue;
+        wood[p] += wood[*v];
+        if (!leaf[*v]) continue;
+        const float step = scale * glm::distance(cells.centres[p], cells.centres[*v]);
+        through[p] = std::max(through[p], through[*v] + step);
+    }
+    progress.check();
+    for (const uint32_t v : tree.order) {
+        const uint32_t p = tree.parent[v];
+        const bool hangs = p != v && !limbs.path[p];
+        if (!leaf[v] && hangs && wood[v] < kLeastPiece) leaf[v] = 1;
+        limbs.path[v] = !leaf[v] || wood[v] >= kLeastPiece || through[v] >= least;
+    }
+    // Up to the very top, so that the tree keeps its height.
+    uint32_t top = 0;
+    for (uint32_t v = 1; v < count; v++)
+        if (cells.centres[v].y > cells.centres[top].y) top = v;
+    for (; !limbs.path[top]; top = tree.parent[top])
+        limbs.path[top] = 1;
+    double hidden = 0.0, seen = 0.0;
+    for (size_t v = 0; v < count; v++)
+        if (limbs.path[v] && cells.centres[v].y >= crown.base) (leaf[v] ? hidden : seen) += 1.0;
+    limbs.hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
+    return limbs;
+}
+
+}  // namespace treerec
