@@ -39,16 +39,15 @@ PlyType parse_type(const std::string& path, std::string_view word) {
     };
     for (const Name& name : kNames)
         if (name.text == word) return name.type;
-    fail(path,
-         "has a property of the unknown type '" + std::string(word.substr(0, 40)) + "' in its PLY header.");
+    fail(path, "has a property of the unknown type " + quote_word(word) + " in its PLY header.");
 }
 
 uint64_t parse_count(const std::string& path, std::string_view word) {
     uint64_t count = 0;
     for (const char c : word) {
         if (c < '0' || c > '9' || count > (uint64_t{1} << 50))
-            fail(path, "has an element with the impossible count '" + std::string(word.substr(0, 40)) +
-                           "' in its PLY header.");
+            fail(path,
+                 "has an element with the impossible count " + quote_word(word) + " in its PLY header.");
         count = count * 10 + static_cast<uint64_t>(c - '0');
     }
     return count;
@@ -105,7 +104,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::string& path) {
             } else if (words[1] == "binary_big_endian") {
                 header.encoding = PlyEncoding::kBig;
             } else {
-                fail(path, "has the unknown PLY format '" + std::string(words[1].substr(0, 40)) + "'.");
+                fail(path, "has the unknown PLY format " + quote_word(words[1]) + ".");
             }
         } else if (words[0] == "element" && words.size() >= 3) {
             header.elements.push_back({std::string(words[1]), parse_count(path, words[2]), {}});

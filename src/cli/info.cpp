@@ -96,7 +96,7 @@ const Command& info_command() {
         {{"--json", "", "as JSON"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"}},
-        "FILE: a point cloud (PLY, text, LAS), a tree file (.txt), a skeleton (.ply), a table of nodes "
+        "FILE: a point cloud (as for reconstruct), a tree file (.txt), a skeleton (.ply), a table of nodes "
         "(.csv)."};
     return command;
 }

@@ -165,7 +165,8 @@ const Command& reconstruct_command() {
          {"--one-tree", "", "there is only one tree; nothing is taken for another one"},
          {"--all-wood", "", "leaves are not told from wood: every point is followed"},
          {"--quiet", "", "print errors and warnings only"}},
-        "SCAN: PLY, text (.xyz .txt .asc .pts .csv) or LAS."};
+        "SCAN: PLY (Gaussian splats too), LAS, LAZ (where LASzip is installed), PCD, COLMAP's points3D\n"
+        "(.bin .txt) or text (.xyz .txt .asc .pts .csv). What it is, its contents tell."};
     return command;
 }
 

@@ -86,7 +86,7 @@ Tree parse_qsm_csv(std::string_view bytes, const std::string& path, UpAxis up) {
                         std::to_string(fields.size()) + ".");
         for (size_t i = 0; i < words.size(); i++) {
             const std::optional<double> value = parse_number(words[i]);
-            if (!value) throw Error(where + "'" + words[i].substr(0, 40) + "' is no number.");
+            if (!value) throw Error(where + quote_word(words[i]) + " is no number.");
             values[i] = *value;
         }
         const auto vector_at = [&](Column first) {

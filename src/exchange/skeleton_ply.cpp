@@ -46,8 +46,8 @@ class ValueReader {
         const size_t end = std::min(data_.find_first_of(" \t\r\n", at_), data_.size());
         const std::optional<double> value = parse_number(data_.substr(at_, end - at_));
         if (!value)
-            throw Error("'" + path_ + "' is damaged: '" +
-                        std::string(data_.substr(at_, std::min<size_t>(end - at_, 40))) + "' is no number.");
+            throw Error("'" + path_ + "' is damaged: " + quote_word(data_.substr(at_, end - at_)) +
+                        " is no number.");
         at_ = end;
         return *value;
     }

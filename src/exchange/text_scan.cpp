@@ -62,7 +62,11 @@ bool read_stamp(std::string_view comment, FileStamp& stamp, const std::string& p
     if (*version > kStampVersion)
         throw Error("'" + path + "' was written by a newer version of this program; update to open it.");
     if (!(*unit > 1e-12) || !(*unit < 1e12)) return false;
-    stamp.up = parse_up_axis(words[3]);
+    try {
+        stamp.up = parse_up_axis(words[3]);
+    } catch (const Error& error) {
+        throw Error("'" + path + "' is damaged: " + error.what());
+    }
     stamp.metres_per_unit = *unit;
     return true;
 }

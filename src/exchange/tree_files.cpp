@@ -77,7 +77,7 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
         at = end + 1;
         if (word.find_first_not_of(" \t") == std::string_view::npos) continue;
         const std::optional<double> value = parse_number(word);
-        if (!value) throw Error(where + "'" + std::string(word.substr(0, 40)) + "' is no number.");
+        if (!value) throw Error(where + quote_word(word) + " is no number.");
         values.push_back(*value);
     }
     const size_t root_end = header.tree_fields + static_cast<size_t>(header.root.count);
@@ -169,8 +169,8 @@ Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) 
         for (const std::string& field : split_fields(*line)) {
             const std::optional<double> value = parse_number(field);
             if (!value)
-                throw Error("'" + path + "', line " + std::to_string(line_number) + ": '" +
-                            field.substr(0, 40) + "' is no number.");
+                throw Error("'" + path + "', line " + std::to_string(line_number) + ": " + quote_word(field) +
+                            " is no number.");
             values.push_back(*value);
         }
         if (values.size() != static_cast<size_t>(columns.count))

@@ -45,7 +45,7 @@ DVec3 ScanFrame::turn_to_scan(const DVec3& v) const {
 UpAxis parse_up_axis(std::string_view text) {
     for (UpAxis up : {UpAxis::kX, UpAxis::kY, UpAxis::kZ, UpAxis::kNegX, UpAxis::kNegY, UpAxis::kNegZ})
         if (text == up_axis_name(up)) return up;
-    throw Error("'" + std::string(text) + "' is no up axis; use x, y, z, -x, -y or -z.");
+    throw Error(quote_word(text) + " is no up axis; use x, y, z, -x, -y or -z.");
 }
 
 const char* up_axis_name(UpAxis up) {

@@ -1,5 +1,6 @@
 // LAZ through LASzip's C interface.
 #include <algorithm>
+#include <bit>
 #include <memory>
 
 #include "file_bytes.h"
@@ -54,6 +55,45 @@ class Reader {
     void* reader_ = nullptr;
 };
 
+// What LASzip takes for granted: that its own record and the table of its chunks are where the header says.
+// (LASzip 3 frees memory that it never had when a file ends within its records.) The record: M. Isenburg,
+// "LASzip", 2013, section 3.
+void require_sound_records(const ReadJob& job, const LasHeader& header) {
+    constexpr size_t kRecordHeader = 54;
+    constexpr uint16_t kLaszipRecord = 22204;
+    constexpr bool kSwap = std::endian::native != std::endian::little;
+    const std::string_view bytes = job.bytes.view();
+    const char* begin = bytes.data();
+    const auto damaged = [&] { job.fail("is damaged or cut off within its LAZ header; copy it again."); };
+    size_t at = load_value<uint16_t>(begin + 94, kSwap);
+    if (at < 227 || header.data > bytes.size() || at > header.data) damaged();
+    bool found = false;
+    for (uint32_t i = load_value<uint32_t>(begin + 100, kSwap); i > 0; i--) {
+        if (header.data - at < kRecordHeader) damaged();
+        const size_t length = load_value<uint16_t>(begin + at + 20, kSwap);
+        if (header.data - at - kRecordHeader < length) damaged();
+        const char* record = begin + at + kRecordHeader;
+        if (load_value<uint16_t>(begin + at + 18, kSwap) == kLaszipRecord &&
+            bytes.substr(at + 2).starts_with("laszip encoded")) {
+            if (found || length < 34) damaged();
+            found = true;
+            const size_t items = load_value<uint16_t>(record + 32, kSwap);
+            size_t size = 0;
+            if (length != 34 + 6 * items) damaged();
+            for (size_t item = 0; item < items; item++)
+                size += load_value<uint16_t>(record + 36 + 6 * item, kSwap);
+            if (size != header.stride) damaged();
+        }
+        at += kRecordHeader + length;
+    }
+    if (!found || bytes.size() - header.data < 8) damaged();
+    int64_t table = load_value<int64_t>(begin + header.data, kSwap);
+    // A writer that could not go back put it at the very end.
+    if (table == -1) table = load_value<int64_t>(begin + bytes.size() - 8, kSwap);
+    if (table < static_cast<int64_t>(header.data) + 8 || table > static_cast<int64_t>(bytes.size()) - 8)
+        job.fail("is cut off or damaged: the table of its LAZ chunks is not in it; copy it again.");
+}
+
 const LaszipLibrary& library_for(const ReadJob& job) {
     try {
         return laszip_library();
@@ -66,6 +106,7 @@ const LaszipLibrary& library_for(const ReadJob& job) {
 
 RawCloud read_laz(const ReadJob& job, const LasHeader& header) {
     const LaszipLibrary& laszip = library_for(job);
+    require_sound_records(job, header);
     const Reader reader(laszip, job);
     const LaszipPoint& point = reader.point();
     const bool rgb = header.rgb() != 0;

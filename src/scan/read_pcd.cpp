@@ -56,7 +56,7 @@ uint64_t whole_number(const ReadJob& job, std::string_view word, uint64_t most) 
     uint64_t value = 0;
     const std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
     if (result.ec != std::errc() || result.ptr != word.data() + word.size() || value > most)
-        job.fail("has the impossible number '" + std::string(word.substr(0, 40)) + "' in its PCD header.");
+        job.fail("has the impossible number " + quote_word(word) + " in its PCD header.");
     return value;
 }
 
@@ -273,8 +273,8 @@ RawCloud read_ascii(const ReadJob& job, const PcdHeader& header, const Columns& 
                 if (columns.roles[f] == kNoRole) continue;
                 double value = 0.0;
                 if (!parse_number(begin, p, value))
-                    job.fail("is damaged: point " + std::to_string(i + 1) + " holds '" +
-                             std::string(word.substr(0, 40)) + "' where a number should be.");
+                    job.fail("is damaged: point " + std::to_string(i + 1) + " holds " + quote_word(word) +
+                             " where a number should be.");
                 // "1.#QNAN" and its like.
                 if (begin != p) value = std::numeric_limits<double>::quiet_NaN();
                 row[static_cast<size_t>(columns.roles[f])] = value;
@@ -315,7 +315,7 @@ RawCloud read_pcd(const ReadJob& job) {
     } else if (header.data == "binary_compressed") {
         raw = read_compressed(job, header, columns);
     } else {
-        job.fail("has the unknown PCD data format '" + header.data.substr(0, 40) + "'.");
+        job.fail("has the unknown PCD data format " + quote_word(header.data) + ".");
     }
     if (columns.packed_color >= 0) raw.color_white = 255.0F;
     return raw;

@@ -15,8 +15,8 @@ constexpr size_t kBlock =
     16384;  // points decoded at a time, so that the columns of a block stay in the cache
 
 [[noreturn]] void fail_cut_off(const ReadJob& job, const PlyElement& element, uint64_t found) {
-    job.fail("is cut off: its header promises " + std::to_string(element.count) + " of '" + element.name +
-             "', but it holds " + std::to_string(found) + "; copy it again.");
+    job.fail("is cut off: its header promises " + std::to_string(element.count) + " of " +
+             quote_word(element.name) + ", but it holds " + std::to_string(found) + "; copy it again.");
 }
 
 // What the vertex element offers.
@@ -223,8 +223,8 @@ class AsciiReader {
         if (p_ == end_) fail_cut_off(job_, element, index);
         double number = 0.0;
         if (*p_ == '\n' || !parse_number(p_, end_, number))
-            job_.fail("is damaged: row " + std::to_string(index + 1) + " of '" + element.name +
-                      "' does not hold the numbers that its header promises.");
+            job_.fail("is damaged: row " + std::to_string(index + 1) + " of " + quote_word(element.name) +
+                      " does not hold the numbers that its header promises.");
         // "1.#QNAN" and its like.
         if (p_ != end_ && !is_blank(*p_) && *p_ != '\n') {
             while (p_ != end_ && !is_blank(*p_) && *p_ != '\n')

@@ -399,5 +399,77 @@ TEST(ScanLas, WithheldPointsAreLeftOut) {
     EXPECT_NE(error_of(bytes, "a.las").find("flagged as withheld"), std::string::npos);
 }
 
+// A LAZ file says in its header how many points there are and what box they fill; so does LASzip's own
+// reader.
+TEST(ScanLaz, ReadsRealScans) {
+    const std::string clouds = scans_folder();
+    if (clouds.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    struct Case {
+        const char* name;
+        size_t points;
+        bool colors;
+        const char* format;
+        DVec3 sum;  // of all coordinates, by another program (laspy with lazrs)
+    };
+    const Case cases[] = {
+        {"jeffgillan_tree_understory.laz",
+         473974,
+         false,
+         "LAZ 1.2, point format 2",
+         {-8921717.4300, 1319098.3200, 5013324.0927}},
+        {"lidr_MixedConifer_ALS.laz",
+         37657,
+         false,
+         "LAZ 1.2, point format 1",
+         {18124509887.0000, 143584872818.7600, 452435.0100}},
+        {"spanner_MLS_plot.laz",
+         301477,
+         false,
+         "LAZ 1.4, point format 7",
+         {141887437977.3740, 1148698530720.4146, 691195553.3553}},
+        {"treels_pine.laz", 73851, false, "LAZ 1.2, point format 0", {2292.9657, -3048.1699, 726972.4826}},
+        {"treels_pine_plot_with_ground.laz",
+         114024,
+         false,
+         "LAZ 1.2, point format 0",
+         {619077.6367, 559328.9356, 6280492.3027}},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        ReadCloudReport report;
+        PointCloud cloud;
+        try {
+            cloud = read_cloud(clouds + c.name, {}, &report);
+        } catch (const Error& error) {
+            if (std::string(error.what()).find("LASzip") == std::string::npos) throw;
+            GTEST_SKIP() << error.what();
+        }
+        EXPECT_EQ(cloud.size(), c.points);
+        EXPECT_EQ(cloud.has_colors(), c.colors);
+        EXPECT_EQ(report.format, c.format);
+        DVec3 sum(0.0);
+        for (size_t i = 0; i < cloud.size(); i++)
+            sum += scan_point(cloud, i) - cloud.frame.origin;
+        sum += static_cast<double>(cloud.size()) * cloud.frame.origin;
+        for (int k = 0; k < 3; k++)
+            EXPECT_NEAR(sum[k], c.sum[k], 1e-5 * static_cast<double>(c.points));
+    }
+}
+
+// One that is cut off is damaged, wherever it is cut.
+TEST(ScanLaz, SaysWhatIsCutOff) {
+    const std::string clouds = scans_folder();
+    if (clouds.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    const std::string whole = bytes_of(clouds + "treels_pine.laz");
+    for (const size_t size :
+         {size_t{100}, size_t{300}, size_t{5000}, whole.size() / 2, whole.size() - 2000}) {
+        const std::string sentence = error_of(whole.substr(0, size), "a.laz");
+        EXPECT_NE(sentence, "") << size;
+        EXPECT_TRUE(size < 227 || sentence.find("LASzip") != sentence.npos ||
+                    sentence.find("cut off") != sentence.npos)
+            << sentence;
+    }
+}
+
 }  // namespace
 }  // namespace treerec
