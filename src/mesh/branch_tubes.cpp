@@ -12,18 +12,24 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLargestTree = 1e6;        // metres from the origin
-constexpr double kLeastShare = 1e-5;        // of the coordinates: thinner wood would vanish in floats
-constexpr double kCollar = 0.35;            // how much wider a branch leaves its parent, over its radius
-constexpr double kCollarRadius = 0.008;     // metres; thinner branches get no collar of their own
-constexpr double kRoundTipRadius = 0.006;   // metres; thinner tips are pointed
-constexpr double kFineTwigRadius = 0.004;   // metres; thinner tubes have a side less
-constexpr double kThinBendPerRing = 0.40;   // radians between rings at level 0, on twigs
-constexpr double kThickBendPerRing = 0.25;  // and where the eye rests
-constexpr double kThickRadius = 0.015;      // metres
-constexpr double kAxisSlack = 0.25;         // how far rings may leave out a bend, over the radius
-constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings
-constexpr size_t kBranchesPerChunk = 32;    // of parallel work
+constexpr double kLargestTree = 1e6;       // metres from the origin
+constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood would vanish in floats
+constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
+constexpr double kCollarRadius = 0.012;    // metres; thinner branches get no collar of their own
+constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
+constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
+constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
+constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
+constexpr double kHeightSlack = 1e-3;      // and over the tree's height
+constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
+constexpr size_t kBranchesPerChunk = 32;   // of parallel work
+
+// Radians between rings at level 0, of branches of such a radius in metres: the eye rests on the stout ones.
+struct BendLimit {
+    double least_radius;
+    double bend;
+};
+constexpr BendLimit kBendLimits[] = {{0.02, 0.35}, {0.01, 0.7}, {0.0, 1.2}};
 
 struct Ring {
     DVec3 centre;
@@ -38,13 +44,14 @@ struct Tube {
     uint32_t rings = 0;  // 0: not drawn
     uint32_t sides = 0;
     bool round_tip = false;
+    bool point = false;           // the last ring is only the apex
     double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
     double parent_radius = 0.0;   // metres, 0 for the trunk
     DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
     size_t first_vertex = 0;
     size_t first_index = 0;
 
-    size_t all_rings() const { return rings + (round_tip ? 1u : 0u); }
+    size_t all_rings() const { return rings + (round_tip ? 1u : 0u) - (point ? 1u : 0u); }
     size_t vertices() const { return rings ? all_rings() * (sides + 1) + sides : 0; }
     size_t indices() const { return rings ? (all_rings() - 1) * sides * 6 + sides * 3 : 0; }
 };
@@ -52,7 +59,8 @@ struct Tube {
 uint32_t sides_of(double radius, const TubeOptions& options) {
     const double wanted = 2.0 * kPi * radius / std::max(options.side_length, 1e-6);
     const int most = std::max(options.maximum_sides, 3);
-    const int least = std::clamp(options.minimum_sides - (radius < kFineTwigRadius ? 1 : 0), 3, most);
+    const int less = (radius < kTwigRadius ? 1 : 0) + (radius < kFineTwigRadius ? 1 : 0);
+    const int least = std::clamp(options.minimum_sides - less, 3, most);
     const int sides =
         static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
     return static_cast<uint32_t>(std::max(3, sides >> std::clamp(options.level, 0, 8)));
@@ -170,13 +178,16 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
 void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                          std::vector<Ring>& out) const {
     const int level = std::clamp(options.level, 0, 8);
-    const double bend_per_ring = points.front().radius >= kThickRadius ? kThickBendPerRing : kThinBendPerRing;
+    const double bend_per_ring =
+        std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1, [&](const BendLimit& limit) {
+            return points.front().radius >= limit.least_radius;
+        })->bend;
     const double bend_limit = std::cos(std::min(bend_per_ring * (1 + level), 1.2));
-    const double change_limit = 0.30 * (1 + level);
+    const double change_limit = 0.4 * (1 + level);
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
     const double slack = kAxisSlack * (1 << level);
-    const double least_slack = 6e-4 * crown.height * (1 << level);
+    const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
         out.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
     };
@@ -273,6 +284,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
         thickest = std::max(thickest, out[i].radius);
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
+    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
+    if (tube.point) out.back().radius = least;
 }
 
 // Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.
@@ -360,7 +373,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     };
     DVec3 normal = run[0].normal;
     DVec3 x = any_perpendicular(normal);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count - (tube.point ? 1 : 0); i++) {
         const Ring& ring = run[i];
         // Parallel transport: the smallest turn that takes the last ring's normal to this one's.
         const double turn = 1.0 + glm::dot(normal, ring.normal);
@@ -404,7 +417,9 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     for (uint32_t j = 0; j < sides; j++) {
         const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
         const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
-        put(apex, normal, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius, color);
+        // A drawn-out point is lit like the wood below it.
+        const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
+        put(apex, outward, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius, color);
     }
     size_t at = tube.first_index;
     const uint32_t base = static_cast<uint32_t>(tube.first_vertex), stride = sides + 1;

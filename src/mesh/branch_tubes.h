@@ -11,7 +11,7 @@ namespace treerec {
 struct TubeOptions {
     int level = 0;  // level of detail: 0 the finest; each level halves sides and drops rings and thin twigs
     double side_length = 0.02;  // metres of circumference per side aimed at, at level 0
-    int minimum_sides = 5;      // one less on twigs under 8 mm of diameter
+    int minimum_sides = 5;      // one less on branches under 16 mm of diameter, two less under 8 mm
     int maximum_sides = 24;
     double bark_width =
         1.0;             // metres of circumference per texture repeat, rounded per branch to whole repeats

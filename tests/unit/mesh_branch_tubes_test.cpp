@@ -261,7 +261,7 @@ TEST(BranchTubes, ChildrenStartInsideTheirParents) {
                 }
             }
             ASSERT_LT(parent, tubes.size());
-            ASSERT_LT(nearest, 1e-5);
+            ASSERT_LT(nearest, 2e-5);
             for (uint32_t v = tube.first_vertex; mesh.colors[v].g == 0.0f; v++)
                 ASSERT_LT(outside(rings[parent], DVec3(mesh.positions[v])), 0.0);
             bases++;
