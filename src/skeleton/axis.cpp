@@ -11,7 +11,6 @@ namespace treerec {
 
 namespace {
 
-constexpr int kRounds = 2;            // fit, then fit again across the better axis
 constexpr size_t kWantedPoints = 16;  // per circle; the window grows until it has them
 constexpr size_t kLeastPoints = 8;
 constexpr size_t kMostPoints = 100;
@@ -128,7 +127,7 @@ class LimbFitter {
         return normalized_or(stations_[last].position - stations_[first].position, DVec3(0, 1, 0));
     }
 
-    std::optional<CircleFit> fit(size_t i, DVec3& u, DVec3& v) const {
+    std::optional<CircleFit> fit(size_t i, DVec3& u, DVec3& v) {
         const double radius = std::max(stations_[i].radius, 0.5 * spacing_[i]);
         double reach = std::max(radius, 1.5 * spacing_[i]);
         auto [first, last] = window(i, reach);
@@ -140,8 +139,8 @@ class LimbFitter {
         const DVec3 along = direction(i, std::max(2.0 * radius, 4.0 * spacing_[i]));
         u = any_perpendicular(along);
         v = glm::cross(along, u);
-        std::vector<DVec2> flat;
-        flat.reserve(begin_[last + 1] - begin_[first]);
+        std::vector<DVec2>& flat = flat_;
+        flat.clear();
         double extent = 0.0;
         const size_t stride = 1 + (begin_[last + 1] - begin_[first]) / kMostPoints;
         for (size_t m = begin_[first]; m < begin_[last + 1]; m += stride) {
@@ -170,14 +169,21 @@ class LimbFitter {
         return std::nullopt;
     }
 
+    // A second round looks again only where the first one found something: elsewhere the axis did not move.
     void fit_all() {
+        const std::vector<std::optional<DVec3>> before = std::move(centres_);
         centres_.assign(count_, std::nullopt);
         for (size_t i = 0; i < count_; i++) {
+            bool worthwhile = before.empty();
+            for (size_t j = i >= 2 ? i - 2 : 0; !worthwhile && j <= std::min(i + 2, count_ - 1); j++)
+                worthwhile = before[j].has_value();
+            if (!worthwhile) continue;
             DVec3 u, v;
             const std::optional<CircleFit> circle = fit(i, u, v);
             if (!circle) continue;
             centres_[i] = stations_[i].position + circle->centre.x * u + circle->centre.y * v;
             stations_[i].radius = circle->radius;
+            stations_[i].scatter = circle->spread;
         }
         // A circle that none of its neighbours confirms is an accident.
         for (size_t i = 0; i < count_; i++) {
@@ -321,6 +327,7 @@ class LimbFitter {
     std::vector<double> arc_;
     std::vector<Station> stations_;
     std::vector<std::optional<DVec3>> centres_;
+    std::vector<DVec2> flat_;  // a section's points, kept between sections
 };
 
 }  // namespace

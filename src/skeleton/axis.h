@@ -13,6 +13,7 @@ namespace treerec {
 struct Station {
     DVec3 position{0.0};
     double radius = 0.0;    // metres; 0 where no points told anything
+    double scatter = 0.0;   // metres: median deviation of the points from the radius; 0 where unknown
     bool measured = false;  // by a circle fit; otherwise `radius` is the points' median distance to the axis
     bool bridged = false;   // the way from the station before crosses a gap
 };

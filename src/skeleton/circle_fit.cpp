@@ -3,163 +3,308 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <cstdint>
 
 namespace treerec {
 
 namespace {
 
-constexpr int kSamples = 40;
-constexpr size_t kScored = 64;      // points looked at per sample
-constexpr double kHopeless = 0.35;  // median residual over radius: not worth refining
-constexpr int kRefinements = 12;
+constexpr size_t kMostPoints = 128;  // looked at; of more, every so-manieth
+constexpr size_t kScored = 32;       // points looked at per sample
+constexpr int kSamples = 16;
+constexpr int kFirstSamples = 8;      // when there is still nothing near a circle, there is none
+constexpr float kHopeless = 0.35f;    // median residual over radius: not worth refining
+constexpr float kGoodEnough = 0.02f;  // likewise: no better sample is looked for
+constexpr int kRefinements = 6;
+constexpr float kSettled = 1e-3f;    // step over radius
+constexpr float kOnCircle = 0.3f;    // residual over radius
+constexpr float kWellInside = 0.7f;  // distance over radius
 constexpr int kRingSteps = 6;
+constexpr float kRingInside = 0.4f;
 constexpr int kSectors = 16;
-constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise
-constexpr double kMadToSigma = 1.4826;
+constexpr int kLeastFilled = 10;  // sectors: with fewer, a ring is open
+constexpr float kTukey = 4.685f;  // 95 % efficiency for normal noise
+constexpr float kMadToSigma = 1.4826f;
+constexpr float kTanEighth = 0.41421356f;  // of 22.5 degrees
 
-std::optional<CircleFit> circle_through(const DVec2& a, const DVec2& b, const DVec2& c) {
-    const DVec2 u = b - a;
-    const DVec2 v = c - a;
-    const double cross = u.x * v.y - u.y * v.x;
-    const double uu = glm::dot(u, u);
-    const double vv = glm::dot(v, v);
-    if (!(std::abs(cross) > 1e-9 * (uu + vv))) return std::nullopt;
-    const DVec2 offset = DVec2(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / (2.0 * cross);
-    CircleFit fit;
-    fit.centre = a + offset;
-    fit.radius = glm::length(offset);
-    return fit;
+// The points, relative to their mean, in single precision: coordinates of a branch's section are a few
+// decimetres, so this resolves a tenth of a micrometre, and four go through the processor at a time.
+struct Section {
+    size_t count = 0;
+    DVec2 mean{0.0};
+    alignas(16) std::array<float, kMostPoints> x;
+    alignas(16) std::array<float, kMostPoints> y;
+    alignas(16) std::array<float, kMostPoints> residual;
+
+    explicit Section(std::span<const DVec2> points) {
+        const size_t stride = (points.size() + kMostPoints - 1) / kMostPoints;
+        for (size_t i = 0; i < points.size(); i += stride) {
+            mean += points[i];
+            count++;
+        }
+        mean /= static_cast<double>(count);
+        for (size_t i = 0, n = 0; i < points.size(); i += stride, n++) {
+            x[n] = static_cast<float>(points[i].x - mean.x);
+            y[n] = static_cast<float>(points[i].y - mean.y);
+        }
+    }
+
+    // Fills residual[0 .. end) with the distances of the points from the circle.
+    void measure(float cx, float cy, float radius) {
+        for (size_t i = 0; i < count; i++) {
+            const float dx = x[i] - cx;
+            const float dy = y[i] - cy;
+            residual[i] = std::abs(std::sqrt(dx * dx + dy * dy) - radius);
+        }
+    }
+
+    // Of the first `size` residuals; reorders them.
+    float median(size_t size) {
+        const auto middle = residual.begin() + static_cast<ptrdiff_t>(size / 2);
+        std::nth_element(residual.begin(), middle, residual.begin() + static_cast<ptrdiff_t>(size));
+        return *middle;
+    }
+};
+
+// Fixed-size excerpt for scoring samples: a constant loop count lets the compiler use vector instructions.
+struct Excerpt {
+    alignas(16) std::array<float, kScored> x;
+    alignas(16) std::array<float, kScored> y;
+
+    explicit Excerpt(const Section& section) {
+        for (size_t i = 0; i < kScored; i++) {
+            const size_t from = i * section.count / kScored;
+            x[i] = section.x[from];
+            y[i] = section.y[from];
+        }
+    }
+
+    // Whether the median residual is below `limit`, and then what it is. Most samples are worse than the best
+    // one so far, and to see that takes counting alone.
+    bool beats(float cx, float cy, float radius, float limit, float& median) const {
+        const float inner = std::max(0.0f, radius - limit);
+        const float outer = radius + limit;
+        const float least = limit < radius ? inner * inner : -1.0f;
+        const float most = outer * outer;
+        int32_t below = 0;
+        for (size_t i = 0; i < kScored; i++) {
+            const float dx = x[i] - cx;
+            const float dy = y[i] - cy;
+            const float square = dx * dx + dy * dy;
+            below += static_cast<int32_t>(square > least) & static_cast<int32_t>(square < most);
+        }
+        if (below <= static_cast<int32_t>(kScored / 2)) return false;
+        std::array<float, kScored> residual;
+        for (size_t i = 0; i < kScored; i++) {
+            const float dx = x[i] - cx;
+            const float dy = y[i] - cy;
+            residual[i] = std::abs(std::sqrt(dx * dx + dy * dy) - radius);
+        }
+        std::nth_element(residual.begin(), residual.begin() + kScored / 2, residual.end());
+        median = residual[kScored / 2];
+        return true;
+    }
+};
+
+struct Circle {
+    float x = 0.0f;
+    float y = 0.0f;
+    float radius = 0.0f;
+    float spread = 0.0f;
+};
+
+bool circle_through(const Section& s, size_t i, size_t j, size_t k, Circle& circle) {
+    const float ux = s.x[j] - s.x[i];
+    const float uy = s.y[j] - s.y[i];
+    const float vx = s.x[k] - s.x[i];
+    const float vy = s.y[k] - s.y[i];
+    const float cross = ux * vy - uy * vx;
+    const float uu = ux * ux + uy * uy;
+    const float vv = vx * vx + vy * vy;
+    if (!(std::abs(cross) > 1e-6f * (uu + vv))) return false;
+    const float ox = (vy * uu - uy * vv) / (2.0f * cross);
+    const float oy = (ux * vv - vx * uu) / (2.0f * cross);
+    circle.x = s.x[i] + ox;
+    circle.y = s.y[i] + oy;
+    circle.radius = std::sqrt(ox * ox + oy * oy);
+    return true;
 }
 
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+// The best of some three-point circles.
+bool sample_circles(const Section& section, float max_radius, Random& random, Circle& best) {
+    const Excerpt excerpt(section);
+    const uint32_t count = static_cast<uint32_t>(section.count);
+    bool found = false;
+    for (int sample = 0; sample < kSamples; sample++) {
+        if (sample == kFirstSamples && !found) return false;
+        const uint32_t i = random.below(count);
+        const uint32_t j = random.below(count);
+        const uint32_t k = random.below(count);
+        if (i == j || j == k || i == k) continue;
+        Circle trial;
+        if (!circle_through(section, i, j, k, trial) || trial.radius > max_radius) continue;
+        const float limit = found ? best.spread : kHopeless * trial.radius;
+        if (!excerpt.beats(trial.x, trial.y, trial.radius, limit, trial.spread)) continue;
+        best = trial;
+        found = true;
+        if (best.spread < kGoodEnough * best.radius) break;
+    }
+    return found;
 }
 
-int sector_of(const DVec2& offset) {
-    const int sector = static_cast<int>((std::atan2(offset.y, offset.x) / (2.0 * kPi) + 0.5) * kSectors);
-    return std::clamp(sector, 0, kSectors - 1);
+// Gauss-Newton on the geometric residuals with Tukey's weights.
+void refine_circle(Section& section, float max_radius, Circle& circle) {
+    const auto noise = [&](float spread) { return kMadToSigma * spread + 1e-6f * circle.radius + 1e-9f; };
+    float sigma = noise(circle.spread);
+    for (int round = 0; round < kRefinements; round++) {
+        if (round == 1 || round == 3) {
+            section.measure(circle.x, circle.y, circle.radius);
+            sigma = noise(section.median(section.count));
+        }
+        const float scale = 1.0f / (kTukey * sigma);
+        double xx = 0.0, xy = 0.0, yy = 0.0, x = 0.0, y = 0.0, w = 0.0, rx = 0.0, ry = 0.0, r = 0.0;
+        for (size_t i = 0; i < section.count; i++) {
+            const float dx = section.x[i] - circle.x;
+            const float dy = section.y[i] - circle.y;
+            const float distance = std::sqrt(dx * dx + dy * dy);
+            const float residual = distance - circle.radius;
+            const float t = residual * scale;
+            if (std::abs(t) >= 1.0f || distance < 1e-9f) continue;
+            const float weight = (1.0f - t * t) * (1.0f - t * t);
+            const float nx = dx / distance;
+            const float ny = dy / distance;
+            xx += weight * nx * nx;
+            xy += weight * nx * ny;
+            yy += weight * ny * ny;
+            x += weight * nx;
+            y += weight * ny;
+            w += weight;
+            rx += weight * residual * nx;
+            ry += weight * residual * ny;
+            r += weight * residual;
+        }
+        // The symmetric 3x3 system by Cramer's rule.
+        const double a = yy * w - y * y;
+        const double b = x * y - xy * w;
+        const double c = xy * y - yy * x;
+        const double det = xx * a + xy * b + x * c;
+        if (!(det > 1e-9 * xx * yy * w)) return;
+        const double sx = (rx * a + ry * b + r * c) / det;
+        const double sy = (rx * b + ry * (xx * w - x * x) + r * (x * xy - xx * y)) / det;
+        const double sr = (rx * c + ry * (xy * x - xx * y) + r * (xx * yy - xy * xy)) / det;
+        const float radius = circle.radius + static_cast<float>(sr);
+        if (!(radius > 0.0f) || radius > max_radius) return;
+        circle.x += static_cast<float>(sx);
+        circle.y += static_cast<float>(sy);
+        circle.radius = radius;
+        if (sx * sx + sy * sy + sr * sr < kSettled * kSettled * radius * radius) return;
+    }
 }
 
-// Solves the symmetric 3x3 system by Cramer's rule.
-std::optional<DVec3> solve(const DMat3& m, const DVec3& rhs) {
-    const double det = glm::determinant(m);
-    const double scale = m[0][0] * m[1][1] * m[2][2];
-    if (!(std::abs(det) > 1e-9 * std::abs(scale))) return std::nullopt;
-    return glm::inverse(m) * rhs;
+// Of 16 equal sectors, without trigonometry: two signs, the greater coordinate, and the half of the octant.
+int sector_of(float x, float y) {
+    const float ax = std::abs(x);
+    const float ay = std::abs(y);
+    const bool steep = ay > ax;
+    const bool outer = std::min(ax, ay) > kTanEighth * std::max(ax, ay);
+    return (x < 0.0f ? 8 : 0) | (y < 0.0f ? 4 : 0) | (steep ? 2 : 0) | (outer ? 1 : 0);
 }
 
 }  // namespace
 
 std::optional<CircleFit> fit_circle(std::span<const DVec2> points, double max_radius, Random random) {
-    const size_t count = points.size();
-    if (count < 5) return std::nullopt;
-    std::vector<double> residuals;
-    residuals.reserve(count);
-    std::optional<CircleFit> best;
-    const size_t stride = (count + kScored - 1) / kScored;
-    for (int sample = 0; sample < kSamples; sample++) {
-        const uint32_t n = static_cast<uint32_t>(count);
-        const uint32_t i = random.below(n);
-        const uint32_t j = random.below(n);
-        const uint32_t k = random.below(n);
-        if (i == j || j == k || i == k) continue;
-        std::optional<CircleFit> trial = circle_through(points[i], points[j], points[k]);
-        if (!trial || trial->radius > max_radius) continue;
-        residuals.clear();
-        for (size_t p = 0; p < count; p += stride)
-            residuals.push_back(std::abs(glm::distance(points[p], trial->centre) - trial->radius));
-        trial->spread = median(residuals);
-        if (!best || trial->spread < best->spread) best = trial;
-    }
-    if (!best || best->spread > kHopeless * best->radius) return std::nullopt;
+    if (points.size() < 5) return std::nullopt;
+    Section section(points);
+    const float most = static_cast<float>(max_radius);
+    Circle circle;
+    if (!sample_circles(section, most, random, circle)) return std::nullopt;
+    refine_circle(section, most, circle);
 
-    CircleFit fit = *best;
-    for (int round = 0; round < kRefinements; round++) {
-        residuals.clear();
-        for (const DVec2& p : points)
-            residuals.push_back(std::abs(glm::distance(p, fit.centre) - fit.radius));
-        const double sigma = kMadToSigma * median(residuals) + 1e-6 * fit.radius + 1e-9;
-        DMat3 normal(0.0);
-        DVec3 rhs(0.0);
-        for (const DVec2& p : points) {
-            const DVec2 offset = p - fit.centre;
-            const double distance = glm::length(offset);
-            const double residual = distance - fit.radius;
-            const double t = residual / (kTukey * sigma);
-            if (std::abs(t) >= 1.0 || distance < 1e-9) continue;
-            const double weight = (1.0 - t * t) * (1.0 - t * t);
-            const DVec3 row(-offset.x / distance, -offset.y / distance, -1.0);
-            normal += weight * glm::outerProduct(row, row);
-            rhs -= weight * residual * row;
-        }
-        const std::optional<DVec3> step = solve(normal, rhs);
-        if (!step) break;
-        const DVec2 centre = fit.centre + DVec2(step->x, step->y);
-        const double radius = fit.radius + step->z;
-        if (!(radius > 0.0) || radius > max_radius) break;
-        fit.centre = centre;
-        fit.radius = radius;
-        if (glm::length(*step) < 1e-6 * radius) break;
-    }
-
-    residuals.clear();
+    CircleFit fit;
+    fit.centre = section.mean + DVec2(circle.x, circle.y);
+    fit.radius = circle.radius;
     std::array<bool, kSectors> hit{};
-    double inside = 0.0;
-    for (const DVec2& p : points) {
-        const DVec2 offset = p - fit.centre;
-        const double distance = glm::length(offset);
-        residuals.push_back(std::abs(distance - fit.radius));
-        if (distance < 0.7 * fit.radius) inside += 1.0;
-        if (std::abs(distance - fit.radius) > 0.3 * fit.radius) continue;
-        hit[sector_of(offset)] = true;
+    size_t inside = 0;
+    section.measure(circle.x, circle.y, circle.radius);
+    for (size_t i = 0; i < section.count; i++) {
+        const float dx = section.x[i] - circle.x;
+        const float dy = section.y[i] - circle.y;
+        if (section.residual[i] <= kOnCircle * circle.radius) hit[sector_of(dx, dy)] = true;
+        if (dx * dx + dy * dy < kWellInside * kWellInside * circle.radius * circle.radius) inside++;
     }
-    fit.spread = median(residuals);
-    fit.inside = inside / static_cast<double>(count);
+    fit.spread = section.median(section.count);
+    fit.inside = static_cast<double>(inside) / static_cast<double>(section.count);
     fit.coverage = static_cast<double>(std::count(hit.begin(), hit.end(), true)) / kSectors;
     return fit;
 }
 
 std::optional<CircleFit> fit_ring(std::span<const DVec2> points) {
     if (points.size() < kSectors) return std::nullopt;
-    CircleFit fit;
-    for (const DVec2& p : points)
-        fit.centre += p;
-    fit.centre /= static_cast<double>(points.size());
-    std::array<DVec2, kSectors> sum;
-    std::array<double, kSectors> weight;
+    Section section(points);
+    std::array<float, kSectors> sum_x;
+    std::array<float, kSectors> sum_y;
+    std::array<float, kSectors> weight;
+    float cx = 0.0f;
+    float cy = 0.0f;
     int filled = 0;
     for (int step = 0; step < kRingSteps; step++) {
-        sum.fill(DVec2(0.0));
-        weight.fill(0.0);
-        for (const DVec2& p : points) {
-            const int sector = sector_of(p - fit.centre);
-            sum[sector] += p;
-            weight[sector] += 1.0;
+        sum_x.fill(0.0f);
+        sum_y.fill(0.0f);
+        weight.fill(0.0f);
+        for (size_t i = 0; i < section.count; i++) {
+            const int sector = sector_of(section.x[i] - cx, section.y[i] - cy);
+            sum_x[sector] += section.x[i];
+            sum_y[sector] += section.y[i];
+            weight[sector] += 1.0f;
         }
-        DVec2 centre(0.0);
+        float x = 0.0f;
+        float y = 0.0f;
         filled = 0;
         for (int s = 0; s < kSectors; s++) {
-            if (weight[s] == 0.0) continue;
-            centre += sum[s] / weight[s];
+            if (weight[s] == 0.0f) continue;
+            x += sum_x[s] / weight[s];
+            y += sum_y[s] / weight[s];
             filled++;
         }
-        fit.centre = centre / static_cast<double>(filled);
+        if (filled < kLeastFilled) return std::nullopt;
+        x /= static_cast<float>(filled);
+        y /= static_cast<float>(filled);
+        const float moved = std::abs(x - cx) + std::abs(y - cy);
+        cx = x;
+        cy = y;
+        if (moved < 1e-5f) break;
     }
-    std::vector<double> distances;
-    distances.reserve(points.size());
-    for (const DVec2& p : points)
-        distances.push_back(glm::distance(p, fit.centre));
-    fit.radius = median(distances);
-    double inside = 0.0;
-    for (double& d : distances) {
-        if (d < 0.4 * fit.radius) inside += 1.0;
-        d = std::abs(d - fit.radius);
+    // Every direction counts once, however densely it was sampled.
+    weight.fill(0.0f);
+    sum_x.fill(0.0f);
+    for (size_t i = 0; i < section.count; i++) {
+        const float dx = section.x[i] - cx;
+        const float dy = section.y[i] - cy;
+        const int sector = sector_of(dx, dy);
+        sum_x[sector] += std::sqrt(dx * dx + dy * dy);
+        weight[sector] += 1.0f;
     }
-    fit.spread = median(distances);
-    fit.inside = inside / static_cast<double>(points.size());
+    float square = 0.0f;
+    filled = 0;
+    for (int s = 0; s < kSectors; s++) {
+        if (weight[s] == 0.0f) continue;
+        const float distance = sum_x[s] / weight[s];
+        square += distance * distance;
+        filled++;
+    }
+    const float radius = std::sqrt(square / static_cast<float>(filled));
+    size_t inside = 0;
+    for (size_t i = 0; i < section.count; i++) {
+        const float dx = section.x[i] - cx;
+        const float dy = section.y[i] - cy;
+        if (dx * dx + dy * dy < kRingInside * kRingInside * radius * radius) inside++;
+    }
+    section.measure(cx, cy, radius);
+    CircleFit fit;
+    fit.centre = section.mean + DVec2(cx, cy);
+    fit.radius = radius;
+    fit.spread = section.median(section.count);
+    fit.inside = static_cast<double>(inside) / static_cast<double>(section.count);
     fit.coverage = static_cast<double>(filled) / kSectors;
     return fit;
 }

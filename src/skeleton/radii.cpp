@@ -10,8 +10,14 @@ namespace {
 constexpr double kThinnest = 0.001;      // metres
 constexpr double kTipAllowance = 0.003;  // metres: an unmeasured twig's tip
 constexpr double kSlenderness = 0.02;    // unmeasured radius over the distance to the tip, at most
-constexpr double kSoftWeight = 0.05;     // of an unmeasured station beside a measured one
-constexpr int kMedianWindow = 4;         // stations to each side
+constexpr double kThinTip = 0.002;       // the same, at least, as far as the points allow
+constexpr double kThinSlenderness = 0.005;
+constexpr double kNoiseMedian =
+    0.9;  // standard deviations: of the length of a normal vector, 1D .67, 2D 1.18
+constexpr double kMadToSigma = 1.4826;
+constexpr size_t kLeastMeasured = 8;  // stations that the noise is estimated from
+constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
+constexpr int kMedianWindow = 4;      // stations to each side
 
 struct Block {
     double value;
@@ -48,7 +54,9 @@ void running_median(std::vector<Station>& stations) {
     const int count = static_cast<int>(stations.size());
     for (int i = 0; i < count; i++) {
         near.clear();
-        for (int j = std::max(0, i - kMedianWindow); j <= std::min(count - 1, i + kMedianWindow); j++)
+        // The same to both sides, lest a base loses its flare.
+        const int reach = std::min(kMedianWindow, std::max(1, std::min(i, count - 1 - i)));
+        for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); j++)
             if (stations[j].measured == stations[i].measured && stations[j].radius > 0.0)
                 near.push_back(stations[j].radius);
         radius[i] = 0.0;
@@ -60,9 +68,30 @@ void running_median(std::vector<Station>& stations) {
         stations[i].radius = radius[i];
 }
 
+// The median distance of noisy points to a thin twig's axis is mostly noise, and squares add. (A scanner's
+// noise lies along its beams, and seen from several stations it is between that of a line and that of a
+// plane.)
+double without_noise(double median, double noise, double to_tip) {
+    const double square = median * median - kNoiseMedian * kNoiseMedian * noise * noise;
+    const double least = kThinTip + kThinSlenderness * to_tip;
+    return std::max(std::min(median, least), square > 0.0 ? std::sqrt(square) : 0.0);
+}
+
 }  // namespace
 
+double noise_of(const std::vector<std::vector<Station>>& axes) {
+    std::vector<double> scatter;
+    for (const std::vector<Station>& stations : axes)
+        for (const Station& station : stations)
+            if (station.measured && station.scatter > 0.0) scatter.push_back(station.scatter);
+    if (scatter.size() < kLeastMeasured) return 0.0;
+    const auto middle = scatter.begin() + static_cast<ptrdiff_t>(scatter.size() / 2);
+    std::nth_element(scatter.begin(), middle, scatter.end());
+    return kMadToSigma * *middle;
+}
+
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs) {
+    const double noise = noise_of(axes);
     std::vector<double> values;
     std::vector<double> weights;
     for (size_t l = 0; l < axes.size(); l++) {
@@ -80,7 +109,9 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
                 values[i] = station.radius;
             } else {
                 const double most = kTipAllowance + kSlenderness * to_tip;
-                values[i] = station.radius > 0.0 ? std::min(station.radius, most) : most;
+                values[i] = station.radius > 0.0
+                                ? std::min(most, without_noise(station.radius, noise, to_tip))
+                                : most;
                 weights[i] = kSoftWeight;
             }
             if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);

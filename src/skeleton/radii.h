@@ -7,6 +7,10 @@
 
 namespace treerec {
 
+// The points' noise (metres, standard deviation), as the scatter at the measured stations shows
+// it; 0 where these are few.
+double noise_of(const std::vector<std::vector<Station>>& axes);
+
 // Replaces every station's radius, in metres. Along a limb the measured radii (and, with little weight, the
 // unmeasured stations' own estimates) go through a running median and an isotonic regression (pool adjacent
 // violators, Ayer et al. 1955), so that they never grow outward. Where nothing was measured, the radius

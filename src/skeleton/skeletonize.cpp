@@ -5,6 +5,7 @@
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
 #include "skeleton/radii.h"
+#include "skeleton/refine.h"
 #include "skeleton/root.h"
 #include "skeleton/skeleton.h"
 #include "skeleton/slices.h"
@@ -118,15 +119,24 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     straighten_stems(limbs, axes);
-    clock.stop("Radii", limbs.size());
     infer_radii(axes, limbs);
     drop_strips(limbs, axes, limb_options.least_escape);
+    refine_axes(axes, limbs, places_on_slices(points.size(), limbs, slices), points, false, progress);
+    infer_radii(axes, limbs);
+    clock.stop("Radii", limbs.size());
+
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = limb_options.least_escape;
-    add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
+    const PointPlaces places =
+        add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());
+
+    progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
+    refine_axes(axes, limbs, places, points, true, progress);
+    infer_radii(axes, limbs);
+    clock.stop("Refinement", limbs.size());
 
     progress.update(0.95, "Simplification");
     result.tree = assemble_tree(axes, limbs, options.simplify_distance);

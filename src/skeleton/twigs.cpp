@@ -104,6 +104,8 @@ class TwigFinder {
         }
     }
 
+    PointPlaces places() && { return {std::move(line_), std::move(station_)}; }
+
   private:
     // Notes that the point lies on the bark of the limb, if it does.
     void claim(uint32_t v, const BarkPlace& place) {
@@ -264,12 +266,13 @@ class TwigFinder {
 
 }  // namespace
 
-void add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-               const PathTree& paths, const Slices& slices, const TwigOptions& options,
-               std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress) {
+PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+                      const PathTree& paths, const Slices& slices, const TwigOptions& options,
+                      std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress) {
     TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
     finder.take_slices(slices);
     finder.run(progress);
+    return std::move(finder).places();
 }
 
 }  // namespace treerec

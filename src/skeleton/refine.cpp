@@ -1,0 +1,405 @@
+#include "skeleton/refine.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "geometry/parallel.h"
+#include "skeleton/radii.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr int kRounds = 2;
+constexpr int kNearSegments =
+    3;  // to each side of a point's own station, where its nearest one is looked for
+constexpr int kNearStations = 3;      // between a side limb and the points that may belong to it
+constexpr int kFirstSegments = 6;     // of a side limb, which may hold points of its parent
+constexpr size_t kWantedPoints = 16;  // per window
+constexpr size_t kLeastPoints = 5;
+constexpr int kWidestWindow = 4;  // stations to each side, where points are few
+constexpr double kWindow = 1.0;   // radii to each side
+constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise
+constexpr double kMadToSigma = 1.4826;
+constexpr double kRidge = 4.0;        // points' worth of belief that the axis is right
+constexpr double kRadiusRidge = 0.5;  // and the radius
+constexpr double kMostShift = 0.5;    // radii, in one round
+constexpr size_t kRoundPoints = 8;
+constexpr double kRoundScatter = 0.2;    // median deviation over radius
+constexpr double kRoundCoverage = 0.62;  // of the directions
+constexpr double kRoundDensity = 4.0;    // points in a length of one radius
+constexpr double kAboveNoise = 2.5;      // standard deviations
+constexpr double kAlike = 0.25;
+constexpr double kThinTwig = 0.003;  // metres
+constexpr double kThinnest = 0.001;  // metres
+
+// A point as its limb sees it.
+struct Sample {
+    float x;  // unit vector from the axis to the point, in the station's frame
+    float y;
+    float distance;  // metres from the axis
+};
+
+// How far a point is from the surface of the segment from a to b.
+struct Hit {
+    double off = 0.0;  // distance to the axis less the radius
+    double distance = 0.0;
+    double t = 0.0;  // 0 at a, 1 at b
+    DVec3 offset{0.0};
+};
+
+Hit hit_segment(const DVec3& p, const DVec3& a, double radius_a, const DVec3& b, double radius_b) {
+    const DVec3 ab = b - a;
+    const double square = glm::dot(ab, ab);
+    Hit hit;
+    hit.t = square > 0.0 ? std::clamp(glm::dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
+    hit.offset = p - (a + hit.t * ab);
+    hit.distance = glm::length(hit.offset);
+    hit.off = hit.distance - (radius_a + hit.t * (radius_b - radius_a));
+    return hit;
+}
+
+// The normal equations of a shift (x, y) of the axis and a change of the radius.
+struct Normal {
+    double xx = 0.0, xy = 0.0, yy = 0.0, x = 0.0, y = 0.0, w = 0.0, rx = 0.0, ry = 0.0, r = 0.0;
+
+    void add(const Sample& s, double weight, double residual) {
+        xx += weight * s.x * s.x;
+        xy += weight * s.x * s.y;
+        yy += weight * s.y * s.y;
+        x += weight * s.x;
+        y += weight * s.y;
+        w += weight;
+        rx += weight * residual * s.x;
+        ry += weight * residual * s.y;
+        r += weight * residual;
+    }
+
+    DVec3 solve() const {
+        const double a = xx + kRidge;
+        const double d = yy + kRidge;
+        const double f = w + kRadiusRidge;
+        const double c00 = d * f - y * y;
+        const double c01 = x * y - xy * f;
+        const double c02 = xy * y - d * x;
+        const double det = a * c00 + xy * c01 + x * c02;  // positive: the ridge makes it positive definite
+        return DVec3(rx * c00 + ry * c01 + r * c02, rx * c01 + ry * (a * f - x * x) + r * (x * xy - a * y),
+                     rx * c02 + ry * (xy * x - a * y) + r * (a * d - xy * xy)) /
+               det;
+    }
+};
+
+template <typename T>
+T median_of(std::vector<T>& values) {
+    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// One limb in one round. Reads the axes of the round before.
+class LimbRefiner {
+  public:
+    LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+                const std::vector<std::vector<int32_t>>& sides, const PointPlaces& places,
+                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise,
+                bool complete)
+        : axes_(axes),
+          limbs_(limbs),
+          limb_(limbs[index]),
+          sides_(sides[index]),
+          places_(places),
+          own_points_(own_points),
+          points_(points),
+          noise_(noise),
+          complete_(complete),
+          line_(axes[index]),
+          count_(static_cast<int>(line_.size())) {}
+
+    std::vector<Station> run() {
+        if (count_ < 2) return line_;
+        lay_frames();
+        collect();
+        round_.assign(line_.size(), 0);
+        std::vector<Station> result = line_;
+        std::vector<DVec3> shift(line_.size(), DVec3(0.0));
+        for (int i = 0; i < count_; i++)
+            refine_station(i, result[i], shift[i]);
+        if (complete_) believe_round(result);
+        for (int i = 0; i < count_; i++) {
+            if (stays(i)) continue;
+            DVec3 sum = 2.0 * shift[i];
+            sum += i > 0 && !line_[i].bridged ? shift[i - 1] : shift[i];
+            sum += i + 1 < count_ && !line_[i + 1].bridged ? shift[i + 1] : shift[i];
+            result[i].position += 0.25 * sum;
+        }
+        return result;
+    }
+
+  private:
+    bool stays(int i) const {
+        return line_[i].bridged || (i + 1 < count_ && line_[i + 1].bridged) || (i == 0 && limb_.parent < 0);
+    }
+
+    DVec3 direction(int i) const {
+        const DVec3 along = line_[std::min(i + 1, count_ - 1)].position - line_[std::max(i - 1, 0)].position;
+        return normalized_or(along, DVec3(0, 1, 0));
+    }
+
+    // Frames that turn as little as possible, so that neighbours' samples can be put together.
+    void lay_frames() {
+        frame_.resize(line_.size());
+        DVec3 u = any_perpendicular(direction(0));
+        for (int i = 0; i < count_; i++) {
+            const DVec3 along = direction(i);
+            u -= glm::dot(u, along) * along;
+            u = glm::length(u) > 1e-6 ? glm::normalize(u) : any_perpendicular(along);
+            frame_[i] = {u, glm::cross(along, u)};
+        }
+    }
+
+    // The segment with the nearest axis among [first, last] of a line, where segment j ends at station j. (To
+    // choose by the surface would lead points inside of it to far segments, and make the limb seem thicker.)
+    static Hit nearest(const DVec3& p, const std::vector<Station>& line, int first, int last, int& at) {
+        Hit best;
+        best.off = std::numeric_limits<double>::max();
+        best.distance = std::numeric_limits<double>::max();
+        first = std::max(first, 1);
+        last = std::min(last, static_cast<int>(line.size()) - 1);
+        for (int j = first; j <= last; j++) {
+            const Hit hit =
+                hit_segment(p, line[j - 1].position, line[j - 1].radius, line[j].position, line[j].radius);
+            if (hit.distance >= best.distance) continue;
+            best = hit;
+            at = j;
+        }
+        return best;
+    }
+
+    // Whether a point belongs to the parent or to a side limb rather than to this one.
+    bool is_foreign(const DVec3& p, int station, double off) const {
+        int ignored = 0;
+        if (limb_.parent >= 0 && station <= kNearStations) {
+            const Hit hit = nearest(p, axes_[limb_.parent], limb_.attach - kNearStations,
+                                    limb_.attach + 1 + kNearStations, ignored);
+            if (std::abs(hit.off) < off) return true;
+        }
+        for (auto it = std::lower_bound(sides_.begin(), sides_.end(), station - kNearStations,
+                                        [&](int32_t side, int from) { return limbs_[side].attach < from; });
+             it != sides_.end() && limbs_[*it].attach <= station + kNearStations; ++it) {
+            const std::vector<Station>& side = axes_[*it];
+            const Station& fork = line_[limbs_[*it].attach];
+            const Hit base = hit_segment(p, fork.position, side[0].radius, side[0].position, side[0].radius);
+            if (std::abs(base.off) < off) return true;
+            if (std::abs(nearest(p, side, 1, kFirstSegments, ignored).off) < off) return true;
+        }
+        return false;
+    }
+
+    void add_point(uint32_t v, int station, std::vector<std::pair<int, Sample>>& found) const {
+        const DVec3 p(points_[v]);
+        int at = 0;
+        const Hit hit = nearest(p, line_, station - kNearSegments + 1, station + kNearSegments, at);
+        if (at == 0 || hit.distance <= 0.0) return;
+        // Beyond the ends, the distance says nothing about the radius.
+        if ((at == 1 && hit.t <= 0.0) || (at == count_ - 1 && hit.t >= 1.0)) return;
+        if (is_foreign(p, station, std::abs(hit.off))) return;
+        const int own = hit.t < 0.5 ? at - 1 : at;
+        const DVec3 n = hit.offset / hit.distance;
+        found.emplace_back(
+            own, Sample{static_cast<float>(glm::dot(n, frame_[own][0])),
+                        static_cast<float>(glm::dot(n, frame_[own][1])), static_cast<float>(hit.distance)});
+    }
+
+    // The samples, by station.
+    void collect() {
+        std::vector<std::pair<int, Sample>> found;
+        found.reserve(own_points_.size());
+        for (const uint32_t v : own_points_)
+            add_point(v, places_.station[v], found);
+        begin_.assign(line_.size() + 1, 0);
+        for (const auto& [station, sample] : found)
+            begin_[station + 1]++;
+        for (size_t i = 0; i < line_.size(); i++)
+            begin_[i + 1] += begin_[i];
+        samples_.resize(found.size());
+        std::vector<size_t> fill(begin_.begin(), begin_.end() - 1);
+        for (const auto& [station, sample] : found)
+            samples_[fill[station]++] = sample;
+    }
+
+    // The stations whose points speak for station i.
+    std::pair<int, int> window(int i) const {
+        int first = i;
+        int last = i;
+        const double reach = kWindow * line_[i].radius;
+        double before = 0.0;
+        double after = 0.0;
+        for (bool grew = true; grew;) {
+            grew = false;
+            const bool few = begin_[last + 1] - begin_[first] < kWantedPoints;
+            if (first > 0 && !line_[first].bridged) {
+                const double step = glm::distance(line_[first].position, line_[first - 1].position);
+                if (before + step <= reach || (few && i - first < kWidestWindow)) {
+                    before += step;
+                    first--;
+                    grew = true;
+                }
+            }
+            if (last + 1 < count_ && !line_[last + 1].bridged) {
+                const double step = glm::distance(line_[last].position, line_[last + 1].position);
+                if (after + step <= reach || (few && last - i < kWidestWindow)) {
+                    after += step;
+                    last++;
+                    grew = true;
+                }
+            }
+        }
+        return {first, last};
+    }
+
+    // The share of eight directions from which points on the surface are seen.
+    double coverage(size_t begin, size_t end, double radius, double scale) const {
+        std::array<bool, 8> seen{};
+        for (size_t s = begin; s < end; s++) {
+            const Sample& sample = samples_[s];
+            if (std::abs(sample.distance - radius) > scale) continue;
+            seen[(sample.x < 0.0f ? 4 : 0) | (sample.y < 0.0f ? 2 : 0) |
+                 (std::abs(sample.y) > std::abs(sample.x) ? 1 : 0)] = true;
+        }
+        return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / 8.0;
+    }
+
+    // Where the points surround the axis at one distance, that is the radius, even if they are too few or too
+    // noisy for a circle of their own. A station that none of its neighbours confirms is an accident.
+    void believe_round(std::vector<Station>& result) const {
+        for (int i = 0; i < count_; i++) {
+            if (result[i].measured || !round_[i]) continue;
+            bool confirmed = false;
+            for (int j = std::max(0, i - 2); j <= std::min(count_ - 1, i + 2); j++)
+                confirmed =
+                    confirmed || (j != i && (round_[j] || line_[j].measured) &&
+                                  std::abs(result[j].radius - result[i].radius) < kAlike * result[i].radius);
+            result[i].measured = confirmed;
+        }
+    }
+
+    void refine_station(int i, Station& station, DVec3& shift) {
+        const auto [first, last] = window(i);
+        const size_t begin = begin_[first];
+        const size_t end = begin_[last + 1];
+        station.scatter = 0.0;
+        if (end - begin < kLeastPoints) {
+            if (!station.measured) station.radius = 0.0;
+            return;
+        }
+        values_.clear();
+        for (size_t s = begin; s < end; s++)
+            values_.push_back(samples_[s].distance);
+        const double middle = median_of(values_);
+        const double radius = station.measured ? station.radius : middle;
+        for (float& value : values_)
+            value = std::abs(value - static_cast<float>(radius));
+        const double deviation = median_of(values_);
+        const double scale = kTukey * (kMadToSigma * deviation + 1e-6 * radius + 1e-9);
+        Normal normal;
+        for (size_t s = begin; s < end; s++) {
+            const double residual = samples_[s].distance - radius;
+            const double t = residual / scale;
+            if (std::abs(t) < 1.0) normal.add(samples_[s], (1.0 - t * t) * (1.0 - t * t), residual);
+        }
+        const DVec3 step = normal.solve();
+        DVec2 move(step.x, step.y);
+        const double most = kMostShift * std::max(line_[i].radius, kThinTwig);
+        if (glm::length(move) > most) move *= most / glm::length(move);
+        shift = move.x * frame_[i][0] + move.y * frame_[i][1];
+        station.scatter = deviation;
+        station.radius = station.measured ? std::max(kThinnest, radius + step.z) : middle;
+        round_[i] = end - begin >= kRoundPoints && deviation <= kRoundScatter * radius && noise_ > 0.0 &&
+                    radius >= kAboveNoise * noise_ &&
+                    static_cast<double>(end - begin) * radius >=
+                        kRoundDensity * glm::distance(line_[first].position, line_[last].position) &&
+                    coverage(begin, end, radius, scale) >= kRoundCoverage;
+    }
+
+    const std::vector<std::vector<Station>>& axes_;
+    const std::vector<Limb>& limbs_;
+    const Limb& limb_;
+    const std::vector<int32_t>& sides_;  // by attach
+    const PointPlaces& places_;
+    std::span<const uint32_t> own_points_;
+    const std::vector<Vec3>& points_;
+    double noise_;
+    bool complete_;
+    const std::vector<Station>& line_;
+    int count_;
+    std::vector<std::array<DVec3, 2>> frame_;
+    std::vector<size_t> begin_;
+    std::vector<Sample> samples_;
+    std::vector<float> values_;
+    std::vector<uint8_t> round_;  // by station
+};
+
+}  // namespace
+
+PointPlaces places_on_slices(size_t point_count, const std::vector<Limb>& limbs, const Slices& slices) {
+    PointPlaces places;
+    places.limb.assign(point_count, -1);
+    places.station.assign(point_count, 0);
+    for (size_t l = 0; l < limbs.size(); l++) {
+        auto take = [&](int32_t slice, int32_t station) {
+            for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
+                places.limb[v] = static_cast<int32_t>(l);
+                places.station[v] = station;
+            }
+        };
+        const Limb& limb = limbs[l];
+        for (size_t i = 0; i < limb.slices.size(); i++)
+            take(limb.slices[i], static_cast<int32_t>(i));
+        for (size_t m = 0; m < limb.merged.size(); m++)
+            take(limb.merged[m], limb.merged_at[m]);
+        for (size_t a = 0; a < limb.absorbed.size(); a++)
+            take(limb.absorbed[a], limb.absorbed_at[a]);
+    }
+    return places;
+}
+
+void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+                 const PointPlaces& places, const std::vector<Vec3>& points, bool complete,
+                 Progress& progress) {
+    // The points of each limb, in one array.
+    std::vector<size_t> begin(limbs.size() + 1, 0);
+    for (const int32_t limb : places.limb)
+        if (limb >= 0) begin[static_cast<size_t>(limb) + 1]++;
+    for (size_t l = 0; l < limbs.size(); l++)
+        begin[l + 1] += begin[l];
+    std::vector<uint32_t> members(begin.back());
+    std::vector<size_t> fill(begin.begin(), begin.end() - 1);
+    for (size_t v = 0; v < places.limb.size(); v++)
+        if (places.limb[v] >= 0)
+            members[fill[static_cast<size_t>(places.limb[v])]++] = static_cast<uint32_t>(v);
+
+    std::vector<std::vector<int32_t>> sides(limbs.size());
+    for (size_t l = 0; l < limbs.size(); l++)
+        if (limbs[l].parent >= 0) sides[limbs[l].parent].push_back(static_cast<int32_t>(l));
+    for (std::vector<int32_t>& of_limb : sides)
+        std::stable_sort(of_limb.begin(), of_limb.end(),
+                         [&](int32_t a, int32_t b) { return limbs[a].attach < limbs[b].attach; });
+    for (int round = 0; round < kRounds; round++) {
+        const double noise = noise_of(axes);
+        std::vector<std::vector<Station>> next(axes.size());
+        parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
+            for (size_t l = from; l < to; l++) {
+                progress.check();
+                const std::span<const uint32_t> own(members.data() + begin[l], begin[l + 1] - begin[l]);
+                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise, complete).run();
+            }
+        });
+        axes.swap(next);
+    }
+}
+
+}  // namespace treerec

@@ -1,0 +1,31 @@
+// The last look at the points: every axis and radius again, now that all limbs are known.
+#pragma once
+
+#include <vector>
+
+#include "progress.h"
+#include "skeleton/axis.h"
+
+namespace treerec {
+
+// By point: the limb that it lies on, -1 for none, and the station that it is near.
+struct PointPlaces {
+    std::vector<int32_t> limb;
+    std::vector<int32_t> station;
+};
+
+// Where the points of the limbs' slices lie; what side chains left to them included.
+PointPlaces places_on_slices(size_t point_count, const std::vector<Limb>& limbs, const Slices& slices);
+
+// Moves stations and radii (metres) so that each limb's surface runs through the points that are nearer to it
+// than to the limbs it grows from and carries: a few Gauss-Newton steps on the distances to the surface, with
+// Tukey's biweights (Holland and Welsch 1977) and a ridge that keeps what the points do not tell, over
+// windows about as long as the limb is thick. Measured radii become those of the fit. Unmeasured ones become
+// the points' median distance to the axis, and `sure` what is left of that when the points' scatter is taken
+// off (Rice 1945: the length of a noisy vector). axes: from fit_axes(), with infer_radii() behind it. The
+// first station of the first limb stays, as do both ends of bridges. Throws Cancelled on request.
+void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+                 const PointPlaces& places, const std::vector<Vec3>& points, bool complete,
+                 Progress& progress);
+
+}  // namespace treerec
