@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "scan/check_shape.h"
 #include "scan/wood_leaf.h"
 
 namespace treerec {
@@ -80,6 +81,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     result.clean = clean_cloud(result.cloud, options.clean, &cleaning);
     settle_height(result.cloud, options.orient, result.orient);
     append(result.warnings, result.clean.warnings);
+    append(result.warnings, check_shape(result.cloud, &cleaning));
     clock.stop("Clean", result.cloud.size());
     cleaning.check();
 

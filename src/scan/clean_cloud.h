@@ -36,7 +36,8 @@ struct OrientReport {
     std::vector<std::string> warnings;
 };
 
-// Changes the cloud to tree space: metres, Y up; positions, normals and frame agree afterwards. Throws Error
+// Changes the cloud to tree space: metres, Y up; positions, normals and frame agree afterwards. Leaves out
+// points without a finite place or absurdly far away; normals that are not finite become zero. Throws Error
 // for an empty cloud, for more than one scale and for a scale or length that is not positive.
 OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progress* progress = nullptr);
 

@@ -150,6 +150,8 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
     for (const uint32_t l : label)
         size[l]++;
     const size_t largest = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    // Points that are all far from each other are no fragments of anything.
+    if (size[largest] < 10) return goes;
 
     // A part with a share of the points is one of the tree's unless it stands well apart: a stem below a gap,
     // a limb seen from one side.

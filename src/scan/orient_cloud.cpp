@@ -16,6 +16,13 @@ constexpr size_t kPointsPerTask = size_t{1} << 17;
 constexpr size_t kLookedAt = 8192;  // points
 // How much more an upside-down stem must look like one. Both ends of a pruned tree look like stems.
 constexpr double kFlipMargin = 1.3;
+// How much better a rival axis must look before it is named.
+constexpr double kRivalMargin = 0.8;
+// The same for the other end of the axis that was taken.
+constexpr double kHeadMargin = 0.6;
+// Times the extent: further out there is no tree, and no float either.
+constexpr double kFarthest = 1000.0;
+constexpr double kStemSlenderness = 4.0;
 // Coordinates this large are a map's (UTM and the like), and maps are Z up.
 constexpr double kMapCoordinates = 1e5;
 
@@ -129,28 +136,71 @@ bool is_on_map(const DVec3& origin) {
     return std::max(std::abs(origin.x), std::abs(origin.y)) > kMapCoordinates;
 }
 
-// Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; no program puts
+struct UpGuess {
+    UpAxis up = UpAxis::kZ;
+    bool sure = true;
+    UpAxis rival = UpAxis::kZ;  // another axis along which the tree would stand better; else the same
+};
+
+// Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; few programs put
 // the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
-// without colours, which photos would have given it.
-UpAxis detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, bool& sure,
-                 const Progress* progress) {
-    sure = true;
-    if (is_on_map(cloud.frame.origin)) return UpAxis::kZ;
+// without colours, which photos would have given it. A branch may lie along any axis: X and -Z are only taken
+// for clouds from photos, whose axes may point anywhere, and told to the user otherwise.
+UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, const Progress* progress) {
+    UpGuess guess;
+    if (is_on_map(cloud.frame.origin)) return guess;
 
     const std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
+    const AxisView x = view_axis(points, ranges, 0);
     const AxisView y = view_axis(points, ranges, 1);
     const AxisView z = view_axis(points, ranges, 2);
     const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
     const double z_score = z.low_end.score + z.elongation_score;
     const double margin = cloud.has_colors() ? 0.2 : 0.4;
-    const double least_slenderness = cloud.has_colors() ? 1.5 : 4.0;
-    sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
-    if (y_score <= z_score + margin) return UpAxis::kZ;
-    if (std::max(y.low_end.slenderness, y.high_end.slenderness) <= least_slenderness) {
-        sure = false;
-        return UpAxis::kZ;
+    const double least_slenderness = cloud.has_colors() ? 1.5 : kStemSlenderness;
+    guess.sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
+    if (y_score > z_score + margin) {
+        if (std::max(y.low_end.slenderness, y.high_end.slenderness) > least_slenderness)
+            guess.up = y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
+        else
+            guess.sure = false;
     }
-    return y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
+    guess.rival = guess.up;
+    const double score = guess.up == UpAxis::kZ ? z_score : y_score;
+    double best = score + kRivalMargin;
+    const auto consider = [&](UpAxis up, const EndView& end, double elongation) {
+        if (end.slenderness < kStemSlenderness || end.score + elongation <= best) return;
+        best = end.score + elongation;
+        guess.rival = up;
+    };
+    consider(UpAxis::kX, x.low_end, x.elongation_score);
+    consider(UpAxis::kNegX, x.high_end, x.elongation_score);
+    // On its head: the same axis, so that the ends alone count.
+    if (guess.rival == UpAxis::kZ && z.high_end.score > z.low_end.score + kHeadMargin) {
+        guess.rival = UpAxis::kNegZ;
+        best = z.high_end.score + z.elongation_score;
+    }
+    if (guess.rival == UpAxis::kY && y.high_end.score > y.low_end.score + kHeadMargin)
+        guess.rival = UpAxis::kNegY;
+    if (guess.rival == guess.up) return guess;
+    guess.sure = false;
+    if (cloud.has_colors() && best > score + kFlipMargin) guess.up = guess.rival;
+    return guess;
+}
+
+std::string doubt_about_up(const UpGuess& guess) {
+    const std::string taken = up_axis_name(guess.up);
+    if (guess.rival == guess.up &&
+        (guess.up == UpAxis::kZ || guess.up == UpAxis::kY || guess.up == UpAxis::kNegY))
+        return "The shape does not tell which way is up; " + taken +
+               " was taken. If the tree lies or hangs, set the up axis by hand.";
+    if (guess.rival == guess.up)
+        return "The tree stands along " + taken +
+               ", an unusual axis, which was taken for up. If that is wrong, set the up axis by hand.";
+    return std::string(up_axis_name(guess.rival)) + " looks more like the way up than " + taken +
+           ", which was taken because it is the usual one. If the tree stands on its head or lies on its "
+           "side, "
+           "set the up axis by hand.";
 }
 
 size_t axis_of(UpAxis up) {
@@ -158,24 +208,57 @@ size_t axis_of(UpAxis up) {
     return up == UpAxis::kY || up == UpAxis::kNegY ? 1 : 2;
 }
 
+// Points without a place, and points so far away that only a broken file has them: they would make every
+// length meaningless.
+void drop_impossible_points(PointCloud& cloud, OrientReport& report, const Progress* progress) {
+    if (progress) progress->check();
+    std::vector<uint8_t> keep(cloud.size(), 1);
+    const auto drop_where = [&](const auto& is_impossible) {
+        size_t dropped = 0;
+        for (size_t i = 0; i < keep.size(); i++) {
+            keep[i] = !is_impossible(cloud.positions[i]);
+            dropped += keep[i] == 0;
+        }
+        if (dropped == keep.size()) throw Error("No point of the cloud has three finite coordinates.");
+        if (dropped > 0) cloud.keep_only(keep);
+        keep.resize(cloud.size());
+        if (progress) progress->check();
+        return dropped;
+    };
+    size_t dropped = drop_where([](const Vec3& p) { return !is_finite(DVec3(p)); });
+    const std::array<Range, 3> ranges = robust_ranges(cloud.positions, progress);
+    const double reach = kFarthest * std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
+    if (reach > 0.0)
+        dropped += drop_where([&](const Vec3& p) {
+            for (int axis = 0; axis < 3; axis++) {
+                const Range& range = ranges[static_cast<size_t>(axis)];
+                if (p[axis] < range.low - reach || p[axis] > range.high + reach) return true;
+            }
+            return false;
+        });
+    if (dropped > 0)
+        report.warnings.push_back(std::to_string(dropped) + (dropped == 1 ? " point has" : " points have") +
+                                  " no possible place (not a number, or absurdly far away) and " +
+                                  (dropped == 1 ? "was" : "were") + " left out.");
+    for (Vec3& n : cloud.normals)
+        if (!is_finite(DVec3(n))) n = Vec3(0.0F);
+}
+
 }  // namespace
 
 OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progress* progress) {
     OrientReport report;
     if (cloud.empty()) throw Error("The cloud has no points.");
-    if (progress) progress->check();
+    drop_impossible_points(cloud, report, progress);
     const std::array<Range, 3> ranges = robust_ranges(cloud.positions, progress);
     const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;
     } else {
-        bool sure = false;
-        report.up = detect_up(cloud, ranges, sure, progress);
+        const UpGuess guess = detect_up(cloud, ranges, progress);
+        report.up = guess.up;
         report.up_detected = true;
-        if (!sure)
-            report.warnings.push_back("The shape does not tell which way is up; " +
-                                      std::string(up_axis_name(report.up)) +
-                                      " was taken. If the tree lies or hangs, set the up axis by hand.");
+        if (!guess.sure) report.warnings.push_back(doubt_about_up(guess));
     }
     set_scale(ranges[axis_of(report.up)].size(), on_map, options, report);
 
