@@ -194,16 +194,16 @@ std::vector<std::string> check_shape(const PointCloud& cloud, const Progress* pr
     if (points.size() < kFewestPoints)
         throw Error("The cloud has points in only " + std::to_string(points.size()) +
                     (points.size() == 1 ? " place" : " places") +
-                    ", and a tree needs at least 10. Is the file complete?");
+                    ", and a tree needs at least 10. Check that the file is complete.");
     const std::array<double, 3> spread = spreads(points);
     if (spread[1] <= kFlat * spread[2])
         throw Error(
-            "All points lie on one straight line, so there is no tree in the cloud. Is a column wrong?");
+            "All points lie on one straight line, so there is no tree in the cloud. Check that the file is the "
+            "right one and its columns are read as meant.");
     if (spread[0] <= kFlat * spread[2])
         throw Error(
-            "All points lie on one plane, so there is no tree in the cloud. Is it a picture or a map, or is "
-            "a "
-            "column wrong?");
+            "All points lie on one plane, so there is no tree in the cloud. Check that the file is the right "
+            "one and its columns are read as meant.");
     std::vector<std::string> warnings;
     if (points.size() < 200) return warnings;
     const std::array<Range, 3> ranges = robust_ranges(points, progress);
