@@ -60,16 +60,16 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
     return place;
 }
 
-BarkPlace Bark::nearest(const Vec3& p, int32_t except) const {
+BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const {
     std::array<uint32_t, kNearestOf> index;
     std::array<float, kNearestOf> squared;
     const size_t found =
-        tree_->knnSearch(&p.x, except < 0 ? kNearest : kNearestOf, index.data(), squared.data());
+        tree_->knnSearch(&p.x, except == nullptr ? kNearest : kNearestOf, index.data(), squared.data());
     BarkPlace best;
     best.distance = std::numeric_limits<double>::max();
     for (size_t k = 0; k < found; k++) {
         const auto [limb, station] = names_[index[k]];
-        if (limb == except) continue;
+        if (except != nullptr && (*except)[limb] != 0) continue;
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
     }
@@ -88,14 +88,15 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
     std::vector<uint8_t> goes(limbs.size(), 0);
     for (size_t l = limbs.size(); l-- > 1;) {
         if (bears[l] > 0) continue;
+        goes[l] = 1;  // nor is it looked at itself
         bool escapes = false;
         for (const Station& station : axes[l]) {
-            const BarkPlace place = bark.nearest(Vec3(station.position), static_cast<int32_t>(l));
-            escapes = escapes || place.limb < 0 || goes[place.limb] != 0 ||
-                      place.outside() >= required_escape(least_escape, place.radius);
+            const BarkPlace place = bark.nearest(Vec3(station.position), &goes);
+            escapes =
+                escapes || place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
         }
+        goes[l] = escapes ? 0 : 1;
         if (escapes) continue;
-        goes[l] = 1;
         bears[limbs[l].parent]--;
     }
     std::vector<int32_t> now(limbs.size());

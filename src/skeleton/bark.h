@@ -32,8 +32,8 @@ class Bark {
     // The nearest place around a limb's station, or on the way to it from its parent's axis.
     BarkPlace on_limb(int32_t limb, int32_t station, const DVec3& p) const;
 
-    // The limb whose surface is nearest to p, `except` left aside; limb -1 where there is none near.
-    BarkPlace nearest(const Vec3& p, int32_t except = -1) const;
+    // The limb whose surface is nearest to p, those marked in `except` left aside; limb -1 for none near.
+    BarkPlace nearest(const Vec3& p, const std::vector<uint8_t>* except = nullptr) const;
 
   private:
     const std::vector<Limb>& limbs_;

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 #include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "skeleton/bridges.h"
 
 namespace treerec {
 
@@ -22,80 +21,6 @@ constexpr int kScaleSmoothings = 3;
 constexpr float kStrayFactor = 2.5f;  // times the neighbours' spacing, at most
 constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
-
-using Edge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
-
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
-
-void join(std::vector<uint32_t>& leader, uint32_t a, uint32_t b) {
-    a = find(leader, a);
-    b = find(leader, b);
-    leader[std::max(a, b)] = std::min(a, b);
-}
-
-// nanoflann's result set for the nearest point of another part.
-struct NearestOutside {
-    using DistanceType = float;
-
-    const std::vector<uint32_t>& part;
-    uint32_t own;
-    float best;  // squared metres
-    uint32_t index = 0;
-    bool found = false;
-
-    size_t size() const { return found ? 1 : 0; }
-    bool full() const { return true; }
-    float worstDist() const { return best; }
-    bool addPoint(float distance, uint32_t candidate) {
-        if (part[candidate] != own && distance < best) {
-            best = distance;
-            index = candidate;
-            found = true;
-        }
-        return true;
-    }
-    void sort() {}
-};
-
-// Boruvka's algorithm from the parts that the edges leave: each but the largest part is linked to the part
-// nearest to it, until one is left.
-void connect_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vector<Edge>& edges,
-                   Progress& progress) {
-    std::vector<uint32_t> leader(points.size());
-    std::iota(leader.begin(), leader.end(), 0u);
-    for (const auto& [a, b] : edges)
-        join(leader, a, b);
-    std::vector<uint32_t> part(points.size());
-    std::vector<uint32_t> members(points.size());
-    std::vector<std::pair<float, Edge>> link(points.size());
-    for (;;) {
-        std::fill(members.begin(), members.end(), 0u);
-        for (uint32_t v = 0; v < points.size(); v++)
-            members[part[v] = find(leader, v)]++;
-        const auto largest =
-            static_cast<uint32_t>(std::max_element(members.begin(), members.end()) - members.begin());
-        if (members[largest] == points.size()) return;
-        std::fill(link.begin(), link.end(), std::pair(std::numeric_limits<float>::max(), Edge{}));
-        for (uint32_t v = 0; v < points.size(); v++) {
-            if (part[v] == largest) continue;
-            if (v % kGrain == 0) progress.check();
-            NearestOutside nearest{part, part[v], link[part[v]].first};
-            tree.findNeighbors(nearest, &points[v].x, nanoflann::SearchParams());
-            if (nearest.found)
-                link[part[v]] = {nearest.best, Edge{std::min(v, nearest.index), std::max(v, nearest.index)}};
-        }
-        for (const auto& [distance, edge] : link) {
-            if (distance == std::numeric_limits<float>::max()) continue;
-            if (find(leader, edge.first) == find(leader, edge.second)) continue;
-            join(leader, edge.first, edge.second);
-            edges.push_back(edge);
-        }
-    }
-}
 
 }  // namespace
 
@@ -117,7 +42,7 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
                 if (index[i] != v) *to++ = index[i];
         }
     });
-    std::vector<Edge> edges;
+    std::vector<PointEdge> edges;
     edges.reserve(points.size() * kNeighbours * 2 / 3);
     for (uint32_t v = 0; v < points.size(); v++)
         for (size_t i = 0; i < near; i++) {
@@ -127,7 +52,7 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
             if (v < n || std::find(others, others + near, v) == others + near)
                 edges.emplace_back(std::min(v, n), std::max(v, n));
         }
-    connect_parts(points, tree, edges, progress);
+    bridge_parts(points, tree, edges, progress);
 
     PointGraph graph;
     graph.begin.assign(points.size() + 1, 0);

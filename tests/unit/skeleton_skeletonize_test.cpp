@@ -170,6 +170,26 @@ TEST(Skeletonize, BridgesAGapAndSaysSo) {
     EXPECT_LT(distance_to_tree({0, 1.9, 0}, result.tree, cloud), 0.03);
 }
 
+// A branch whose foot the scan has missed, and above it a bough that is nearer than the stem it grew from.
+TEST(Skeletonize, BridgesAGapInABranchsOwnDirection) {
+    Random random(12);
+    PointCloud cloud;
+    const DVec3 along = glm::normalize(DVec3(1.0, 0.7, 0.0));
+    const DVec3 fork(0.0, 1.5, 0.0);
+    add_cone(cloud, random, {0, 0, 0}, {0, 4, 0}, 0.1, 0.05, 0.015, 0.002);
+    add_cone(cloud, random, fork + 0.6 * along, fork + 2.2 * along, 0.03, 0.015, 0.008, 0.001);
+    add_cone(cloud, random, {0, 2.9, 0}, {1.4, 2.83, 0}, 0.04, 0.03, 0.01, 0.001);
+    const SkeletonResult result = skeletonize(cloud, {});
+    expect_sane(result);
+    EXPECT_EQ(tips(result.tree), 3u);
+    // The gap is bridged, and known to be a guess.
+    EXPECT_LT(distance_to_tree(fork + 0.35 * along, result.tree, cloud), 0.06);
+    size_t guesses = 0;
+    for (NodeId id : result.tree.depth_first())
+        guesses += result.tree.node(id).is_guess() ? 1 : 0;
+    EXPECT_EQ(guesses, 1u);
+}
+
 TEST(Skeletonize, GivesSeveralStemsOneRoot) {
     Random random(6);
     PointCloud cloud;

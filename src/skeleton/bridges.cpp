@@ -1,0 +1,225 @@
+#include "skeleton/bridges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "geometry/parallel.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kGrain = 2048;        // points between two looks at the cancel flag
+constexpr float kLonger = 3.0f;        // times the shortest link: the links that are compared
+constexpr size_t kCompared = 16;       // of their starts
+constexpr uint32_t kSampled = 7;       // one of so many points
+constexpr size_t kLeastPart = 40;      // points: a smaller part runs nowhere
+constexpr double kAround = 2.0;        // link lengths: the wood that tells the direction
+constexpr double kLeastAround = 12.0;  // points
+constexpr double kElongated = 3.0;     // variance along over variance across: a direction that can be trusted
+constexpr double kAsideWeight = 2.5;   // a link straight aside counts as so many times longer, and once
+
+struct Link {
+    float squared;  // metres
+    uint32_t from;
+    uint32_t to;
+};
+
+// nanoflann's result set for the nearest point of another part.
+struct NearestOutside {
+    using DistanceType = float;
+
+    const std::vector<uint32_t>& part;
+    uint32_t own;
+    float best;  // squared metres
+    uint32_t index;
+
+    size_t size() const { return 1; }
+    bool full() const { return true; }
+    float worstDist() const { return best; }
+    bool addPoint(float distance, uint32_t candidate) {
+        if (part[candidate] != own && distance < best) {
+            best = distance;
+            index = candidate;
+        }
+        return true;
+    }
+    void sort() {}
+};
+
+uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
+    while (leader[v] != v)
+        v = leader[v] = leader[leader[v]];
+    return v;
+}
+
+void join(std::vector<uint32_t>& leader, uint32_t a, uint32_t b) {
+    a = find(leader, a);
+    b = find(leader, b);
+    leader[std::max(a, b)] = std::min(a, b);
+}
+
+class Bridges {
+  public:
+    Bridges(const std::vector<Vec3>& points, const KdTree& tree)
+        : points_(points), tree_(tree), leader_(points.size()), part_(points.size()) {
+        std::iota(leader_.begin(), leader_.end(), 0u);
+    }
+
+    void add(std::vector<PointEdge>& edges, Progress& progress) {
+        for (const auto& [a, b] : edges)
+            join(leader_, a, b);
+        while (number_parts()) {
+            // A few points of each part tell how far it is at most to the next.
+            std::vector<Link> shortest(points_.size(), {std::numeric_limits<float>::infinity(), 0, 0});
+            for (uint32_t v = 0; v < points_.size(); v++) {
+                if (part_[v] == largest_ || v % kSampled != 0) continue;
+                Link& best = shortest[part_[v]];
+                const Link link = nearest_outside(v, best.squared);
+                if (link.squared < best.squared) best = link;
+            }
+            // Then all: the link to the nearest other part, where that may count.
+            std::vector<Link> nearest(points_.size());
+            parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
+                progress.check();
+                for (size_t v = begin; v < end; v++)
+                    if (part_[v] != largest_)
+                        nearest[v] = nearest_outside(static_cast<uint32_t>(v),
+                                                     1.0001f * longer(part_[v]) * shortest[part_[v]].squared);
+            });
+            std::vector<Link> links;
+            for (uint32_t v = 0; v < points_.size(); v++) {
+                const Link& link = nearest[v];
+                if (part_[v] == largest_ || link.from == link.to) continue;
+                if (link.squared < shortest[part_[v]].squared) shortest[part_[v]] = link;
+                if (members_[part_[v]] >= kLeastPart) links.push_back(link);
+            }
+            std::erase_if(links, [&](const Link& link) {
+                return link.squared > shortest[part_[link.from]].squared * longer(part_[link.from]);
+            });
+            std::stable_sort(links.begin(), links.end(), [&](const Link& a, const Link& b) {
+                return part_[a.from] != part_[b.from] ? part_[a.from] < part_[b.from] : a.squared < b.squared;
+            });
+            size_t next = 0;
+            for (uint32_t part = 0; part < points_.size(); part++) {
+                Link best = shortest[part];
+                if (std::isinf(best.squared)) continue;
+                const size_t begin = next;
+                while (next < links.size() && part_[links[next].from] == part)
+                    next++;
+                progress.check();
+                const double longest = kLonger * std::sqrt(best.squared);
+                double least = std::numeric_limits<double>::max();
+                const size_t stride = 1 + (next - begin) / kCompared;
+                for (size_t i = begin; i < next; i += stride) {
+                    // Links come in the order of their lengths, and a cost is at least the length.
+                    if (std::sqrt(links[i].squared) >= least) break;
+                    straightest(links[i], longest, least, best);
+                }
+                if (find(leader_, best.from) == find(leader_, best.to)) continue;
+                join(leader_, best.from, best.to);
+                edges.emplace_back(std::min(best.from, best.to), std::max(best.from, best.to));
+            }
+        }
+    }
+
+  private:
+    // False where only one part is left.
+    bool number_parts() {
+        members_.assign(points_.size(), 0u);
+        for (uint32_t v = 0; v < points_.size(); v++)
+            members_[part_[v] = find(leader_, v)]++;
+        largest_ =
+            static_cast<uint32_t>(std::max_element(members_.begin(), members_.end()) - members_.begin());
+        return members_[largest_] < points_.size();
+    }
+
+    // A link from v to itself where no other part is nearer than `most` (squared metres).
+    Link nearest_outside(uint32_t v, float most) const {
+        NearestOutside nearest{part_, part_[v], most, v};
+        tree_.findNeighbors(nearest, &points_[v].x, nanoflann::SearchParams());
+        return {nearest.best, v, nearest.index};
+    }
+
+    // Squared lengths, times the shortest: the links of a part that are compared. A few points run nowhere:
+    // of their links, the shortest is the best.
+    float longer(uint32_t part) const { return members_[part] < kLeastPart ? 1.0f : kLonger * kLonger; }
+
+    // Where the wood around a link's start runs: a line through `middle`, or no direction.
+    struct Run {
+        DVec3 middle{0.0};
+        DVec3 axis{0.0};
+        bool known = false;
+    };
+
+    Run run_around(const Link& link) {
+        const float radius = static_cast<float>(kAround) * std::sqrt(link.squared);
+        tree_.radiusSearch(&points_[link.from].x, radius * radius, around_, nanoflann::SearchParams());
+        Run run;
+        double count = 0.0;
+        for (const auto& [v, distance] : around_) {
+            if (part_[v] != part_[link.from]) continue;
+            run.middle += DVec3(points_[v]);
+            count += 1.0;
+        }
+        if (count < kLeastAround) return run;
+        run.middle /= count;
+        DMat3 covariance(0.0);
+        for (const auto& [v, distance] : around_) {
+            if (part_[v] != part_[link.from]) continue;
+            const DVec3 d = DVec3(points_[v]) - run.middle;
+            covariance += glm::outerProduct(d, d);
+        }
+        // Power iteration finds the main axis.
+        run.axis = normalized_or(DVec3(points_[link.to]) - run.middle, DVec3(0, 1, 0));
+        for (int i = 0; i < 16; i++)
+            run.axis = normalized_or(covariance * run.axis, run.axis);
+        const double along = glm::dot(run.axis, covariance * run.axis);
+        const double across = 0.5 * (covariance[0][0] + covariance[1][1] + covariance[2][2] - along);
+        run.known = along >= kElongated * across;
+        return run;
+    }
+
+    // Takes the cheapest link from the start of `link` that is at most `longest` metres long, if it costs
+    // less than `least`: its length in metres, the more the further it turns aside.
+    void straightest(const Link& link, double longest, double& least, Link& best) {
+        const Run run = run_around(link);
+        const float radius = static_cast<float>(longest);
+        tree_.radiusSearch(&points_[link.from].x, radius * radius, around_, nanoflann::SearchParams());
+        for (const auto& [to, squared] : around_) {
+            if (part_[to] == part_[link.from]) continue;
+            const double length = std::sqrt(squared);
+            if (length >= least) break;
+            double aside = 0.5;  // of the way
+            if (run.known) {
+                const DVec3 way = DVec3(points_[to]) - run.middle;
+                const double ahead = std::abs(glm::dot(way, run.axis));
+                const double off = std::sqrt(std::max(0.0, glm::dot(way, way) - ahead * ahead));
+                aside = off / (ahead + off);
+            }
+            const double cost = length * (1.0 + kAsideWeight * aside);
+            if (cost >= least) continue;
+            least = cost;
+            best = {squared, link.from, to};
+        }
+    }
+
+    const std::vector<Vec3>& points_;
+    const KdTree& tree_;
+    std::vector<uint32_t> leader_;
+    std::vector<uint32_t> part_;
+    std::vector<uint32_t> members_;  // by part
+    uint32_t largest_ = 0;
+    std::vector<std::pair<uint32_t, float>> around_;  // scratch
+};
+
+}  // namespace
+
+void bridge_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vector<PointEdge>& edges,
+                  Progress& progress) {
+    Bridges(points, tree).add(edges, progress);
+}
+
+}  // namespace treerec

@@ -1,0 +1,22 @@
+// Links over the gaps that a scan leaves in the wood.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "geometry/kd_tree.h"
+#include "progress.h"
+
+namespace treerec {
+
+using PointEdge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
+
+// Adds edges until all points are connected. Every part that the edges leave, but the largest, is linked to
+// another one, again and again until one part is left (Boruvka's algorithm): not by the shortest edge of all,
+// but by one of the shortest that best continues the wood that it comes from, since a branch goes on beyond a
+// gap as it did before. tree: over points.
+void bridge_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vector<PointEdge>& edges,
+                  Progress& progress);
+
+}  // namespace treerec
