@@ -52,68 +52,97 @@ RawCloud read_raw(const ReadJob& job) {
     return read_text(job);
 }
 
-bool usable(const DVec3& p, const DVec3& origin, double limit) {
-    const DVec3 d = glm::abs(p - origin);
-    return d.x <= limit && d.y <= limit && d.z <= limit;
+inline bool usable(const DVec3& p, const DVec3& origin, double limit) {
+    // Not so for NaN. Without branches: nearly all points are usable.
+    return static_cast<int>(std::abs(p.x - origin.x) <= limit) &
+           static_cast<int>(std::abs(p.y - origin.y) <= limit) &
+           static_cast<int>(std::abs(p.z - origin.z) <= limit);
 }
 
 constexpr size_t kGrain = 1 << 16;  // points per chunk: a millisecond of work
 
-// The middle of the usable values of an axis, and how many those are: exact, so independent of the order.
-// Only what lies between two quantiles of a sample is sorted out (R. Floyd, R. Rivest, "Expected time bounds
-// for selection", 1975).
-double median_of(const ReadJob& job, const std::vector<DVec3>& positions, int axis, size_t& usable_count) {
-    const auto is_usable = [](const DVec3& p) { return usable(p, DVec3(0.0), kLargestCoordinate); };
-    const size_t stride = positions.size() / 8192 + 1;
-    std::vector<double> values;
-    for (size_t i = 0; i < positions.size(); i += stride)
-        if (is_usable(positions[i])) values.push_back(positions[i][axis]);
-    std::sort(values.begin(), values.end());
+// Between which values of an axis its middle is looked for, and what was found there.
+struct Bracket {
     double low = -kLargestCoordinate;
     double high = kLargestCoordinate;
-    if (stride > 1 && !values.empty()) {
-        low = values[values.size() * 46 / 100];
-        high = values[values.size() * 54 / 100];
-    }
-    for (;;) {
-        values.clear();
-        usable_count = 0;
-        size_t below = 0;
-        for (size_t begin = 0; begin < positions.size(); begin += kGrain) {
-            if (job.progress) job.progress->check();
-            for (size_t i = begin; i < std::min(begin + kGrain, positions.size()); i++) {
-                if (!is_usable(positions[i])) continue;
-                const double value = positions[i][axis];
-                usable_count++;
-                below += value < low;
-                if (value >= low && value <= high) values.push_back(value);
+    size_t below = 0;
+    std::vector<double> inside;
+};
+
+// Counts the usable points and gathers what lies in the brackets.
+size_t fill_brackets(const ReadJob& job, const std::vector<DVec3>& positions,
+                     std::array<Bracket, 3>& brackets) {
+    struct Part {
+        size_t usable_count = 0;
+        std::array<size_t, 3> below{};
+        std::array<std::vector<double>, 3> inside;
+    };
+    std::vector<Part> parts((positions.size() + kGrain - 1) / kGrain);
+    job.parallel(positions.size(), kGrain, kPointsRead, 0.85, [&](size_t begin, size_t end) {
+        Part& part = parts[begin / kGrain];
+        for (size_t i = begin; i < end; i++) {
+            const DVec3& p = positions[i];
+            if (!usable(p, DVec3(0.0), kLargestCoordinate)) continue;
+            part.usable_count++;
+            for (size_t axis = 0; axis < 3; axis++) {
+                const double value = p[static_cast<int>(axis)];
+                part.below[axis] += value < brackets[axis].low;
+                if (value >= brackets[axis].low && value <= brackets[axis].high)
+                    part.inside[axis].push_back(value);
             }
         }
-        if (usable_count == 0) return 0.0;
-        const size_t rank = usable_count / 2;
-        if (rank >= below && rank < below + values.size()) {
-            const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank - below);
-            std::nth_element(values.begin(), middle, values.end());
-            return *middle;
+    });
+    size_t usable_count = 0;
+    for (const Part& part : parts) {
+        usable_count += part.usable_count;
+        for (size_t axis = 0; axis < 3; axis++) {
+            brackets[axis].below += part.below[axis];
+            brackets[axis].inside.insert(brackets[axis].inside.end(), part.inside[axis].begin(),
+                                         part.inside[axis].end());
         }
-        // The sample misled: all of them then.
-        low = -kLargestCoordinate;
-        high = kLargestCoordinate;
     }
+    return usable_count;
 }
 
-// Order-independent: the median of each axis, rounded to whole units, over the points with usable
-// coordinates. usable_count: gets how many those are.
+// The median of each axis, rounded to whole units, over the points with usable coordinates; exact, and so
+// independent of the points' order. Only what lies between two quantiles of a sample is sorted out (R. Floyd,
+// R. Rivest, "Expected time bounds for selection", 1975). usable_count: gets how many points those are.
 DVec3 median_origin(const ReadJob& job, const std::vector<DVec3>& positions, size_t& usable_count) {
-    DVec3 origin(0.0);
-    std::array<size_t, 3> counts{};
-    parallel_for(3, 1, [&](size_t begin, size_t end) {
-        for (size_t axis = begin; axis < end; axis++)
-            origin[static_cast<int>(axis)] =
-                std::round(median_of(job, positions, static_cast<int>(axis), counts[axis])) + 0.0;
-    });
-    usable_count = counts[0];
-    return origin;
+    constexpr size_t kSample = 16384;
+    const size_t stride = positions.size() / kSample + 1;
+    std::array<Bracket, 3> brackets;
+    for (int axis = 0; stride > 1 && axis < 3; axis++) {
+        std::vector<double> values;
+        for (size_t i = 0; i < positions.size(); i += stride)
+            if (usable(positions[i], DVec3(0.0), kLargestCoordinate)) values.push_back(positions[i][axis]);
+        std::sort(values.begin(), values.end());
+        if (values.empty()) continue;
+        brackets[static_cast<size_t>(axis)].low = values[values.size() * 48 / 100];
+        brackets[static_cast<size_t>(axis)].high = values[values.size() * 52 / 100];
+    }
+    for (;;) {
+        usable_count = fill_brackets(job, positions, brackets);
+        DVec3 origin(0.0);
+        if (usable_count == 0) return origin;
+        const size_t rank = usable_count / 2;
+        bool found = true;
+        for (size_t axis = 0; axis < 3; axis++) {
+            Bracket& bracket = brackets[axis];
+            if (rank >= bracket.below && rank < bracket.below + bracket.inside.size()) {
+                const auto middle =
+                    bracket.inside.begin() + static_cast<std::ptrdiff_t>(rank - bracket.below);
+                std::nth_element(bracket.inside.begin(), middle, bracket.inside.end());
+                origin[static_cast<int>(axis)] = std::round(*middle) + 0.0;
+                bracket.below = 0;
+                bracket.inside.clear();
+            } else {
+                // The sample misled: all of them then.
+                bracket = {};
+                found = false;
+            }
+        }
+        if (found) return origin;
+    }
 }
 
 std::string of_points(size_t part, size_t whole) {

@@ -166,6 +166,9 @@ TEST(ScanPly, SaysWhatIsWrong) {
     EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement vertex 99999999999999999999\nend_header\n", "a.ply")
                   .find("impossible count"),
               std::string::npos);
+    // What the file says is not obeyed by the terminal.
+    EXPECT_NE(error_of("ply\nformat \x1B[31mred 1.0\nend_header\n", "a.ply").find("'?[31mred'"),
+              std::string::npos);
     const std::string huge =
         "ply\nformat binary_little_endian 1.0\nelement vertex 999999999999\nproperty float x\nproperty float "
         "y\n"
