@@ -198,8 +198,8 @@ std::vector<std::string> check_shape(const PointCloud& cloud, const Progress* pr
     const std::array<double, 3> spread = spreads(points);
     if (spread[1] <= kFlat * spread[2])
         throw Error(
-            "All points lie on one straight line, so there is no tree in the cloud. Check that the file is the "
-            "right one and its columns are read as meant.");
+            "All points lie on one straight line, so there is no tree in the cloud. Check that it is "
+            "the right file and that its columns are read as meant.");
     if (spread[0] <= kFlat * spread[2])
         throw Error(
             "All points lie on one plane, so there is no tree in the cloud. Check that the file is the right "
