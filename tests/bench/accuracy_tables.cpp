@@ -59,13 +59,15 @@ std::vector<AccuracyRow> filtered(const std::vector<AccuracyRow>& rows, const Fi
 
 void print_summaries(const std::vector<AccuracyRow>& rows) {
     std::printf(
-        "\nMeans over all habits; length (at most 100 %%) and DBH errors (at most 30 %%) without sign:\n\n");
+        "\nMeans over all habits but the palm; length (at most 100 %%) and DBH errors (at most 30 %%) "
+        "without sign:\n\n");
     print_header("habits");
     for (double noise : kNoises)
         for (double occlusion : kOcclusions)
             for (double leaves : kLeaves) {
                 const std::vector<AccuracyRow> some = filtered(rows, [&](const AccuracyCase& s) {
-                    return s.noise == noise && s.occlusion == occlusion && s.leaves == leaves;
+                    return s.habit != Habit::kPalm && s.noise == noise && s.occlusion == occlusion &&
+                           s.leaves == leaves;
                 });
                 print_row("all", &some.front().setting, mean_of(some));
             }
