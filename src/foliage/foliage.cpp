@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "geometry/bounds.h"
+#include "geometry/cell_grid.h"
 
 namespace treerec {
 
@@ -18,69 +19,60 @@ constexpr double kLeastGrowth = 1.03;
 constexpr double kLargestEdge = 1e4;
 constexpr size_t kMostPoints = UINT16_MAX;
 
-struct Keyed {
-    uint64_t key;
-    uint32_t point;
-};
-
-uint64_t key_of(const Vec3& p, const DVec3& low, double inverse) {
-    const DVec3 cell = glm::floor((DVec3(p) - low) * inverse);
-    return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) |
-           static_cast<uint64_t>(cell.z);
+std::array<uint16_t, 3> place_of(const FoliageCell& cell) {
+    return {cell.x, cell.y, cell.z};
 }
 
-std::vector<Keyed> sorted_keys(std::span<const Vec3> points, const DVec3& low, double edge) {
-    std::vector<Keyed> keyed(points.size());
-    for (size_t i = 0; i < points.size(); i++)
-        keyed[i] = {key_of(points[i], low, 1.0 / edge), static_cast<uint32_t>(i)};
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
-    return keyed;
-}
-
-size_t count_cells(const std::vector<Keyed>& keyed) {
-    size_t count = keyed.empty() ? 0 : 1;
-    for (size_t i = 1; i < keyed.size(); i++)
-        count += keyed[i].key != keyed[i - 1].key;
-    return count;
+CellLayout choose_layout(std::span<const Vec3> points, const Bounds& bounds, const Progress* progress) {
+    const DVec3 size = bounds.size();
+    const double extent = std::max({size.x, size.y, size.z});
+    CellLayout layout{bounds.min,
+                      std::max(std::min(kEdge, kFineShare * extent), std::max(kExtentShare * extent, 1e-4))};
+    const size_t most = std::clamp<size_t>(
+        static_cast<size_t>(static_cast<double>(points.size()) / kPointsPerCell), 1, kMostFoliageCells);
+    for (;;) {
+        const size_t count = count_cells(points, layout, 4 * most, progress);
+        if (count <= most) return layout;
+        // The number of cells falls with the square of their edge, or faster.
+        layout.cell *=
+            std::max(std::sqrt(static_cast<double>(count) / static_cast<double>(most)), kLeastGrowth);
+    }
 }
 
 }  // namespace
 
-Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<uint8_t, 3>> colors) {
+Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<uint8_t, 3>> colors,
+                       const Progress* progress) {
     Foliage foliage;
     if (points.empty()) return foliage;
     Bounds bounds;
     for (const Vec3& p : points)
         bounds.add(DVec3(p));
-    const DVec3 size = bounds.size();
-    const double extent = std::max({size.x, size.y, size.z});
-    foliage.edge = std::max(std::min(kEdge, kFineShare * extent), std::max(kExtentShare * extent, 1e-4));
-    std::vector<Keyed> keyed = sorted_keys(points, bounds.min, foliage.edge);
-    for (;;) {
-        const auto count = static_cast<double>(count_cells(keyed));
-        const double too_many = std::max(count / static_cast<double>(kMostFoliageCells),
-                                         kPointsPerCell * count / static_cast<double>(points.size()));
-        if (count <= 1.0 || too_many <= 1.0) break;
-        // The number of cells falls with the square of their edge, or faster.
-        foliage.edge *= std::max(std::sqrt(too_many), kLeastGrowth);
-        keyed = sorted_keys(points, bounds.min, foliage.edge);
-    }
-    foliage.origin = bounds.min;
+    const CellGrid grid(points, choose_layout(points, bounds, progress), progress);
+    foliage.origin = grid.layout.low;
+    foliage.edge = grid.layout.cell;
     foliage.colored = !colors.empty();
-    for (size_t begin = 0, end = 0; begin < keyed.size(); begin = end) {
-        std::array<uint64_t, 3> sum{};
-        for (end = begin; end < keyed.size() && keyed[end].key == keyed[begin].key; end++)
-            for (size_t c = 0; c < 3 && foliage.colored; c++)
-                sum[c] += colors[keyed[end].point][c];
+    for (size_t c = 0; c < grid.size(); c++) {
+        const std::span<const uint32_t> in_cell = grid.in_cell(c);
+        const Vec3& p = points[in_cell.front()];
         FoliageCell cell;
-        cell.x = static_cast<uint16_t>(keyed[begin].key >> 32);
-        cell.y = static_cast<uint16_t>(keyed[begin].key >> 16);
-        cell.z = static_cast<uint16_t>(keyed[begin].key);
-        cell.points = static_cast<uint16_t>(std::min(end - begin, kMostPoints));
-        for (size_t c = 0; c < 3; c++)
-            cell.color[c] = static_cast<uint8_t>(sum[c] / (end - begin));
+        // The layout counts from 1.
+        cell.x = static_cast<uint16_t>(grid.layout.index(p.x, 0) - 1);
+        cell.y = static_cast<uint16_t>(grid.layout.index(p.y, 1) - 1);
+        cell.z = static_cast<uint16_t>(grid.layout.index(p.z, 2) - 1);
+        cell.points = static_cast<uint16_t>(std::min(in_cell.size(), kMostPoints));
+        if (foliage.colored) {
+            std::array<uint64_t, 3> sum{};
+            for (const uint32_t i : in_cell)
+                for (size_t k = 0; k < 3; k++)
+                    sum[k] += colors[i][k];
+            for (size_t k = 0; k < 3; k++)
+                cell.color[k] = static_cast<uint8_t>(sum[k] / in_cell.size());
+        }
         foliage.cells.push_back(cell);
     }
+    std::sort(foliage.cells.begin(), foliage.cells.end(),
+              [](const FoliageCell& a, const FoliageCell& b) { return place_of(a) < place_of(b); });
     return foliage;
 }
 
@@ -95,7 +87,7 @@ void check_foliage(const Foliage& foliage) {
     const FoliageCell* before = nullptr;
     for (const FoliageCell& cell : foliage.cells) {
         if (cell.points == 0) throw Error(damaged + "a cell is without points" + advice);
-        if (before && std::array{before->x, before->y, before->z} >= std::array{cell.x, cell.y, cell.z})
+        if (before && place_of(*before) >= place_of(cell))
             throw Error(damaged + "its cells are out of order" + advice);
         before = &cell;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "progress.h"
 
 namespace treerec {
 
@@ -39,7 +40,8 @@ inline constexpr size_t kMostFoliageCells = 20000;
 // Gathers leaf points (metres, tree space, finite) into cells of 12 cm, or larger ones where those would be
 // too many or too thinly filled to tell dense from sparse. colors: one per point, or empty. The order of the
 // points is no matter.
-Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<uint8_t, 3>> colors);
+Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<uint8_t, 3>> colors,
+                       const Progress* progress = nullptr);
 
 // Throws Error unless the foliage is as described above: for what comes out of files.
 void check_foliage(const Foliage& foliage);

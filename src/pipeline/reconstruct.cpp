@@ -41,7 +41,7 @@ void rebase_cloud(PointCloud& cloud, const ScanFrame& frame) {
     cloud.frame = frame;
 }
 
-Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf) {
+Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf, const Progress& progress) {
     std::vector<Vec3> points;
     std::vector<Color8> colors;
     for (size_t i = 0; i < cloud.size(); i++) {
@@ -49,7 +49,7 @@ Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf) {
         points.push_back(cloud.positions[i]);
         if (cloud.has_colors()) colors.push_back(cloud.colors[i]);
     }
-    return gather_foliage(points, colors);
+    return gather_foliage(points, colors, &progress);
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     clock.restart();
     PointCloud wood;
     if (told.foliage) {
-        result.foliage = foliage_of(result.cloud, told.leaf);
+        result.foliage = foliage_of(result.cloud, told.leaf, telling);
         result.foliage.reach = told.reach;
         result.leaf_points = static_cast<size_t>(std::count(told.leaf.begin(), told.leaf.end(), uint8_t{1}));
         wood = result.cloud;
