@@ -15,6 +15,8 @@ namespace {
 
 enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kUnknown };
 
+constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
+
 Format format_of(const std::string& path) {
     const std::string extension = extension_of(path);
     if (extension == "glb" || extension == "gltf") return Format::kGltf;
@@ -45,7 +47,7 @@ TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const
 const Mesh& TreeExporter::bark() {
     if (!bark_) {
         TubeOptions tubes;
-        tubes.pivots = false;
+        tubes.for_engine = false;
         bark_ = build_branch_tubes(tree_, tubes, progress_);
     }
     return *bark_;
@@ -57,12 +59,16 @@ const std::vector<LeafPlacement>& TreeExporter::placed() {
 }
 
 const Mesh& TreeExporter::leaf_cards() {
-    if (!leaf_cards_) leaf_cards_ = bake_leaves(placed(), 0, progress_);
+    if (!leaf_cards_) leaf_cards_ = bake_leaves(placed(), card_level(), progress_);
     return *leaf_cards_;
 }
 
 size_t TreeExporter::triangles() {
-    return bark().triangle_count() + leaves() * build_leaf_card().triangle_count();
+    return bark().triangle_count() + leaves() * build_leaf_card(card_level()).triangle_count();
+}
+
+int TreeExporter::card_level() {
+    return placed().size() > kMostFoldedCards ? 1 : 0;
 }
 
 size_t TreeExporter::leaves() {

@@ -39,6 +39,7 @@ class TreeExporter {
     const Mesh& bark();
     const std::vector<LeafPlacement>& placed();
     const Mesh& leaf_cards();
+    int card_level();
 
     const Tree& tree_;
     ExportOptions options_;
