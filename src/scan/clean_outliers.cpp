@@ -157,6 +157,9 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
     // a limb seen from one side.
     const size_t substantial = std::max<size_t>(5, points.size() / 200);
     const double near = 0.25 * extent;
+    // A few points are a leaf or the end of a twig if they are nearer still.
+    constexpr size_t kFew = 10;
+    const double very_near = 0.08 * extent;
     std::vector<Vec3> main;
     for (size_t i = 0; i < points.size(); i++)
         if (label[i] == largest) main.push_back(points[i]);
@@ -164,14 +167,14 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
     const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     std::vector<double> gap(count, std::numeric_limits<double>::max());
     for (size_t i = 0; i < points.size(); i++) {
-        if (label[i] == largest || size[label[i]] < substantial) continue;
+        if (label[i] == largest || size[label[i]] < std::min(kFew, substantial)) continue;
         uint32_t found = 0;
         float square = 0.0F;
         tree.knnSearch(&points[i].x, 1, &found, &square);
         gap[label[i]] = std::min<double>(gap[label[i]], std::sqrt(square));
     }
     for (size_t i = 0; i < points.size(); i++)
-        goes[i] = label[i] != largest && gap[label[i]] > near;
+        goes[i] = label[i] != largest && gap[label[i]] > (size[label[i]] < substantial ? very_near : near);
     return goes;
 }
 

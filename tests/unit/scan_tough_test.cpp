@@ -127,6 +127,23 @@ TEST(ScanTough, TheOrderOfThePointsAndTheirCopiesDoNotMatter) {
     EXPECT_EQ(once, sorted(first.cloud));
 }
 
+// A leaf of which the stalk was not seen stays; the same further away goes.
+TEST(ScanTough, ASmallPartNearATwigStays) {
+    Random random(16);
+    const std::vector<Vec3> tree = tree_points(4);
+    for (const double gap : {0.6, 2.0}) {
+        std::vector<Vec3> points = tree;
+        for (int i = 0; i < 40; i++)
+            points.emplace_back(DVec3(0.2, 10.0 + gap, 0.1) + 0.05 * random.direction());
+        CleanOptions options;
+        options.remove_outliers = false;
+        PointCloud cloud;
+        cloud.positions = points;
+        clean_cloud(cloud, options);
+        EXPECT_EQ(cloud.size(), gap < 1.0 ? points.size() : tree.size());
+    }
+}
+
 TEST(ScanTough, MapCoordinatesChangeNothing) {
     const std::vector<Vec3> tree = tree_points(4);
     const Cleaned first = prepare(z_up(tree));
