@@ -8,9 +8,9 @@ namespace treerec {
 
 // Writes `path`: .glb in one file, .gltf with a .bin and PNG pictures beside it. Node "Tree" holds the extras
 // and the children "Bark" and "Leaves", each only if it has triangles. Attributes: POSITION, NORMAL, TANGENT
-// (where the mesh has tangents; readers make them otherwise), TEXCOORD_0 and _WIND (the wind channels of
-// design.md as normalized bytes). Metres, Y up. Throws Error, naming the path, where it cannot write or for
-// another extension; or Cancelled.
+// (without it Khronos' validator warns), TEXCOORD_0 and _WIND (the wind channels of design.md as normalized
+// bytes). Metres, Y up. Throws Error, naming the path, where it cannot write or for another extension; or
+// Cancelled.
 void write_gltf(const std::string& path, const ModelFile& model, const Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -349,10 +349,8 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         mesh.normals[vertex] = Vec3(normal);
         mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
         mesh.colors[vertex] = color;
-        if (options.for_engine) {
-            mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
-            mesh.custom0[vertex] = custom0;
-        }
+        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
+        if (options.pivots) mesh.custom0[vertex] = custom0;
         vertex++;
     };
     const auto color_at = [&](const DVec3& centre, double along) {
@@ -470,10 +468,8 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     mesh.normals.resize(vertices);
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
-    if (options.for_engine) {
-        mesh.tangents.resize(vertices);
-        mesh.custom0.resize(vertices);
-    }
+    mesh.tangents.resize(vertices);
+    if (options.pivots) mesh.custom0.resize(vertices);
     mesh.indices.resize(indices);
     parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();

@@ -139,13 +139,12 @@ TEST(BranchTubes, AHugeTreeStaysSoundAndLight) {
     }
 }
 
-TEST(BranchTubes, FilesGetTheSameMeshWithoutTheEnginesPart) {
+TEST(BranchTubes, PivotsCanBeLeftOut) {
     const Tree tree = test::random_tree(4, 500);
     const Mesh with = build_branch_tubes(tree);
-    Mesh without = build_branch_tubes(tree, {.for_engine = false});
-    EXPECT_TRUE(without.custom0.empty() && without.tangents.empty());
+    Mesh without = build_branch_tubes(tree, {.pivots = false});
+    EXPECT_TRUE(without.custom0.empty());
     without.custom0 = with.custom0;
-    without.tangents = with.tangents;
     EXPECT_TRUE(same_bytes(with, without));
 }
 
