@@ -176,7 +176,7 @@ void convert_colors(const ReadJob& job, const RawCloud& raw, PointCloud& cloud) 
     }
     if (largest == 0.0F) return;  // a format with room for colours that nobody filled in
     const float factor = 255.0F / white;
-    cloud.colors.resize(count);
+    make_room(job, cloud.colors, count);
     job.parallel(count, kGrain, 0.92, 0.95, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             for (int k = 0; k < 3; k++) {
@@ -189,7 +189,7 @@ void convert_colors(const ReadJob& job, const RawCloud& raw, PointCloud& cloud) 
 }
 
 void convert_normals(const ReadJob& job, const RawCloud& raw, PointCloud& cloud) {
-    cloud.normals.resize(raw.normals.size());
+    make_room(job, cloud.normals, raw.normals.size());
     std::atomic<bool> any{false};
     job.parallel(raw.normals.size(), kGrain, 0.95, 1.0, [&](size_t begin, size_t end) {
         bool found = false;
@@ -214,7 +214,7 @@ PointCloud settle(const ReadJob& job, RawCloud&& raw) {
     PointCloud cloud;
     cloud.frame.origin = origin;
     std::vector<uint8_t> keep(count);
-    cloud.positions.resize(count);
+    make_room(job, cloud.positions, count);
     std::atomic<size_t> kept{0};
     job.parallel(count, kGrain, 0.85, 0.9, [&](size_t begin, size_t end) {
         size_t own = 0;

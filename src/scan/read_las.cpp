@@ -105,8 +105,8 @@ RawCloud read_las(const ReadJob& job) {
     const size_t count = static_cast<size_t>(header.count);
     const size_t rgb = header.rgb();
     RawCloud raw;
-    raw.positions.resize(count);
-    if (rgb) raw.colors.resize(count);
+    make_room(job, raw.positions, count);
+    if (rgb) make_room(job, raw.colors, count);
     std::vector<uint8_t> withheld(count);
     job.parallel(count, kBlock, kFileRead, kPointsRead, [&](size_t begin, size_t end) {
         const char* record = bytes.data() + header.data + begin * header.stride;

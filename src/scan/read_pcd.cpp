@@ -148,7 +148,7 @@ RawCloud decode(const ReadJob& job, const PcdHeader& header, const Columns& colu
     const size_t count = static_cast<size_t>(header.points);
     constexpr bool kSwap = std::endian::native != std::endian::little;
     RawCloud raw;
-    raw.resize(count, columns.cloud_roles());
+    make_room(job, raw, count, columns.cloud_roles());
     job.parallel(count, kBlock, kFileRead, kPointsRead, [&](size_t begin, size_t end) {
         const char* first = base;
         for (size_t f = 0; f < header.fields.size(); f++) {

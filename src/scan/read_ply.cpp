@@ -85,7 +85,7 @@ class BinaryReader {
             if (element.count > static_cast<uint64_t>(end_ - p_) / stride)
                 fail_cut_off(job_, element, static_cast<uint64_t>(end_ - p_) / stride);
             const size_t count = static_cast<size_t>(element.count);
-            raw.resize(count, vertices.roles);
+            make_room(job_, raw, count, vertices.roles);
             std::vector<char> packed(kBlock * stride);
             for (size_t begin = 0; begin < count; begin += kBlock) {
                 const size_t length = std::min(kBlock, count - begin);
@@ -99,7 +99,7 @@ class BinaryReader {
         }
         const char* rows = take_fixed(element);
         const size_t count = static_cast<size_t>(element.count);
-        raw.resize(count, vertices.roles);
+        make_room(job_, raw, count, vertices.roles);
         job_.parallel(count, kBlock, kFileRead, kPointsRead, [&](size_t begin, size_t end) {
             decode(element, vertices, rows + begin * stride, stride, begin, end - begin, raw);
         });

@@ -124,7 +124,7 @@ RawCloud read_text(const ReadJob& job) {
         room += chunk.room;
     }
     RawCloud raw;
-    raw.resize(room, layout.roles);
+    make_room(job, raw, room, layout.roles);
     job.parallel(chunks.size(), 1, kCounted, kPointsRead, [&](size_t i, size_t) {
         read_chunk(bytes, end_of(i), layout, least_length, chunks[i], raw);
     });

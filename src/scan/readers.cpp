@@ -112,11 +112,11 @@ void ReadJob::parallel(size_t count, size_t grain, double begin, double end,
     });
 }
 
-void RawCloud::resize(size_t count, const std::vector<int8_t>& roles) {
-    positions.resize(count);
-    if (has_role(roles, kRoleR)) colors.resize(count);
-    if (has_role(roles, kRoleNx)) normals.resize(count);
-    if (has_role(roles, kRoleOpacity)) opacities.resize(count);
+void make_room(const ReadJob& job, RawCloud& raw, size_t count, const std::vector<int8_t>& roles) {
+    make_room(job, raw.positions, count);
+    if (has_role(roles, kRoleR)) make_room(job, raw.colors, count);
+    if (has_role(roles, kRoleNx)) make_room(job, raw.normals, count);
+    if (has_role(roles, kRoleOpacity)) make_room(job, raw.opacities, count);
 }
 
 void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {

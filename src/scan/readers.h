@@ -1,6 +1,7 @@
 // What the readers of the several formats share. Internal to scan/.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -48,8 +49,6 @@ struct RawCloud {
     float color_white = 0.0F;  // the value of full brightness; 0: decide by the largest value
 
     size_t size() const { return positions.size(); }
-    // Room for `count` points with what `roles` tell.
-    void resize(size_t count, const std::vector<int8_t>& roles);
     void reserve(size_t count, const std::vector<int8_t>& roles);
     // One row of values by role; whatever else there is than positions must have been said by `roles`.
     void add(const std::array<double, kRoleCount>& row, const std::vector<int8_t>& roles);
@@ -89,6 +88,20 @@ struct ReadJob {
     void parallel(size_t count, size_t grain, double begin, double end,
                   const std::function<void(size_t, size_t)>& body) const;
 };
+
+// Makes room for `count` values, which start as zeros, in pieces: the system takes its time for fresh memory.
+// Throws Cancelled.
+template <typename T>
+void make_room(const ReadJob& job, std::vector<T>& values, size_t count) {
+    constexpr size_t kPiece = size_t{16} << 20;  // bytes: some milliseconds
+    values.reserve(count);
+    while (values.size() < count) {
+        if (job.progress) job.progress->check();
+        values.resize(std::min(count, values.size() + kPiece / sizeof(T)));
+    }
+}
+// For `count` points with what `roles` tell.
+void make_room(const ReadJob& job, RawCloud& raw, size_t count, const std::vector<int8_t>& roles);
 
 // Where the reading of the file ends and the reading of its points begins and ends, as fractions.
 inline constexpr double kFileRead = 0.2;
