@@ -13,6 +13,7 @@ namespace treerec {
 namespace {
 
 constexpr size_t kMostSamples = 400000;
+constexpr size_t kBlock = size_t{1} << 20;  // points between two looks at the progress
 // Fragments that are a larger share of the points than this may be a tree.
 constexpr double kRemarkable = 0.2;
 
@@ -38,8 +39,10 @@ class Cleaning {
     Cleaning(PointCloud& cloud, CleanReport& report, const Progress* progress)
         : cloud_(cloud), report_(report), samples_(take_samples(cloud.positions, kMostSamples, progress)) {
         weights_.resize(samples_.points.size());
-        for (const uint32_t s : samples_.of_point)
-            weights_[s]++;
+        for (size_t i = 0; i < samples_.of_point.size(); i++) {
+            if (progress && i % kBlock == 0) progress->check();
+            weights_[samples_.of_point[i]]++;
+        }
         alive_.resize(samples_.points.size());
         for (size_t i = 0; i < alive_.size(); i++)
             alive_[i] = static_cast<uint32_t>(i);
@@ -100,13 +103,16 @@ class Cleaning {
         report_.steps.push_back({"Other trees", removed});
     }
 
-    void apply() {
+    void apply(const Progress* progress) {
         std::vector<uint8_t> sample_stays(samples_.points.size());
         for (const uint32_t s : alive_)
             sample_stays[s] = 1;
         std::vector<uint8_t> keep(cloud_.size());
-        for (size_t i = 0; i < keep.size(); i++)
+        for (size_t i = 0; i < keep.size(); i++) {
+            if (progress && i % kBlock == 0) progress->check();
             keep[i] = sample_stays[samples_.of_point[i]];
+        }
+        if (progress) progress->check();
         cloud_.keep_only(keep);
     }
 
@@ -174,7 +180,7 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
                                       "they are a tree of their own, give each tree a file of its own.");
     }
     step(0.9);
-    cleaning.apply();
+    cleaning.apply(progress);
     step(1.0);
     return report;
 }

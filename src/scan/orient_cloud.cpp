@@ -209,8 +209,9 @@ size_t axis_of(UpAxis up) {
 }
 
 // Points without a place, and points so far away that only a broken file has them: they would make every
-// length meaningless.
-void drop_impossible_points(PointCloud& cloud, OrientReport& report, const Progress* progress) {
+// length meaningless. Returns the ranges of the rest.
+std::array<Range, 3> drop_impossible_points(PointCloud& cloud, OrientReport& report,
+                                            const Progress* progress) {
     if (progress) progress->check();
     std::vector<uint8_t> keep(cloud.size(), 1);
     const auto drop_where = [&](const auto& is_impossible) {
@@ -242,6 +243,7 @@ void drop_impossible_points(PointCloud& cloud, OrientReport& report, const Progr
                                   (dropped == 1 ? "was" : "were") + " left out.");
     for (Vec3& n : cloud.normals)
         if (!is_finite(DVec3(n))) n = Vec3(0.0F);
+    return dropped > 0 ? robust_ranges(cloud.positions, progress) : ranges;
 }
 
 }  // namespace
@@ -249,8 +251,7 @@ void drop_impossible_points(PointCloud& cloud, OrientReport& report, const Progr
 OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progress* progress) {
     OrientReport report;
     if (cloud.empty()) throw Error("The cloud has no points.");
-    drop_impossible_points(cloud, report, progress);
-    const std::array<Range, 3> ranges = robust_ranges(cloud.positions, progress);
+    const std::array<Range, 3> ranges = drop_impossible_points(cloud, report, progress);
     const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;
