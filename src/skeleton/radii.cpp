@@ -12,10 +12,12 @@ constexpr double kTipAllowance = 0.003;  // metres: an unmeasured twig's tip
 constexpr double kSlenderness = 0.02;    // unmeasured radius over the distance to the tip, at most
 constexpr double kThinTip = 0.002;       // the same, at least, as far as the points allow
 constexpr double kThinSlenderness = 0.005;
-constexpr double kNoiseMedian =
-    0.9;  // standard deviations: of the length of a normal vector, 1D .67, 2D 1.18
+// Standard deviations. The median length of a normal vector is .67 of them in 1D, 1.18 in 2D.
+constexpr double kNoiseMedian = 0.67;
 constexpr double kMadToSigma = 1.4826;
-constexpr size_t kLeastMeasured = 8;  // stations that the noise is estimated from
+constexpr size_t kLeastMeasured = 8;  // stations that the noise and the slenderness are estimated from
+constexpr double kTaper = 1.5;        // thin wood tapers so much faster than what can be measured
+constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured limb is a stump
 constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
 constexpr int kMedianWindow = 4;      // stations to each side
 
@@ -77,6 +79,25 @@ double without_noise(double median, double noise, double to_tip) {
     return std::max(std::min(median, least), square > 0.0 ? std::sqrt(square) : 0.0);
 }
 
+// How thick this tree's limbs are for their length, as the measured stations tell: the median of radius over
+// the distance to the tip.
+double slenderness_of(const std::vector<std::vector<Station>>& axes) {
+    std::vector<double> seen;
+    for (const std::vector<Station>& stations : axes) {
+        double to_tip = 0.0;
+        for (size_t i = stations.size(); i-- > 1;) {
+            to_tip += glm::distance(stations[i].position, stations[i - 1].position);
+            const Station& station = stations[i - 1];
+            if (station.measured && to_tip > kEndStretch * station.radius)
+                seen.push_back(station.radius / to_tip);
+        }
+    }
+    if (seen.size() < kLeastMeasured) return kSlenderness;
+    const auto middle = seen.begin() + static_cast<ptrdiff_t>(seen.size() / 2);
+    std::nth_element(seen.begin(), middle, seen.end());
+    return std::clamp(kTaper * *middle, kThinSlenderness, kSlenderness);
+}
+
 }  // namespace
 
 double noise_of(const std::vector<std::vector<Station>>& axes) {
@@ -92,6 +113,7 @@ double noise_of(const std::vector<std::vector<Station>>& axes) {
 
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs) {
     const double noise = noise_of(axes);
+    const double slenderness = slenderness_of(axes);
     std::vector<double> values;
     std::vector<double> weights;
     for (size_t l = 0; l < axes.size(); l++) {
@@ -111,7 +133,7 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
                 const double most = kTipAllowance + kSlenderness * to_tip;
                 values[i] = station.radius > 0.0
                                 ? std::min(most, without_noise(station.radius, noise, to_tip))
-                                : most;
+                                : kTipAllowance + slenderness * to_tip;
                 weights[i] = kSoftWeight;
             }
             if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);

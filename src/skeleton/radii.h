@@ -13,9 +13,11 @@ double noise_of(const std::vector<std::vector<Station>>& axes);
 
 // Replaces every station's radius, in metres. Along a limb the measured radii (and, with little weight, the
 // unmeasured stations' own estimates) go through a running median and an isotonic regression (pool adjacent
-// violators, Ayer et al. 1955), so that they never grow outward. Where nothing was measured, the radius
-// follows allometry: no thicker than the distance to the tip allows (McMahon and Kronauer 1976: thickness
-// and length of branches are tied), and no limb is thicker than its parent where it leaves it.
+// violators, Ayer et al. 1955), so that they never grow outward. An unmeasured station's estimate is freed of
+// the points' noise, and no thicker than the distance to the tip allows (McMahon and Kronauer 1976: thickness
+// and length of branches are tied). Where no point told anything, the radius follows the distance to the tip
+// as it does, in the median, where this tree was measured. No limb is thicker than its parent where it leaves
+// it.
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs);
 
 }  // namespace treerec

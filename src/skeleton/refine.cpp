@@ -52,13 +52,22 @@ struct Hit {
     DVec3 offset{0.0};
 };
 
-Hit hit_segment(const DVec3& p, const DVec3& a, double radius_a, const DVec3& b, double radius_b) {
+// Only the squared distance to the axis, and where: for the many segments that turn out not to be the
+// nearest.
+double square_to_segment(const DVec3& p, const DVec3& a, const DVec3& b, double& t) {
     const DVec3 ab = b - a;
+    const DVec3 ap = p - a;
+    const double along = glm::dot(ap, ab);
     const double square = glm::dot(ab, ab);
+    t = along <= 0.0 ? 0.0 : along >= square ? 1.0 : along / square;
+    const DVec3 offset = ap - t * ab;
+    return glm::dot(offset, offset);
+}
+
+Hit hit_segment(const DVec3& p, const DVec3& a, double radius_a, const DVec3& b, double radius_b) {
     Hit hit;
-    hit.t = square > 0.0 ? std::clamp(glm::dot(p - a, ab) / square, 0.0, 1.0) : 0.0;
-    hit.offset = p - (a + hit.t * ab);
-    hit.distance = glm::length(hit.offset);
+    hit.distance = std::sqrt(square_to_segment(p, a, b, hit.t));
+    hit.offset = p - (a + hit.t * (b - a));
     hit.off = hit.distance - (radius_a + hit.t * (radius_b - radius_a));
     return hit;
 }
@@ -164,19 +173,22 @@ class LimbRefiner {
     // The segment with the nearest axis among [first, last] of a line, where segment j ends at station j. (To
     // choose by the surface would lead points inside of it to far segments, and make the limb seem thicker.)
     static Hit nearest(const DVec3& p, const std::vector<Station>& line, int first, int last, int& at) {
-        Hit best;
-        best.off = std::numeric_limits<double>::max();
-        best.distance = std::numeric_limits<double>::max();
         first = std::max(first, 1);
         last = std::min(last, static_cast<int>(line.size()) - 1);
+        double best = std::numeric_limits<double>::max();
         for (int j = first; j <= last; j++) {
-            const Hit hit =
-                hit_segment(p, line[j - 1].position, line[j - 1].radius, line[j].position, line[j].radius);
-            if (hit.distance >= best.distance) continue;
-            best = hit;
+            double t;
+            const double square = square_to_segment(p, line[j - 1].position, line[j].position, t);
+            if (square >= best) continue;
+            best = square;
             at = j;
         }
-        return best;
+        if (first > last) {
+            Hit none;
+            none.off = std::numeric_limits<double>::max();
+            return none;
+        }
+        return hit_segment(p, line[at - 1].position, line[at - 1].radius, line[at].position, line[at].radius);
     }
 
     // Whether a point belongs to the parent or to a side limb rather than to this one.
@@ -388,7 +400,7 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
     for (std::vector<int32_t>& of_limb : sides)
         std::stable_sort(of_limb.begin(), of_limb.end(),
                          [&](int32_t a, int32_t b) { return limbs[a].attach < limbs[b].attach; });
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < (complete ? kRounds : 1); round++) {
         const double noise = noise_of(axes);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {

@@ -242,8 +242,23 @@ TEST(InferRadii, TakesTheNoiseOffThinTwigs) {
     infer_radii(axes, limbs);
     infer_radii(clean, limbs);
     EXPECT_NEAR(clean[1][2].radius, 0.012, 0.0005);
-    EXPECT_LT(axes[1][2].radius, 0.0095);
+    EXPECT_LT(axes[1][2].radius, 0.0105);
     EXPECT_GT(axes[1][2].radius, 0.004);
+}
+
+TEST(InferRadii, GuessesAsThickAsTheTreeWasMeasured) {
+    std::vector<Limb> limbs(2);
+    limbs[1].parent = 0;
+    limbs[1].attach = 5;
+    // A slender stem, about a hundredth of the way to its tip thick; thin wood tapers half as fast again.
+    std::vector<std::vector<Station>> axes = {upright(101, 0.1, 0.1), upright(11, 0.1, 0.0, {0.1, 0.5, 0})};
+    for (size_t i = 0; i < axes[0].size(); i++)
+        axes[0][i].radius = 0.002 + 0.1 * (1.0 - static_cast<double>(i) / 100.0);
+    for (Station& station : axes[1])
+        station.measured = false;
+    infer_radii(axes, limbs);
+    EXPECT_NEAR(axes[1][0].radius, 0.003 + 0.0155 * 1.0, 0.001);
+    EXPECT_NEAR(axes[1][10].radius, 0.003, 1e-9);
 }
 
 TEST(InferRadii, ABaseKeepsItsFlare) {
