@@ -251,5 +251,39 @@ TEST(ScanPickTree, NeverSplitsARealTree) {
     EXPECT_GT(looked_at, 20U);
 }
 
+struct Plot {
+    const char* file;
+    size_t fewest;  // trees that must be told apart
+    size_t most;
+};
+
+class RealPlot : public testing::TestWithParam<Plot> {};
+
+TEST_P(RealPlot, HoldsSoManyTrees) {
+    const std::string folder = scans_folder();
+    if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    PointCloud cloud;
+    try {
+        cloud = read_cloud(folder + GetParam().file);
+    } catch (const Error& error) {
+        GTEST_SKIP() << error.what();  // LAZ needs a library that is not everywhere
+    }
+    const size_t all = cloud.size();
+    orient_cloud(cloud, {});
+    const CleanReport report = clean_cloud(cloud, {});
+    EXPECT_GE(report.pick.trees.size(), GetParam().fewest);
+    EXPECT_LE(report.pick.trees.size(), GetParam().most);
+    EXPECT_LE(cloud.size(), report.pick.trees.empty() ? all : all / 2);
+    EXPECT_GT(cloud.size(), 100U);
+}
+
+// The stems that one sees in the pine plot are 16 to 18; the others are cut from dense woods.
+INSTANTIATE_TEST_SUITE_P(ScanPickTree, RealPlot,
+                         testing::Values(Plot{"treels_pine_plot_with_ground.laz", 14, 18},
+                                         Plot{"spanner_MLS_plot.laz", 8, 30},
+                                         Plot{"lidr_MixedConifer_ALS.laz", 120, 260},
+                                         Plot{"jeffgillan_tree_understory.laz", 0, 3},
+                                         Plot{"treels_pine.laz", 0, 0}));
+
 }  // namespace
 }  // namespace treerec
