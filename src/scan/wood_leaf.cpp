@@ -26,6 +26,7 @@ constexpr double kLeastShare = 0.4;
 constexpr double kLeastResolution = 95.0;
 constexpr double kFineCell = 0.06;  // metres
 constexpr double kLeastFineResolution = 60.0;
+constexpr double kLeastFilledResolution = 40.0;
 constexpr double kFilledCells = 0.58;  // of the cells around
 constexpr double kFilledScatter = 0.5;
 constexpr double kMostShare = 0.85;  // that the threshold follows
@@ -291,9 +292,9 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     filled /= static_cast<double>(samples.points.size());
     scattered /= static_cast<double>(samples.points.size());
     const double resolution = extent_of(cells.centres) / cells.size;
-    const bool resolved = resolution > kLeastResolution ||
-                          (cells.size < kFineCell && resolution > kLeastFineResolution) ||
-                          (filled > kFilledCells && scattered > kFilledScatter);
+    const bool resolved =
+        resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
+        (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
     if (!colored && !resolved) return result;
     const CellPaths paths = trace_paths(cells, progress);
 

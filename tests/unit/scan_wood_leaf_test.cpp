@@ -154,8 +154,8 @@ TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
          {"wytham_Tf8_ash.txt", "wytham_Tf15_sycamore.txt", "wytham_Tf18_birch.txt", "vezy_A1B2.asc",
           "vezy_A3B4.asc", "vezy_A5B7.asc", "vezy_A5B8.asc", "vezy_A6B9.asc", "vezy_A6B10.asc",
           "adtree_Lille_11_leafoff_tall.xyz", "adtree_Lille_2_multistem.xyz", "adtree_tree7.xyz",
-          "adtree_tree13_trunk_gap.xyz", "rtwig_coffeetree.txt", "archi_tree2_leafoff.las",
-          "voxr_tree_t0.asc", "voxr_tree_t1.asc"})
+          "adtree_tree13_trunk_gap.xyz", "adtree_ahn3_delft_airborne_sparse.xyz", "rtwig_coffeetree.txt",
+          "archi_tree2_leafoff.las", "voxr_tree_t0.asc", "voxr_tree_t1.asc"})
         EXPECT_FALSE(tell_wood_from_leaves(real_scan(folder, file)).foliage) << file;
 }
 
