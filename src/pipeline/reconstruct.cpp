@@ -21,10 +21,10 @@ constexpr double kCleanEnd = 0.30;
 constexpr double kLeavesEnd = 0.40;
 constexpr double kSkeletonEnd = 0.97;
 
-// Below these shares the user is told: of explained points, and of wood whose radius was measured. Sparse
-// airborne scans of trees reach 0.005 of the latter, houses and balls not half of that.
+// Below these shares the user is told: of explained points, and of the wood's volume whose radius was
+// measured. The sparsest scans of trees reach 0.02 of the latter, houses and balls 0.003.
 constexpr double kLeastExplained = 0.25;
-constexpr double kLeastMeasured = 0.003;
+constexpr double kLeastMeasured = 0.01;
 
 // With fewer points of wood the tree is made from the leaves' too.
 constexpr size_t kLeastFollowed = 200;
@@ -131,7 +131,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
                                   " % of the wood's points lie within 2 cm of the wood that was found. Is it "
                                   "a single tree, and are its units right?");
-    if (result.measured.measured_share < kLeastMeasured)
+    if (result.measured.measured_volume_share < kLeastMeasured)
         result.warnings.emplace_back(
             "Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is it "
             "a tree?");

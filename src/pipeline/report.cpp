@@ -31,6 +31,7 @@ void add_measurements(Json& json, const Measurements& m) {
     json["length_m"] = m.total_length;
     json["volume_m3"] = m.volume;
     json["measured_share"] = m.measured_share;
+    json["measured_volume_share"] = m.measured_volume_share;
 }
 
 Json vector_json(const DVec3& v) {

@@ -30,7 +30,7 @@ struct ReportDetails {
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
 //   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than breast
 //   height, or without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3,
-//   measured_share, triangles, leaves
+//   measured_share (of the length), measured_volume_share, triangles, leaves
 //   fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark
 //   (fidelity/score.h)
 //   warnings [sentence]

@@ -95,7 +95,7 @@ Measurements measure(const Tree& tree) {
     result.nodes = tree.size();
     double lowest = tree.node(tree.root()).position.y;
     double highest = lowest;
-    double measured = 0.0;
+    double measured = 0.0, measured_volume = 0.0;
     for (const Branch& branch : list.branches) {
         if (static_cast<size_t>(branch.order) >= result.by_order.size())
             result.by_order.resize(static_cast<size_t>(branch.order) + 1);
@@ -111,12 +111,16 @@ Measurements measure(const Tree& tree) {
             const double length = glm::distance(node.position, parent.position);
             const double start = node.parent == branch.attach ? node.radius : parent.radius;
             result.total_length += length;
-            result.volume +=
+            const double volume =
                 kPi / 3.0 * length * (start * start + start * node.radius + node.radius * node.radius);
-            if (node.is_measured()) measured += length;
+            result.volume += volume;
+            if (!node.is_measured()) continue;
+            measured += length;
+            measured_volume += volume;
         }
     }
     result.height = highest - lowest;
+    result.measured_volume_share = result.volume > 0.0 ? measured_volume / result.volume : 0.0;
     result.measured_share = result.total_length > 0.0 ? measured / result.total_length : 0.0;
     const double base = tree.node(tree.root()).position.y;
     if (highest - base >= kBreastHeight) measure_stems(tree, list, result);

@@ -32,7 +32,8 @@ struct Measurements {
     // Wood: one truncated cone per segment; a side branch's first segment is a cylinder of its own radius,
     // not a cone from its parent's.
     double volume = 0.0;
-    double measured_share = 0.0;         // share of the length whose radius was measured
+    double measured_share = 0.0;         // share of the length whose radius was measured,
+    double measured_volume_share = 0.0;  // and of the volume: fine twigs do not hide a measured stem
     std::vector<OrderMeasure> by_order;  // 0: trunk; branches and orders as list_branches() counts them
 };
 

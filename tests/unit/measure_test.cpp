@@ -57,6 +57,18 @@ TEST(Measure, BreastHeightRunsAlongALeaningTrunk) {
     EXPECT_NEAR(m.height, 4.0, 1e-12);
 }
 
+// What is asked before a cloud is doubted to be a tree: twigs grown by the hundred must not drown the stem.
+TEST(Measure, ManyInferredTwigsDoNotHideAMeasuredStem) {
+    Tree tree = stem(2.0, 0.2, 0.15, 4);
+    const NodeId top = tree.depth_first().back();
+    for (int i = 0; i < 3000; i++)
+        tree.add_child(top, DVec3(std::cos(i), 3.0, std::sin(i)), 0.002);
+    const Measurements m = measure(tree);
+    EXPECT_LT(m.measured_share, 0.001);
+    EXPECT_GT(m.measured_volume_share, 0.5);
+    EXPECT_LT(m.measured_volume_share, 1.0);
+}
+
 TEST(Measure, ABranchThatLiesBelowBreastHeightHasNoDbh) {
     Tree tree;
     const NodeId root = tree.add_root(DVec3(0.0), 0.03);
