@@ -443,10 +443,7 @@ TEST(ScanReal, EveryCloudIsReadUprightAndClean) {
     std::sort(names.begin(), names.end());
     for (const std::string& name : names) {
         SCOPED_TRACE(name);
-        if (name.ends_with(".laz")) {
-            EXPECT_THROW(read_cloud(folder + name), Error);
-            continue;
-        }
+        if (name.ends_with(".laz")) continue;  // needs a library, and most are plots: scan_pick_tree_test
         ReadCloudReport read;
         PointCloud cloud = read_cloud(folder + name, {}, &read);
         EXPECT_TRUE(read.warnings.empty());
