@@ -22,9 +22,9 @@ struct CellLayout {
     // neighbour has a key. p: finite.
     uint64_t key(const Vec3& p) const { return index(p.y, 1) << 42 | index(p.x, 0) << 21 | index(p.z, 2); }
     uint64_t index(float at, int axis) const {
-        // What is below 1 needs no floor.
+        // What is below 1 needs no floor, and what is no number goes there.
         const double i = (at - low[axis]) / cell + 1.0;
-        return i < 1.0 ? 1 : static_cast<uint64_t>(i > kMostCells ? kMostCells : i);
+        return !(i >= 1.0) ? 1 : static_cast<uint64_t>(i > kMostCells ? kMostCells : i);
     }
 };
 

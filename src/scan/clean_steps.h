@@ -45,8 +45,8 @@ struct Ground {
     }
     // Beyond the columns, the nearest one counts.
     double above(const Vec3& p) const {
-        const int i = std::clamp(static_cast<int>((p.x - x.low) / cell), 0, width - 1);
-        const int k = std::clamp(static_cast<int>((p.z - z.low) / cell), 0, depth - 1);
+        const int i = static_cast<int>(std::clamp((p.x - x.low) / cell, 0.0, width - 1.0));
+        const int k = static_cast<int>(std::clamp((p.z - z.low) / cell, 0.0, depth - 1.0));
         return above_plane(p) - static_cast<double>(relief[static_cast<size_t>(k * width + i)]);
     }
 };
