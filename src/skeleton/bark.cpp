@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "geometry/parallel.h"
 #include "geometry/segment.h"
 
 namespace treerec {
@@ -85,18 +86,32 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
     std::vector<uint32_t> bears(limbs.size(), 0);
     for (const Limb& limb : limbs)
         if (limb.parent >= 0) bears[limb.parent]++;
+    // A place that no limb but `except` explains.
+    const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
+        return std::any_of(line.begin(), line.end(), [&](const Station& station) {
+            const BarkPlace place = bark.nearest(Vec3(station.position), &except);
+            return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
+        });
+    };
+    // What is clear of all others stays. Of the rest, the last limbs go first, and then hold nothing any
+    // more.
+    std::vector<uint8_t> doubtful(limbs.size(), 0);
+    parallel_for(limbs.size(), 64, [&](size_t begin, size_t end) {
+        std::vector<uint8_t> except(limbs.size(), 0);
+        for (size_t l = std::max<size_t>(begin, 1); l < end; l++) {
+            except[l] = 1;
+            doubtful[l] = escapes(axes[l], except) ? 0 : 1;
+            except[l] = 0;
+        }
+    });
     std::vector<uint8_t> goes(limbs.size(), 0);
     for (size_t l = limbs.size(); l-- > 1;) {
-        if (bears[l] > 0) continue;
+        if (bears[l] > 0 || doubtful[l] == 0) continue;
         goes[l] = 1;  // nor is it looked at itself
-        bool escapes = false;
-        for (const Station& station : axes[l]) {
-            const BarkPlace place = bark.nearest(Vec3(station.position), &goes);
-            escapes =
-                escapes || place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
+        if (escapes(axes[l], goes)) {
+            goes[l] = 0;
+            continue;
         }
-        goes[l] = escapes ? 0 : 1;
-        if (escapes) continue;
         bears[limbs[l].parent]--;
     }
     std::vector<int32_t> now(limbs.size());

@@ -1,10 +1,10 @@
 #include "skeleton/paths.h"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <limits>
 #include <queue>
-#include <utility>
 
 namespace treerec {
 
@@ -16,18 +16,22 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
     tree.step.assign(count, 0.0f);
     tree.along.assign(count, 0.0f);
     tree.order.reserve(count);
-    std::vector<double> cost(count, std::numeric_limits<double>::max());
+    std::vector<float> cost(count, std::numeric_limits<float>::max());
     std::vector<uint8_t> done(count, 0);
-    using Entry = std::pair<double, uint32_t>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    // The bits of positive floats are in the order of their values, so that one integer holds an entry.
+    std::priority_queue<uint64_t, std::vector<uint64_t>, std::greater<>> queue;
+    const auto entry = [](float value, uint32_t vertex) {
+        return (static_cast<uint64_t>(std::bit_cast<uint32_t>(value)) << 32) | vertex;
+    };
     for (const PathSeed& seed : seeds) {
-        if (seed.distance >= cost[seed.vertex]) continue;
-        cost[seed.vertex] = seed.distance;
-        tree.along[seed.vertex] = static_cast<float>(seed.distance);
-        queue.emplace(seed.distance, seed.vertex);
+        const float distance = static_cast<float>(std::max(0.0, seed.distance));
+        if (distance >= cost[seed.vertex]) continue;
+        cost[seed.vertex] = distance;
+        tree.along[seed.vertex] = distance;
+        queue.push(entry(distance, seed.vertex));
     }
     while (!queue.empty()) {
-        const uint32_t v = queue.top().second;
+        const uint32_t v = static_cast<uint32_t>(queue.top());
         queue.pop();
         if (done[v]) continue;
         done[v] = 1;
@@ -36,15 +40,15 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
         for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
             const uint32_t n = graph.neighbour[e];
             if (done[n]) continue;
-            const double length = graph.length[e];
-            const double stretch = std::max(1.0, length / edge_reach(scale, v, n));
-            const double through = cost[v] + length * stretch * stretch;
+            const float length = graph.length[e];
+            const float stretch = std::max(1.0f, length / edge_reach(scale, v, n));
+            const float through = cost[v] + length * stretch * stretch;
             if (through < cost[n]) {
                 cost[n] = through;
                 tree.parent[n] = static_cast<int32_t>(v);
                 tree.step[n] = graph.length[e];
                 tree.along[n] = tree.along[v] + graph.length[e];
-                queue.emplace(through, n);
+                queue.push(entry(through, n));
             }
         }
     }

@@ -69,11 +69,13 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
         graph.neighbour[fill[a]++] = b;
         graph.neighbour[fill[b]++] = a;
     }
-    for (uint32_t v = 0; v < points.size(); v++) {
-        std::sort(graph.neighbour.begin() + graph.begin[v], graph.neighbour.begin() + graph.begin[v + 1]);
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
-            graph.length[e] = glm::distance(points[v], points[graph.neighbour[e]]);
-    }
+    parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; v++) {
+            std::sort(graph.neighbour.begin() + graph.begin[v], graph.neighbour.begin() + graph.begin[v + 1]);
+            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
+                graph.length[e] = glm::distance(points[v], points[graph.neighbour[e]]);
+        }
+    });
     return graph;
 }
 
@@ -106,17 +108,19 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
 
     std::vector<float> smooth(count);
     for (int round = 0; round < kScaleSmoothings; round++) {
-        for (size_t v = 0; v < count; v++) {
-            float sum = spacing[v];
-            float weight = 1.0f;
-            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
-                const uint32_t n = graph.neighbour[e];
-                if (graph.length[e] > kReachFactor * spacing[v]) continue;
-                sum += spacing[n];
-                weight += 1.0f;
+        parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+            for (size_t v = begin; v < end; v++) {
+                float sum = spacing[v];
+                float weight = 1.0f;
+                for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+                    const uint32_t n = graph.neighbour[e];
+                    if (graph.length[e] > kReachFactor * spacing[v]) continue;
+                    sum += spacing[n];
+                    weight += 1.0f;
+                }
+                smooth[v] = sum / weight;
             }
-            smooth[v] = sum / weight;
-        }
+        });
         spacing.swap(smooth);
     }
     // A stray point is not as far-reaching as it is far away.

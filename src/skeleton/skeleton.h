@@ -18,6 +18,7 @@ struct SkeletonOptions {
     double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
     bool fit_radii = true;           // measure radii where the points allow it
     uint64_t seed = 1;               // of the robust fits
+    bool keep_raw = true;            // fill SkeletonResult::raw
 };
 
 struct SkeletonResult {

@@ -79,17 +79,17 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
             "section of a scan.");
     clock.stop("Thinning", points.size());
 
-    SubProgress triangulating(listener, 0.1, 0.55);
-    const PointGraph graph = neighbour_graph(points, triangulating);
+    SubProgress linking(listener, 0.1, 0.55);
+    const PointGraph graph = neighbour_graph(points, linking);
     const LocalScale first_scale = local_scale(graph, result.spacing);
-    clock.stop("Triangulation", graph.neighbour.size() / 2);
+    clock.stop("Neighbours", graph.neighbour.size() / 2);
 
     progress.update(0.55, "Shortest paths");
     progress.check();
     const RootGuess root = find_root(points, graph, first_scale);
     progress.check();
     const PathTree paths = shortest_paths(graph, first_scale, root.seeds, progress);
-    result.raw = raw_tree(points, paths, root.position);
+    if (options.keep_raw) result.raw = raw_tree(points, paths, root.position);
     clock.stop("Shortest paths", points.size());
 
     progress.update(0.6, "Thickness");
@@ -142,10 +142,12 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     result.tree = assemble_tree(axes, limbs, options.simplify_distance);
     mark_trunk(result.tree);
     result.tree.set_frame(cloud.frame);
-    result.raw.set_frame(cloud.frame);
     const DVec3 base = result.tree.node(result.tree.root()).position;
     result.tree.rebase(base);
-    result.raw.rebase(base);
+    if (options.keep_raw) {
+        result.raw.set_frame(cloud.frame);
+        result.raw.rebase(base);
+    }
     clock.stop("Simplification", result.tree.size());
     progress.update(1.0, "Skeleton");
     return result;

@@ -10,7 +10,8 @@ namespace treerec {
 namespace {
 
 constexpr double kGapFactor = 3.0;  // reaches: a longer step is a gap in the scan and not just thin sampling
-constexpr double kThickness = 2.0;  // slice thickness in local point spacings
+constexpr float kBesideReach = 2.0f;  // reaches: slices of one stem that the scan parts are no further apart
+constexpr double kThickness = 2.0;    // slice thickness in local point spacings
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
     while (leader[v] != v)
@@ -40,7 +41,7 @@ std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& sc
     return level;
 }
 
-// Fills `beside`: a link is an edge no longer than the local reach.
+// Fills `beside`: a link is an edge not much longer than the local reach.
 void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scale,
                  const std::vector<uint32_t>& slice_of) {
     std::vector<std::pair<uint32_t, uint32_t>> pairs;
@@ -49,21 +50,28 @@ void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scal
             const uint32_t n = graph.neighbour[e];
             const uint32_t a = slice_of[v];
             const uint32_t b = slice_of[n];
-            if (a == b || slices.parent[a] == static_cast<int32_t>(b) ||
+            if (a >= b || slices.parent[a] == static_cast<int32_t>(b) ||
                 slices.parent[b] == static_cast<int32_t>(a))
                 continue;
-            if (graph.length[e] <= 2.0 * edge_reach(scale, v, n)) pairs.emplace_back(a, b);
+            if (graph.length[e] > kBesideReach * edge_reach(scale, v, n)) continue;
+            if (!pairs.empty() && pairs.back() == std::pair(a, b)) continue;
+            pairs.emplace_back(a, b);
         }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     slices.beside_begin.assign(slices.size() + 1, 0);
-    slices.beside.reserve(pairs.size());
     for (const auto& [a, b] : pairs) {
         slices.beside_begin[a + 1]++;
-        slices.beside.push_back(b);
+        slices.beside_begin[b + 1]++;
     }
     for (size_t s = 0; s < slices.size(); s++)
         slices.beside_begin[s + 1] += slices.beside_begin[s];
+    slices.beside.resize(2 * pairs.size());
+    std::vector<uint32_t> fill(slices.beside_begin.begin(), slices.beside_begin.end() - 1);
+    for (const auto& [a, b] : pairs) {
+        slices.beside[fill[a]++] = b;
+        slices.beside[fill[b]++] = a;
+    }
 }
 
 }  // namespace

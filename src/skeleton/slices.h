@@ -18,7 +18,7 @@ struct Slices {
     std::vector<uint8_t> bridged;  // 1 where the way to the parent crosses a gap
     std::vector<uint32_t> begin;   // points of slice s: vertices[begin[s]] .. vertices[begin[s + 1])
     std::vector<uint32_t> vertices;
-    // The slices side by side with slice s that are neither its parent nor its child, ascending:
+    // The slices side by side with slice s that are neither its parent nor its child:
     // beside[beside_begin[s]] .. beside[beside_begin[s + 1]).
     std::vector<uint32_t> beside_begin;
     std::vector<uint32_t> beside;

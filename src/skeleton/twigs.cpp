@@ -1,6 +1,8 @@
 #include "skeleton/twigs.h"
 
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <queue>
 #include <utility>
 
@@ -46,16 +48,18 @@ class TwigFinder {
             for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
                 claim(v, bark_.on_limb(limb, at, DVec3(points_[v])));
         };
-        for (size_t l = 0; l < limbs_.size(); l++) {
-            const Limb& limb = limbs_[l];
-            const int32_t index = static_cast<int32_t>(l);
-            for (size_t i = 0; i < limb.slices.size(); i++)
-                take(limb.slices[i], index, static_cast<int32_t>(i));
-            for (size_t m = 0; m < limb.merged.size(); m++)
-                take(limb.merged[m], index, limb.merged_at[m]);
-            for (size_t a = 0; a < limb.absorbed.size(); a++)
-                take(limb.absorbed[a], index, limb.absorbed_at[a]);
-        }
+        parallel_for(limbs_.size(), 16, [&](size_t begin, size_t end) {
+            for (size_t l = begin; l < end; l++) {
+                const Limb& limb = limbs_[l];
+                const int32_t index = static_cast<int32_t>(l);
+                for (size_t i = 0; i < limb.slices.size(); i++)
+                    take(limb.slices[i], index, static_cast<int32_t>(i));
+                for (size_t m = 0; m < limb.merged.size(); m++)
+                    take(limb.merged[m], index, limb.merged_at[m]);
+                for (size_t a = 0; a < limb.absorbed.size(); a++)
+                    take(limb.absorbed[a], index, limb.absorbed_at[a]);
+            }
+        });
         find_others();
         // A path starts on wood.
         for (const uint32_t v : paths_.order)
@@ -81,23 +85,27 @@ class TwigFinder {
 
     void run(Progress& progress) {
         std::vector<float> outside(points_.size(), 0.0f);
-        using Entry = std::pair<float, uint32_t>;
-        std::vector<Entry> entries;
+        // The farthest first. The bits of positive floats are in the order of their values.
+        const auto entry = [](float length, uint32_t vertex) {
+            return (static_cast<uint64_t>(std::bit_cast<uint32_t>(length)) << 32) | vertex;
+        };
+        std::vector<uint64_t> entries;
         for (const uint32_t v : paths_.order)
             if (line_[v] < 0) {
                 outside[v] = outside[paths_.parent[v]] + paths_.step[v];
-                entries.emplace_back(outside[v], v);
+                entries.push_back(entry(outside[v], v));
             }
-        std::priority_queue<Entry> queue(std::less<Entry>(), std::move(entries));
+        std::priority_queue<uint64_t> queue(std::less<uint64_t>(), std::move(entries));
         size_t looked = 0;
         while (!queue.empty()) {
             if (++looked % 1024 == 0) progress.check();
-            const auto [length, v] = queue.top();
+            const uint64_t top = queue.top();
+            const uint32_t v = static_cast<uint32_t>(top);
             queue.pop();
             if (line_[v] >= 0) continue;
             const float now = path_to(v);
-            if (now < length) {
-                queue.emplace(now, v);
+            if (entry(now, v) < top) {
+                queue.push(entry(now, v));
                 continue;
             }
             if (!path_.empty()) add_twig();
