@@ -88,7 +88,7 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
         if (limb.parent >= 0) bears[limb.parent]++;
     // A place that no limb but `except` explains.
     const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
-        return std::any_of(line.begin(), line.end(), [&](const Station& station) {
+        return std::any_of(line.rbegin(), line.rend(), [&](const Station& station) {
             const BarkPlace place = bark.nearest(Vec3(station.position), &except);
             return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
         });

@@ -12,7 +12,7 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kNeighbours = 10;
+constexpr size_t kNeighbours = 9;
 constexpr size_t kGrain = 2048;  // points between two looks at the cancel flag
 constexpr size_t kLeafSize = 12;
 constexpr size_t kScaleMax = 8;
