@@ -114,8 +114,7 @@ class LimbRefiner {
   public:
     LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
                 const std::vector<std::vector<int32_t>>& sides, const PointPlaces& places,
-                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise,
-                bool complete)
+                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise)
         : axes_(axes),
           limbs_(limbs),
           limb_(limbs[index]),
@@ -124,7 +123,6 @@ class LimbRefiner {
           own_points_(own_points),
           points_(points),
           noise_(noise),
-          complete_(complete),
           line_(axes[index]),
           count_(static_cast<int>(line_.size())) {}
 
@@ -137,7 +135,7 @@ class LimbRefiner {
         std::vector<DVec3> shift(line_.size(), DVec3(0.0));
         for (int i = 0; i < count_; i++)
             refine_station(i, result[i], shift[i]);
-        if (complete_) believe_round(result);
+        believe_round(result);
         for (int i = 0; i < count_; i++) {
             if (stays(i)) continue;
             DVec3 sum = 2.0 * shift[i];
@@ -345,7 +343,6 @@ class LimbRefiner {
     std::span<const uint32_t> own_points_;
     const std::vector<Vec3>& points_;
     double noise_;
-    bool complete_;
     const std::vector<Station>& line_;
     int count_;
     std::vector<std::array<DVec3, 2>> frame_;
@@ -357,31 +354,8 @@ class LimbRefiner {
 
 }  // namespace
 
-PointPlaces places_on_slices(size_t point_count, const std::vector<Limb>& limbs, const Slices& slices) {
-    PointPlaces places;
-    places.limb.assign(point_count, -1);
-    places.station.assign(point_count, 0);
-    for (size_t l = 0; l < limbs.size(); l++) {
-        auto take = [&](int32_t slice, int32_t station) {
-            for (const uint32_t v : slices.points_of(static_cast<size_t>(slice))) {
-                places.limb[v] = static_cast<int32_t>(l);
-                places.station[v] = station;
-            }
-        };
-        const Limb& limb = limbs[l];
-        for (size_t i = 0; i < limb.slices.size(); i++)
-            take(limb.slices[i], static_cast<int32_t>(i));
-        for (size_t m = 0; m < limb.merged.size(); m++)
-            take(limb.merged[m], limb.merged_at[m]);
-        for (size_t a = 0; a < limb.absorbed.size(); a++)
-            take(limb.absorbed[a], limb.absorbed_at[a]);
-    }
-    return places;
-}
-
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                 const PointPlaces& places, const std::vector<Vec3>& points, bool complete,
-                 Progress& progress) {
+                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress) {
     // The points of each limb, in one array.
     std::vector<size_t> begin(limbs.size() + 1, 0);
     for (const int32_t limb : places.limb)
@@ -400,14 +374,14 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
     for (std::vector<int32_t>& of_limb : sides)
         std::stable_sort(of_limb.begin(), of_limb.end(),
                          [&](int32_t a, int32_t b) { return limbs[a].attach < limbs[b].attach; });
-    for (int round = 0; round < (complete ? kRounds : 1); round++) {
+    for (int round = 0; round < kRounds; round++) {
         const double noise = noise_of(axes);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
             for (size_t l = from; l < to; l++) {
                 progress.check();
                 const std::span<const uint32_t> own(members.data() + begin[l], begin[l + 1] - begin[l]);
-                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise, complete).run();
+                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise).run();
             }
         });
         axes.swap(next);

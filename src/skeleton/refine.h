@@ -14,19 +14,15 @@ struct PointPlaces {
     std::vector<int32_t> station;
 };
 
-// Where the points of the limbs' slices lie; what side chains left to them included.
-PointPlaces places_on_slices(size_t point_count, const std::vector<Limb>& limbs, const Slices& slices);
-
 // Moves stations and radii (metres) so that each limb's surface runs through the points that are nearer to it
 // than to the limbs it grows from and carries: Gauss-Newton steps on the distances to the surface, with
 // Tukey's biweights (Holland and Welsch 1977) and a ridge that keeps what the points do not tell, over
 // windows about as long as the limb is thick. Measured radii become those of the fit, unmeasured ones the
-// points' median distance to the axis; `scatter` is the median deviation from either. complete: no twigs are
-// missing any more, so points that surround an unmeasured station at one distance are bark, and it counts as
-// measured too. axes: from fit_axes(), with infer_radii() behind it. The first station of the first limb
-// stays, as do both ends of bridges. Throws Cancelled on request.
+// points' median distance to the axis; `scatter` is the median deviation from either. Points that surround an
+// unmeasured station at one distance are bark, and it counts as measured too. axes: from fit_axes(), with
+// infer_radii() behind it. The first station of the first limb stays, as do both ends of bridges. Throws
+// Cancelled on request.
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                 const PointPlaces& places, const std::vector<Vec3>& points, bool complete,
-                 Progress& progress);
+                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress);
 
 }  // namespace treerec

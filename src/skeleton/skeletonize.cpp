@@ -121,8 +121,6 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     straighten_stems(limbs, axes);
     infer_radii(axes, limbs);
     drop_strips(limbs, axes, limb_options.least_escape);
-    refine_axes(axes, limbs, places_on_slices(points.size(), limbs, slices), points, false, progress);
-    infer_radii(axes, limbs);
     clock.stop("Radii", limbs.size());
 
     TwigOptions twig_options;
@@ -134,7 +132,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
-    refine_axes(axes, limbs, places, points, true, progress);
+    refine_axes(axes, limbs, places, points, progress);
     infer_radii(axes, limbs);
     clock.stop("Refinement", limbs.size());
 

@@ -19,7 +19,8 @@ constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;  // of the radius, likewise
 constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
-constexpr double kMostMove = 0.5;     // tolerances
+constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that its points stay on its bark
+constexpr double kSharpest = 0.0;    // cosine of the sharpest turn of a twig
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
 constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
@@ -164,7 +165,8 @@ class TwigFinder {
         twig.parent = parent;
         twig.attach = station_[foot_];
         std::vector<Station> line = smooth_line(axes_[parent][twig.attach].position);
-        twig.attach = place_near(axes_[parent], twig.attach, line.front().position).station;
+        twig.attach = fork_station(axes_[parent], twig.attach, line);
+        straighten(line, axes_[parent][twig.attach].position);
         double length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
         for (size_t i = 1; i < line.size(); i++)
             length += glm::distance(line[i].position, line[i - 1].position);
@@ -175,12 +177,63 @@ class TwigFinder {
         const int32_t index = static_cast<int32_t>(limbs_.size());
         limbs_.push_back(std::move(twig));
         axes_.push_back(std::move(line));
-        for (size_t i = 0; i < path_.size(); i++) {
-            line_[path_[i]] = index;
-            station_[path_[i]] = static_cast<int32_t>(i);
+        // Fewer stations than points may be left.
+        const size_t last = axes_[index].size() - 1;
+        size_t at = 0;
+        for (const uint32_t v : path_) {
+            const DVec3 p(points_[v]);
+            while (at < last && glm::distance(p, axes_[index][at + 1].position) <=
+                                    glm::distance(p, axes_[index][at].position))
+                at++;
+            // What straightening has left aside may bear a twig of its own.
+            const BarkPlace place = place_near(axes_[index], static_cast<int32_t>(at), p);
+            if (v != path_.back() && place.distance > place.radius + kMostMove + tolerance(v)) continue;
+            line_[v] = index;
+            station_[v] = place.station;
         }
-        for (size_t i = 0; i < path_.size(); i++)
-            mark_around(path_[i], index, static_cast<int32_t>(i), 2);
+        for (const uint32_t v : path_)
+            if (line_[v] == index) mark_around(v, index, station_[v], 2);
+    }
+
+    // A twig leaves at an angle: so far back along its parent as it starts outside of the parent's bark, if
+    // that makes its start straighter.
+    static int32_t fork_station(const std::vector<Station>& parent, int32_t near,
+                                const std::vector<Station>& twig) {
+        const DVec3& first = twig.front().position;
+        const BarkPlace place = place_near(parent, near, first);
+        const DVec3 ahead = twig.size() > 1 ? twig[1].position - first : DVec3(0.0);
+        int32_t best = place.station;
+        double straightest = -2.0;
+        double back = 0.0;
+        for (int32_t i = place.station; i >= 0 && back <= std::max(0.0, place.outside()); i--) {
+            const DVec3 way = normalized_or(first - parent[i].position, DVec3(0.0));
+            const DVec3 on = i + 1 < static_cast<int32_t>(parent.size())
+                                 ? parent[i + 1].position - parent[i].position
+                                 : DVec3(0.0);
+            const double straight = glm::dot(way, normalized_or(ahead, DVec3(0.0))) +
+                                    glm::dot(way, normalized_or(on, DVec3(0.0)));
+            if (straight > straightest + 1e-6) {
+                straightest = straight;
+                best = i;
+            }
+            if (i > 0) back += glm::distance(parent[i].position, parent[i - 1].position);
+        }
+        return best;
+    }
+
+    // Takes out the stations where the twig would turn sharply.
+    static void straighten(std::vector<Station>& line, const DVec3& base) {
+        for (size_t i = 0; i + 1 < line.size();) {
+            const DVec3& before = i > 0 ? line[i - 1].position : base;
+            const DVec3 to = normalized_or(line[i].position - before, DVec3(0.0));
+            const DVec3 from = normalized_or(line[i + 1].position - line[i].position, DVec3(0.0));
+            if (glm::dot(to, from) >= kSharpest) {
+                i++;
+                continue;
+            }
+            line.erase(line.begin() + static_cast<ptrdiff_t>(i));
+            if (i > 0) i--;
+        }
     }
 
     void mark_around(uint32_t v, int32_t index, int32_t at, int hops) {
@@ -233,7 +286,7 @@ class TwigFinder {
             for (size_t i = 0; i + 1 < line.size(); i++) {
                 const DVec3 here = line[i].position;
                 DVec3 move = 0.25 * before + 0.5 * here + 0.25 * line[i + 1].position - seen[i].position;
-                const double most = kMostMove * tolerance(path_[i]);
+                const double most = kMostMove;
                 if (glm::length(move) > most) move *= most / glm::length(move);
                 line[i].position = seen[i].position + move;
                 before = here;

@@ -49,7 +49,7 @@ struct Scene {
     void refine(int times = 1) {
         for (int i = 0; i < times; i++) {
             SubProgress progress(nullptr, 0.0, 1.0);
-            refine_axes(axes, limbs, nearest_places(points, axes), points, true, progress);
+            refine_axes(axes, limbs, nearest_places(points, axes), points, progress);
         }
     }
 };
@@ -128,7 +128,7 @@ TEST(RefineAxes, ALimbDoesNotThickenItsParent) {
             places.station[v] = 16;
         }
     SubProgress progress(nullptr, 0.0, 1.0);
-    refine_axes(scene.axes, scene.limbs, places, scene.points, true, progress);
+    refine_axes(scene.axes, scene.limbs, places, scene.points, progress);
     for (const Station& station : scene.axes[0])
         EXPECT_NEAR(station.radius, 0.1, 0.006) << station.position.y;
 }
