@@ -22,9 +22,11 @@ namespace {
 constexpr size_t kLeastPoints = 10;
 constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
 constexpr double kLeastBranch = 0.05;   // metres, likewise
-constexpr double kWidestRing = 0.05;    // of the tree's extent
-constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
-constexpr double kRawRadius = 0.002;    // metres
+constexpr double kTwigEscape =
+    0.02;  // metres out of the bark that a twig must reach: twice a good scan's noise
+constexpr double kWidestRing = 0.05;  // of the tree's extent
+constexpr double kFlatness = 1e-4;    // depth over width: less is rounding, not a scanned tree
+constexpr double kRawRadius = 0.002;  // metres
 
 // The shortest-path tree itself, for pictures.
 Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
@@ -125,7 +127,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
-    twig_options.least_escape = limb_options.least_escape;
+    twig_options.least_escape = kTwigEscape;
     const PointPlaces places =
         add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());
