@@ -24,6 +24,7 @@ constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest
 constexpr double kLeastBranch = 0.05;   // metres, likewise
 constexpr double kTwigEscape =
     0.02;  // metres out of the bark that a twig must reach: twice a good scan's noise
+constexpr double kNoiseEscape = 2.5;  // times the noise, likewise
 constexpr double kWidestRing = 0.05;  // of the tree's extent
 constexpr double kFlatness = 1e-4;    // depth over width: less is rounding, not a scanned tree
 constexpr double kRawRadius = 0.002;  // metres
@@ -127,7 +128,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
-    twig_options.least_escape = kTwigEscape;
+    twig_options.least_escape = std::max(kTwigEscape, kNoiseEscape * noise_of(axes));
     const PointPlaces places =
         add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());
