@@ -81,6 +81,7 @@ ReconstructOptions options_from(const Arguments& arguments) {
     if (arguments.has("--scale") + arguments.has("--height") + arguments.has("--length") > 1)
         throw UsageError("--scale, --height and --length all set the scale; give one of them.");
     options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
+    options.skeleton.keep_raw = false;
     options.skeleton.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
     const bool clean = !arguments.has("--no-clean");
     options.clean.remove_extreme_colors = clean && !arguments.has("--no-clean-colors");
@@ -90,7 +91,7 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.pick = pick_from(arguments);
     options.tell_leaves = !arguments.has("--all-wood");
     // Enough for the summary; a report tells more exactly.
-    if (!arguments.has("--report")) options.score_points = 4000;
+    if (!arguments.has("--report")) options.score_points = 1500;
     return options;
 }
 

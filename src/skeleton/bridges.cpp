@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "geometry/parallel.h"
 
@@ -13,9 +14,12 @@ namespace {
 
 constexpr size_t kGrain = 2048;        // points between two looks at the cancel flag
 constexpr float kLonger = 3.0f;        // times the shortest link: the links that are compared
-constexpr size_t kCompared = 16;       // of their starts
+constexpr size_t kNearStarts = 4;      // of them: the shortest,
+constexpr size_t kEndStarts = 8;       // and those from the part's end
 constexpr uint32_t kSampled = 7;       // one of so many points
 constexpr size_t kLeastPart = 40;      // points: a smaller part runs nowhere
+constexpr size_t kLargePart = 200;     // points: of a larger part,
+constexpr uint32_t kOfLargePart = 3;   // only one of so many is looked at
 constexpr double kAround = 2.0;        // link lengths: the wood that tells the direction
 constexpr double kLeastAround = 12.0;  // points
 constexpr double kElongated = 3.0;     // variance along over variance across: a direction that can be trusted
@@ -85,7 +89,7 @@ class Bridges {
             parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
                 progress.check();
                 for (size_t v = begin; v < end; v++)
-                    if (part_[v] != largest_)
+                    if (part_[v] != largest_ && looked_at(static_cast<uint32_t>(v)))
                         nearest[v] = nearest_outside(static_cast<uint32_t>(v),
                                                      1.0001f * longer(part_[v]) * shortest[part_[v]].squared);
             });
@@ -112,12 +116,20 @@ class Bridges {
                 progress.check();
                 const double longest = kLonger * std::sqrt(best.squared);
                 double least = std::numeric_limits<double>::max();
-                const size_t stride = 1 + (next - begin) / kCompared;
-                for (size_t i = begin; i < next; i += stride) {
-                    // Links come in the order of their lengths, and a cost is at least the length.
-                    if (std::sqrt(links[i].squared) >= least) break;
-                    straightest(links[i], longest, least, best);
-                }
+                const std::span<Link> of_part(links.data() + begin, next - begin);
+                const size_t near = std::min(kNearStarts, of_part.size());
+                const size_t all = std::min(kNearStarts + kEndStarts, of_part.size());
+                // Behind the shortest links, those from the part's end: the farthest from its middle.
+                const Vec3 middle(middle_[part] / static_cast<double>(members_[part]));
+                std::partial_sort(of_part.begin() + static_cast<ptrdiff_t>(near),
+                                  of_part.begin() + static_cast<ptrdiff_t>(all), of_part.end(),
+                                  [&](const Link& a, const Link& b) {
+                                      const float to_a = glm::distance(points_[a.from], middle);
+                                      const float to_b = glm::distance(points_[b.from], middle);
+                                      return to_a != to_b ? to_a > to_b : a.from < b.from;
+                                  });
+                for (size_t i = 0; i < all; i++)
+                    straightest(of_part[i], longest, least, best);
                 if (find(leader_, best.from) == find(leader_, best.to)) continue;
                 join(leader_, best.from, best.to);
                 edges.emplace_back(std::min(best.from, best.to), std::max(best.from, best.to));
@@ -129,12 +141,18 @@ class Bridges {
     // False where only one part is left.
     bool number_parts() {
         members_.assign(points_.size(), 0u);
-        for (uint32_t v = 0; v < points_.size(); v++)
+        middle_.assign(points_.size(), DVec3(0.0));
+        for (uint32_t v = 0; v < points_.size(); v++) {
             members_[part_[v] = find(leader_, v)]++;
+            middle_[part_[v]] += DVec3(points_[v]);
+        }
         largest_ =
             static_cast<uint32_t>(std::max_element(members_.begin(), members_.end()) - members_.begin());
         return members_[largest_] < points_.size();
     }
+
+    // Of a large part, some points do for all.
+    bool looked_at(uint32_t v) const { return members_[part_[v]] < kLargePart || v % kOfLargePart == 0; }
 
     // A link from v to itself where no other part is nearer than `most` (squared metres).
     Link nearest_outside(uint32_t v, float most) const {
@@ -211,6 +229,7 @@ class Bridges {
     std::vector<uint32_t> leader_;
     std::vector<uint32_t> part_;
     std::vector<uint32_t> members_;  // by part
+    std::vector<DVec3> middle_;      // by part: the sum of its points
     uint32_t largest_ = 0;
     std::vector<std::pair<uint32_t, float>> around_;  // scratch
 };

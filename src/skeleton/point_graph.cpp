@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kNeighbours = 9;
 constexpr size_t kGrain = 2048;  // points between two looks at the cancel flag
-constexpr size_t kLeafSize = 12;
+constexpr size_t kLeafSize = 16;
 constexpr size_t kScaleMax = 8;
 constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of this shortest edge
 constexpr int kScaleSmoothings = 3;
