@@ -19,6 +19,10 @@ constexpr double kMostSpread = 0.12;    // median residual over radius
 constexpr double kLeastArc = 0.31;      // the same for one that is seen from one side
 constexpr double kArcSpread = 0.03;
 constexpr double kMostInside = 0.08;    // share of points well inside: a crown, not a stem
+constexpr double kWideSpread = 0.09;    // the same for one that is wide for its tree: bark keeps to its
+constexpr double kWideInside = 0.03;    // circle, and nothing shines through it; a hollow crown is neither
+constexpr double kSureCoverage = 0.95;  // such a circle needs one alike beside it and no more
+constexpr double kSureSpread = 0.09;
 constexpr double kRingCoverage = 0.85;  // the same for closed sections that are not round
 constexpr double kRingInside = 0.04;
 constexpr double kRingSpread = 0.33;
@@ -157,9 +161,11 @@ class LimbFitter {
         const std::optional<CircleFit> circle =
             fit_circle(flat, 3.0 * extent, Random(options_.seed, hash_seed(stream_, i)));
         // The less of a circle is seen, the closer the points must keep to it.
-        if (circle && plausible(*circle) && circle->inside <= kMostInside) {
+        const bool wide = circle && circle->radius > options_.widest_ring;
+        if (circle && plausible(*circle) && circle->inside <= (wide ? kWideInside : kMostInside)) {
             const double spread = circle->spread / circle->radius;
-            if (circle->coverage >= kLeastCoverage && spread <= kMostSpread) return circle;
+            if (circle->coverage >= kLeastCoverage && spread <= (wide ? kWideSpread : kMostSpread))
+                return circle;
             if (circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
         }
         const std::optional<CircleFit> ring = fit_ring(flat);
@@ -173,6 +179,7 @@ class LimbFitter {
     void fit_all() {
         const std::vector<std::optional<DVec3>> before = std::move(centres_);
         centres_.assign(count_, std::nullopt);
+        sure_.assign(count_, 0);
         for (size_t i = 0; i < count_; i++) {
             bool worthwhile = before.empty();
             for (size_t j = i >= 2 ? i - 2 : 0; !worthwhile && j <= std::min(i + 2, count_ - 1); j++)
@@ -184,6 +191,8 @@ class LimbFitter {
             centres_[i] = stations_[i].position + circle->centre.x * u + circle->centre.y * v;
             stations_[i].radius = circle->radius;
             stations_[i].scatter = circle->spread;
+            sure_[i] = circle->coverage >= kSureCoverage && circle->inside <= kWideInside &&
+                       circle->spread <= kSureSpread * circle->radius;
         }
         // A circle that none of its neighbours confirms is an accident.
         for (size_t i = 0; i < count_; i++) {
@@ -196,7 +205,8 @@ class LimbFitter {
                 fitted++;
                 if (std::abs(stations_[j].radius - stations_[i].radius) < 0.25 * stations_[i].radius) alike++;
             }
-            stations_[i].measured = alike >= options_.confirmations && 2 * alike >= fitted;
+            const size_t needed = sure_[i] != 0 ? 1 : options_.confirmations;
+            stations_[i].measured = alike >= needed && 2 * alike >= fitted;
         }
         for (size_t i = 0; i < count_; i++)
             if (!stations_[i].measured) centres_[i].reset();
@@ -327,6 +337,7 @@ class LimbFitter {
     std::vector<double> arc_;
     std::vector<Station> stations_;
     std::vector<std::optional<DVec3>> centres_;
+    std::vector<uint8_t> sure_;  // by station: the circle is whole and clean
     std::vector<DVec2> flat_;  // a section's points, kept between sections
 };
 

@@ -21,7 +21,7 @@ struct Station {
 struct AxisOptions {
     bool fit_radii = true;
     uint64_t seed = 1;
-    double widest_ring = 0.25;  // metres: a wider closed section is a hollow crown unless it is a circle
+    double widest_ring = 0.25;  // metres: a wider closed section is a hollow crown unless it is a true circle
     size_t confirmations = 1;   // alike circles within three stations, without which one is an accident
     int rounds = 2;             // fit, then fit again across the better axis
 };

@@ -20,6 +20,7 @@ constexpr double kStrip = 0.6;          // of the known radius: what spreads les
 constexpr double kStub = 0.6;           // surface radii that a branch must reach out, likewise
 constexpr double kStrayWood = 0.2;      // of a gap: with less wood beyond it, that is stray points
 constexpr double kLoopLength = 2.0;     // times its width that a loop of bark must at least be long
+constexpr double kThinWood = 2.0;       // fine point spacings: thinner wood is all alike
 constexpr int kSameFork = 5;            // stations
 constexpr int kSmoothWindow = 2;        // stations to each side
 
@@ -29,8 +30,12 @@ struct SliceShape {
     std::vector<double> spacing;  // mean local spacing of the points
     std::vector<double> known;    // mean known radius of the wood they lie on, 0 where unknown
     std::vector<double> longest;  // metres to the farthest tip above
+    std::vector<double> bulk;     // square metres: the greatest way to a tip, each step times its thickness
     std::vector<int32_t> first_child;
     std::vector<int32_t> next_sibling;
+    double thin = 0.0;  // metres: differences below this are none
+
+    double thickness(size_t slice) const { return std::max(known[slice], thin); }
 };
 
 SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale) {
@@ -40,9 +45,15 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     shape.spacing.assign(count, 0.0);
     shape.known.assign(count, 0.0);
     shape.longest.assign(count, 0.0);
+    shape.bulk.assign(count, 0.0);
     shape.first_child.assign(count, -1);
     shape.next_sibling.assign(count, -1);
     std::vector<double> wood(count, 0.0);  // metres of all chains above
+    // The spacing is raised on thick wood; what is finest is near the true one.
+    std::vector<float> spacings = scale.spacing;
+    const auto fine = spacings.begin() + static_cast<ptrdiff_t>(spacings.size() / 10);
+    std::nth_element(spacings.begin(), fine, spacings.end());
+    shape.thin = kThinWood * *fine;
     for (size_t s = count; s-- > 1;) {
         double sum = 0.0;
         double spacing = 0.0;
@@ -60,6 +71,7 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
         if (slices.bridged[s] && wood[s] < kStrayWood * step) continue;  // stray points
         wood[p] += wood[s] + step;
         shape.longest[p] = std::max(shape.longest[p], shape.longest[s] + step);
+        shape.bulk[p] = std::max(shape.bulk[p], shape.bulk[s] + step * shape.thickness(s));
         shape.next_sibling[s] = shape.first_child[p];
         shape.first_child[p] = static_cast<int32_t>(s);
     }
@@ -197,13 +209,16 @@ class LimbFinder {
     }
 
   private:
+    // The child that continues the limb: the one with the most wood on its way to a tip, so that a stem does
+    // not end where a longer but thinner branch leaves it.
     int32_t main_child(int32_t slice) const {
         int32_t best = -1;
-        double best_length = -1.0;
+        double most = -1.0;
         for (int32_t c = shape_.first_child[slice]; c >= 0; c = shape_.next_sibling[c]) {
-            const double length = shape_.longest[c] + glm::distance(slices_.centre[c], slices_.centre[slice]);
-            if (length > best_length) {
-                best_length = length;
+            const double bulk = shape_.bulk[c] + glm::distance(slices_.centre[c], slices_.centre[slice]) *
+                                                     shape_.thickness(static_cast<size_t>(c));
+            if (bulk > most) {
+                most = bulk;
                 best = c;
             }
         }

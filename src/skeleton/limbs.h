@@ -25,14 +25,14 @@ struct LimbOptions {
     double widest_loop = 0.25;     // metres: what lies further aside is no bark of its parent
 };
 
-// Splits the tree of slices at its forks; the child with the longest way to a tip continues the limb. A side
-// chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of its parent's
-// surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise (AdTree, Du et
-// al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What grows on an
-// absorbed chain is tried again as a side limb of the parent. What lies beyond a gap five times as long as
-// all the wood behind it is left out as stray. Parents come before children.
-// A side chain that leaves its parent and touches it again further on is no branch, for wood has no loops: it
-// is another side of the same stem, and is merged with the parent's slices.
+// Splits the tree of slices at its forks; the child with the most wood on its way to a tip continues the
+// limb. A side chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of
+// its parent's surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise
+// (AdTree, Du et al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What
+// grows on an absorbed chain is tried again as a side limb of the parent. What lies beyond a gap five times
+// as long as all the wood behind it is left out as stray. Parents come before children. A side chain that
+// leaves its parent and touches it again further on is no branch, for wood has no loops: it is another side
+// of the same stem, and is merged with the parent's slices.
 std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
                              const LimbOptions& options);
 

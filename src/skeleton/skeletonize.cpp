@@ -122,6 +122,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     straighten_stems(limbs, axes);
+    straighten_bases(limbs, axes);
     infer_radii(axes, limbs);
     drop_strips(limbs, axes, limb_options.least_escape);
     clock.stop("Radii", limbs.size());

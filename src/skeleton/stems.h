@@ -1,4 +1,4 @@
-// Stems that share one root.
+// Where stems and limbs begin.
 #pragma once
 
 #include <vector>
@@ -12,5 +12,10 @@ namespace treerec {
 // instead, as its measured part above does, and joins the root down there. Stems are the first limb and those
 // that grow out of its first station. limbs, axes: as from fit_axes(); stations are moved in place.
 void straighten_stems(const std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes);
+
+// A limb's first slices are parts of rings, cut off by its parent's bark, and lie beside its axis. Each limb
+// goes straight back from its first measured stretch to its parent's bark instead, if that leads to the
+// parent's axis. Moves stations in place, and the limbs' `attach`. limbs, axes: as from fit_axes().
+void straighten_bases(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes);
 
 }  // namespace treerec

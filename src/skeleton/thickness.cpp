@@ -35,7 +35,7 @@ struct Belief {
 
 // Wood does not grow thicker outward, so a circle much wider than those below it goes round several branches.
 // limit: at the limb's base, 0 where unknown.
-Belief believed_radii(const std::vector<Station>& stations, double widest, double limit) {
+Belief believed_radii(const std::vector<Station>& stations, double limit) {
     Belief belief;
     belief.limit.resize(stations.size());
     belief.radius.assign(stations.size(), 0.0);
@@ -46,7 +46,7 @@ Belief believed_radii(const std::vector<Station>& stations, double widest, doubl
     for (size_t i = 0; i < stations.size(); i++) {
         if (i > 0) arc += glm::distance(stations[i].position, stations[i - 1].position);
         belief.limit[i] = limit;
-        if (!stations[i].measured || stations[i].radius > widest) continue;
+        if (!stations[i].measured) continue;
         if (limit > 0.0 && stations[i].radius > kSwelling * limit) continue;
         radius[i] = stations[i].radius;
         seen.push_back(radius[i]);
@@ -105,8 +105,7 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
         std::vector<Belief> beliefs(limbs.size());
         for (size_t l = 0; l < limbs.size(); l++) {
             const int32_t parent = limbs[l].parent;
-            beliefs[l] = believed_radii(axes[l], options.axes.widest_ring,
-                                        parent < 0 ? 0.0 : beliefs[parent].limit[limbs[l].attach]);
+            beliefs[l] = believed_radii(axes[l], parent < 0 ? 0.0 : beliefs[parent].limit[limbs[l].attach]);
             const std::vector<double>& radius = beliefs[l].radius;
             auto raise = [&](int32_t slice, size_t station) {
                 const double r = radius[station];
