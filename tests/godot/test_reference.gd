@@ -27,6 +27,15 @@ func test_every_member_is_described() -> void:
 			_check_text(texts, name, "constant", constant)
 
 
+func test_every_option_is_described() -> void:
+	var text: String = _read("TreeReconstructor").get("method reconstruct_file", "")
+	for option: Dictionary in TreeReconstructor.get_option_list():
+		check(
+			text.contains("[code]%s[/code]" % option.name),
+			"reconstruct_file's description does not name the option %s." % option.name
+		)
+
+
 func test_classes_are_links() -> void:
 	var base: String = (get_script() as Script).resource_path.get_base_dir()
 	for name: String in CLASSES:
