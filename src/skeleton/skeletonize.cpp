@@ -1,6 +1,7 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
+#include "skeleton/foot.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
@@ -122,6 +123,9 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.8, "Radii");
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     straighten_stems(limbs, axes);
+    if (!root.lying && std::none_of(limbs.begin(), limbs.end(),
+                                    [](const Limb& limb) { return limb.parent == 0 && limb.attach == 0; }))
+        plant_foot(axes.front());
     straighten_bases(limbs, axes);
     infer_radii(axes, limbs);
     drop_strips(limbs, axes, limb_options.least_escape);

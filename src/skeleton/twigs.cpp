@@ -20,7 +20,9 @@ constexpr double kBarkRelief = 0.2;  // of the radius, likewise
 constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that its points stay on its bark
-constexpr double kSharpest = 0.0;    // cosine of the sharpest turn of a twig
+constexpr double kSharpest = 0.0;     // cosine of the sharpest turn of a twig
+constexpr double kFoot = 4.0;         // radii of the stem: up there roots and ground lie around it, and
+constexpr double kFootEscape = 2.5;   // what reaches less far out is one of them
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
 constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
@@ -62,6 +64,11 @@ class TwigFinder {
             }
         });
         find_others();
+        double up = 0.0;
+        while (foot_end_ + 1 < static_cast<int32_t>(axes_[0].size()) && up < kFoot * axes_[0][0].radius) {
+            up += glm::distance(axes_[0][foot_end_ + 1].position, axes_[0][foot_end_].position);
+            foot_end_++;
+        }
         // A path starts on wood.
         for (const uint32_t v : paths_.order)
             if (paths_.parent[v] < 0 && line_[v] < 0) {
@@ -151,12 +158,15 @@ class TwigFinder {
         const int32_t parent = line_[foot_];
         int32_t station = station_[foot_];
         bool escapes = false;
+        const bool at_foot = parent == 0 && station < foot_end_;
         for (const uint32_t v : path_) {
             const BarkPlace place = place_near(axes_[parent], station, DVec3(points_[v]));
             station = place.station;
             const double outside = std::min<double>(outside_[v], place.distance - place.radius);
             const double thickest = std::max<double>(surface_[v], place.radius);
-            escapes = escapes || outside >= required_escape(options_.least_escape, thickest);
+            const double required = std::max(required_escape(options_.least_escape, thickest),
+                                             at_foot ? kFootEscape * axes_[0][0].radius : 0.0);
+            escapes = escapes || outside >= required;
         }
         if (!escapes) return;
 
@@ -319,6 +329,7 @@ class TwigFinder {
     std::vector<int32_t> station_;  // and the station there
     std::vector<float> outside_;    // by free point: metres from the nearest limb's bark, twigs left aside
     std::vector<float> surface_;    // and that limb's radius there
+    int32_t foot_end_ = 0;          // of the first limb: the first station above the foot
     std::vector<int32_t> nearest_;  // scratch of gather()
     std::vector<uint32_t> near_;
     std::vector<uint32_t> path_;

@@ -1,0 +1,101 @@
+#include "skeleton/foot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/quantile.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLowShare = 0.15;     // of the stem's length: where its radius is looked for
+constexpr double kBentRadii = 1.0;     // radii from the root: what may be bent
+constexpr double kSampleRadii = 4.0;   // radii above that: the stem that tells the line,
+constexpr double kSampleShare = 0.02;  // and at least so much of its length
+constexpr size_t kLeastStations = 4;
+constexpr double kUpright = 0.7;      // height over length
+constexpr double kMostCrooked = 0.4;  // radii: root mean square off the line
+constexpr double kOffLine = 0.5;      // radii: a foot that is no further off stays
+constexpr int kRounds = 3;            // of the fit, each without what the last one is far off
+constexpr double kFarOff = 2.0;       // root mean squares
+
+// x and z as linear functions of the height.
+struct Line {
+    double x = 0.0, z = 0.0, x_slope = 0.0, z_slope = 0.0;
+    double spread = 0.0;  // root mean square distance, metres
+
+    DVec3 at(double y) const { return {x + x_slope * y, y, z + z_slope * y}; }
+    double off(const DVec3& p) const { return glm::distance(p, at(p.y)); }
+};
+
+std::optional<Line> fit_line(std::vector<DVec3> sample) {
+    Line line;
+    for (int round = 0; round < kRounds; round++) {
+        if (sample.size() < kLeastStations) return std::nullopt;
+        DVec3 mean(0.0);
+        for (const DVec3& p : sample)
+            mean += p / static_cast<double>(sample.size());
+        double yy = 0.0, xy = 0.0, zy = 0.0;
+        for (const DVec3& p : sample) {
+            const DVec3 d = p - mean;
+            yy += d.y * d.y;
+            xy += d.x * d.y;
+            zy += d.z * d.y;
+        }
+        if (!(yy > 0.0)) return std::nullopt;
+        line.x_slope = xy / yy;
+        line.z_slope = zy / yy;
+        line.x = mean.x - line.x_slope * mean.y;
+        line.z = mean.z - line.z_slope * mean.y;
+        double sum = 0.0;
+        for (const DVec3& p : sample)
+            sum += line.off(p) * line.off(p);
+        line.spread = std::sqrt(sum / static_cast<double>(sample.size()));
+        const double limit = kFarOff * line.spread;
+        std::erase_if(sample, [&](const DVec3& p) { return line.off(p) > limit; });
+    }
+    return line;
+}
+
+}  // namespace
+
+void plant_foot(std::vector<Station>& stem) {
+    std::vector<double> arc(stem.size(), 0.0);
+    for (size_t i = 1; i < stem.size(); i++)
+        arc[i] = arc[i - 1] + glm::distance(stem[i].position, stem[i - 1].position);
+    std::vector<double> radii;
+    for (size_t i = 0; i < stem.size() && arc[i] <= kLowShare * arc.back(); i++)
+        if (stem[i].measured) radii.push_back(stem[i].radius);
+    if (radii.empty()) return;
+    const double radius = quantile(radii, 0.5);
+    const double from = kBentRadii * radius;
+    const double to = from + std::max(kSampleRadii * radius, kSampleShare * arc.back());
+    std::vector<DVec3> sample;
+    size_t lowest = stem.size();
+    size_t highest = 0;
+    for (size_t i = 0; i < stem.size(); i++) {
+        if (arc[i] < from || arc[i] > to || stem[i].bridged) continue;
+        sample.push_back(stem[i].position);
+        lowest = std::min(lowest, i);
+        highest = i;
+    }
+    if (sample.size() < kLeastStations) return;
+    const double rise = stem[highest].position.y - stem[lowest].position.y;
+    if (rise < kUpright * (arc[highest] - arc[lowest])) return;
+    const std::optional<Line> line = fit_line(std::move(sample));
+    if (!line || line->spread > kMostCrooked * radius) return;
+    double worst = 0.0;
+    for (size_t i = 0; i < lowest; i++)
+        worst = std::max(worst, line->off(stem[i].position));
+    if (worst <= kOffLine * radius) return;
+    double ceiling = stem[lowest].position.y;
+    for (size_t i = lowest; i-- > 0;) {
+        // Each station stands below the one after it.
+        ceiling = std::min(ceiling, stem[i].position.y);
+        stem[i].position = line->at(ceiling);
+    }
+}
+
+}  // namespace treerec
