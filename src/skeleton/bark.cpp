@@ -15,7 +15,7 @@ constexpr int kLookAround = 2;     // stations to each side
 constexpr size_t kNearest = 6;     // stations looked at
 constexpr size_t kNearestOf = 24;  // and so many where one limb is left aside
 constexpr double kThick = 0.03;    // metres: from stouter wood,
-constexpr double kWhisker = 1.5;   // so many times what it is stouter, besides
+constexpr double kWhisker = 0.8;   // so many times what it is stouter, besides
 constexpr double kStub = 0.6;      // radii that a branch must reach out of thick wood
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace treerec {
 namespace {
 
 constexpr double kThinnest = 0.001;      // metres
-constexpr double kTipAllowance = 0.003;  // metres: an unmeasured twig's tip
+constexpr double kTipAllowance = 0.0028;  // metres: an unmeasured twig's tip
 constexpr double kSlenderness = 0.02;    // unmeasured radius over the distance to the tip, at most
 constexpr double kThinTip = 0.002;       // the same, at least, as far as the points allow
 constexpr double kThinSlenderness = 0.005;
