@@ -338,7 +338,7 @@ class LimbFitter {
     std::vector<Station> stations_;
     std::vector<std::optional<DVec3>> centres_;
     std::vector<uint8_t> sure_;  // by station: the circle is whole and clean
-    std::vector<DVec2> flat_;  // a section's points, kept between sections
+    std::vector<DVec2> flat_;    // a section's points, kept between sections
 };
 
 }  // namespace

@@ -7,10 +7,10 @@ namespace treerec {
 
 namespace {
 
-constexpr double kThinnest = 0.001;      // metres
+constexpr double kThinnest = 0.001;       // metres
 constexpr double kTipAllowance = 0.0028;  // metres: an unmeasured twig's tip
-constexpr double kSlenderness = 0.02;    // unmeasured radius over the distance to the tip, at most
-constexpr double kThinTip = 0.002;       // the same, at least, as far as the points allow
+constexpr double kSlenderness = 0.02;     // unmeasured radius over the distance to the tip, at most
+constexpr double kThinTip = 0.002;        // the same, at least, as far as the points allow
 constexpr double kThinSlenderness = 0.005;
 // Standard deviations. The median length of a normal vector is .67 of them in 1D, 1.18 in 2D.
 constexpr double kNoiseMedian = 0.67;
