@@ -6,6 +6,7 @@
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
 #include "foliage/near_wood.h"
+#include "foliage/snags.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "tree/branches.h"
@@ -15,10 +16,10 @@ namespace treerec {
 namespace {
 
 constexpr double kGoldenAngle = 2.39996322972865332;  // radians: leaves above one another shade least
-constexpr double kFullHeight = 6.0;                   // metres; smaller trees bear smaller sprays
+constexpr double kFullHeight = 6.0;                   // metres; smaller trees have shorter, thinner twigs
+constexpr double kFullSprayHeight = 12.0;             // metres; smaller trees bear smaller sprays
 constexpr size_t kBranchesPerChunk = 256;
 constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that a snag can stand on
-constexpr double kSnagRadii = 6.0;   // a branch shorter than this many radii of its host is a snag
 
 // Following a scan's foliage.
 constexpr size_t kCellsPerChunk = 512;
@@ -35,8 +36,9 @@ struct Scaled {
 
 Scaled scaled(const LeafRules& rules, double height) {
     const double s = std::min(1.0, std::sqrt(height / kFullHeight));
-    return {std::max(rules.internode * s, 1e-4 * height), rules.twig_length * s, rules.maximum_radius * s,
-            rules.leaf_size * s};
+    const double spray = std::min(1.0, std::sqrt(height / kFullSprayHeight));
+    return {std::max(rules.internode * spray, 1e-4 * height), rules.twig_length * s, rules.maximum_radius * s,
+            rules.leaf_size * spray};
 }
 
 struct Placer {
@@ -135,19 +137,6 @@ void Placer::bear(const Branch& branch, std::vector<AxisPoint>& axis,
         azimuth += opposite ? 0.5 * kPi : kGoldenAngle;
         along -= size.internode * random.uniform(0.8, 1.2) * (opposite ? 2.0 : 1.0);
     }
-}
-
-// By branch: whether it is a snag on stout wood, or grows on one. A scan of an old trunk is full of them -
-// dead twigs, bark strips, burls - and leaves on them make its foot a bush.
-std::vector<uint8_t> find_snags(const Tree& tree, const BranchList& list, double stout_radius) {
-    std::vector<uint8_t> snag(list.branches.size(), 0);
-    for (size_t i = 0; i < snag.size(); i++) {
-        const Branch& branch = list.branches[i];
-        if (branch.attach == kNoNode) continue;
-        const double host = tree.node(branch.attach).radius;
-        snag[i] = snag[branch.parent] || (host > stout_radius && branch.length < kSnagRadii * host);
-    }
-    return snag;
 }
 
 // Leaves where a scan saw them.
@@ -305,17 +294,18 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     if (!rules.enabled || tree.size() < 2 || rules.maximum_leaves <= 0) return leaves;
     const Placer placer(tree, rules, seed, measure_crown(tree));
     const std::vector<Branch>& branches = placer.list.branches;
-    const std::vector<uint8_t> snag = find_snags(tree, placer.list, kStoutShare * placer.size.maximum_radius);
     using Leaves = std::vector<LeafPlacement>;
     if (rules.follow_foliage && !foliage.empty()) {
         const Follower follower(placer, foliage);
         gather(branches.size(), kBranchesPerChunk, leaves,
                [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
-                   if (!snag[i]) follower.finish(branches[i], axis, out);
+                   follower.finish(branches[i], axis, out);
                });
         gather(foliage.cells.size(), kCellsPerChunk, leaves,
                [&](size_t i, std::vector<AxisPoint>&, Leaves& out) { follower.fill(foliage.cells[i], out); });
     } else {
+        const std::vector<uint8_t> snag =
+            find_snags(tree, placer.list, kStoutShare * placer.size.maximum_radius);
         gather(branches.size(), kBranchesPerChunk, leaves,
                [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
                    if (!snag[i]) placer.bear(branches[i], axis, out);

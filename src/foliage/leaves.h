@@ -14,15 +14,15 @@ namespace treerec {
 enum class LeafArrangement { kAlternate, kOpposite };
 
 // A card shows a spray: a twig's end with several leaves, so that a crown looks full with few triangles.
-// Lengths in metres, for a tree of 6 m or taller; on a smaller one they shrink with the square root of its
-// height. Angles in degrees.
+// Lengths in metres; on a smaller tree they shrink with the square root of its height: leaf_size and
+// internode below 12 m, the others below 6 m. Angles in degrees.
 struct LeafRules {
     bool enabled = true;
     LeafArrangement arrangement = LeafArrangement::kAlternate;
     double internode = 0.05;   // distance between sprays along a twig; pairs stand twice as far apart
     double twig_length = 0.6;  // how far from its tip a branch bears leaves
     double maximum_radius =
-        0.02;  // thicker wood bears none, but for the tips; nor do snags on wood twice as thick
+        0.02;  // thicker wood bears none, but for the tips; nor do snags (snags.h) on wood twice as thick
     double leaf_size = 0.25;      // length of a spray
     double size_variation = 0.3;  // share
     double angle = 55.0;          // between the twig and the spray

@@ -111,6 +111,64 @@ TEST(Leaves, SnagsOnAStoutTrunkBearNone) {
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(at).position));
 }
 
+// A stem of 10 m and 10 cm radius with a bushy crown above 4 m.
+Tree stem_with_a_crown(std::vector<NodeId>& stem) {
+    Tree tree;
+    stem.push_back(tree.add_root({0, 0, 0}, 0.10));
+    for (int i = 1; i <= 20; i++)
+        stem.push_back(tree.add_child(stem.back(), {0, 0.5 * i, 0}, 0.10 - 0.004 * i));
+    for (int i = 8; i < 20; i++)
+        for (int k = 0; k < 4; k++) {
+            const double angle = 1.57 * k + i, y = 0.5 * i;
+            const DVec3 out(std::cos(angle), 0.3, std::sin(angle));
+            NodeId at = stem[static_cast<size_t>(i)];
+            for (int j = 1; j <= 6; j++)
+                at = tree.add_child(at, DVec3(0, y, 0) + 0.4 * j * out, 0.02 - 0.003 * j);
+        }
+    return tree;
+}
+
+TEST(Leaves, WaterShootsBelowTheCrownBearNone) {
+    std::vector<NodeId> stem;
+    Tree tree = stem_with_a_crown(stem);
+    // The same shoot of 0.8 m, longer than a snag: at the foot, and in the crown.
+    const auto shoot = [&](NodeId at) {
+        const DVec3 from = tree.node(at).position;
+        const NodeId knee = tree.add_child(at, from + DVec3(0.5, 0.1, 0.1), 0.006);
+        const NodeId side = tree.add_child(knee, from + DVec3(0.6, 0.1, 0.3), 0.003);
+        return std::make_pair(tree.add_child(knee, from + DVec3(0.75, 0.25, 0.1), 0.004), side);
+    };
+    const auto low = shoot(stem[1]), high = shoot(stem[12]);
+    // A low limb that reaches far is no shoot.
+    const NodeId limb = tree.add_child(stem[2], {-2.0, 1.4, 0}, 0.02);
+    const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), 1);
+    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(low.first).position));
+    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(low.second).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(high.first).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(high.second).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(limb).position));
+}
+
+TEST(Leaves, TwigsThatHugTheBarkBearNone) {
+    std::vector<NodeId> stem;
+    Tree tree = stem_with_a_crown(stem);
+    // 1.4 m long, 15 cm from the axis; then one that leaves the bark, and a second stem that does not.
+    const auto climb = [&](NodeId from, const DVec3& side, double step, double radius) {
+        NodeId at = from;
+        for (int i = 1; i <= 6; i++)
+            at = tree.add_child(
+                at, tree.node(from).position + DVec3(0, 0.25 * i, 0) + side * (i * step + 0.12), radius);
+        return at;
+    };
+    const NodeId ivy = climb(stem[9], DVec3(1, 0, 0), 0.0, 0.004);
+    const NodeId twig = climb(stem[9], DVec3(-1, 0, 0), 0.1, 0.004);
+    const NodeId twin = climb(stem[9], DVec3(0, 0, 1), 0.0, 0.05);
+    const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), 1);
+    EXPECT_FALSE(bears_leaf_at(leaves, tree.node(ivy).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(twig).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(twin).position));
+}
+
 TEST(Leaves, SameSeedSameLeavesWhateverTheThreads) {
     const Tree tree = test::random_tree(3, 4000);
     set_thread_count(1);
@@ -208,6 +266,11 @@ TEST(Leaves, SmallTreesBearSmallLeaves) {
         EXPECT_LT(leaf.size, 0.18f);
     for (const LeafPlacement& leaf : grown)
         EXPECT_GT(leaf.size, 0.18f);
+    // Sprays of a tree of 4 m, as many an orchard's, are well under 20 cm.
+    LeafRules rules = leaf_preset("generic");
+    rules.size_variation = 0.0;
+    for (const LeafPlacement& leaf : place_leaves(test::random_tree(2, 150, 4.0), rules, 1))
+        EXPECT_LT(leaf.size, 0.16f);
 }
 
 TEST(Leaves, WildTreesAndNothing) {
