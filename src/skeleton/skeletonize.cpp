@@ -1,3 +1,6 @@
+#include <array>
+#include <cstdio>
+
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
@@ -23,12 +26,13 @@ namespace {
 constexpr size_t kLeastPoints = 10;
 constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
 constexpr double kLeastBranch = 0.05;   // metres, likewise
-constexpr double kTwigEscape =
-    0.02;  // metres out of the bark that a twig must reach: twice a good scan's noise
-constexpr double kNoiseEscape = 2.5;  // times the noise, likewise
-constexpr double kWidestRing = 0.05;  // of the tree's extent
-constexpr double kFlatness = 1e-4;    // depth over width: less is rounding, not a scanned tree
-constexpr double kRawRadius = 0.002;  // metres
+constexpr double kTwigEscape = 0.02;    // metres that a twig must reach out of the bark,
+constexpr double kNoiseEscape = 2.5;    // and times the scan's noise
+constexpr double kWidestRing = 0.05;    // of the tree's extent
+constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
+constexpr double kLeastGap = 0.3;       // metres: a gap that the user is told of,
+constexpr double kGapShare = 0.04;      // and of the tree's extent
+constexpr double kRawRadius = 0.002;    // metres
 
 // The shortest-path tree itself, for pictures.
 Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
@@ -59,6 +63,29 @@ bool is_flat(const std::vector<Vec3>& points) {
     // The determinant is the product of the squared extents along the three main axes.
     const double widest = (covariance[0][0] + covariance[1][1] + covariance[2][2]) / 3.0;
     return !(glm::determinant(covariance) > kFlatness * kFlatness * widest * widest * widest);
+}
+
+// A sentence about the widest gap that was bridged, if it is a remarkable one.
+std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& axes,
+                                      const std::vector<Limb>& limbs, double extent) {
+    double widest = 0.0;
+    int gaps = 0;
+    const double least = std::max(kLeastGap, kGapShare * extent);
+    for (size_t l = 0; l < axes.size(); l++)
+        for (size_t i = limbs[l].parent < 0 ? 1 : 0; i < axes[l].size(); i++) {
+            if (!axes[l][i].bridged) continue;
+            const Station& before = i > 0 ? axes[l][i - 1] : axes[limbs[l].parent][limbs[l].attach];
+            const double width = glm::distance(axes[l][i].position, before.position);
+            if (width < least) continue;
+            gaps++;
+            widest = std::max(widest, width);
+        }
+    if (gaps == 0) return {};
+    std::array<char, 200> text;
+    std::snprintf(text.data(), text.size(),
+                  "The scan has %s of up to %.1f m in the wood; what lies between is a guess.",
+                  gaps == 1 ? "a gap" : (std::to_string(gaps) + " gaps").c_str(), widest);
+    return {text.data()};
 }
 
 }  // namespace
@@ -143,6 +170,8 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     refine_axes(axes, limbs, places, points, progress);
     infer_radii(axes, limbs);
     clock.stop("Refinement", limbs.size());
+
+    result.warnings = gap_warnings(axes, limbs, extent);
 
     progress.update(0.95, "Simplification");
     result.tree = assemble_tree(axes, limbs, options.simplify_distance);

@@ -167,6 +167,8 @@ TEST(Skeletonize, BridgesAGapAndSaysSo) {
             EXPECT_GT(to - from, 0.7);
         }
     EXPECT_EQ(guesses, 1u);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_NE(result.warnings[0].find("a gap of up to 0."), std::string::npos) << result.warnings[0];
     EXPECT_LT(distance_to_tree({0, 1.9, 0}, result.tree, cloud), 0.03);
 }
 
