@@ -14,8 +14,8 @@ namespace {
 
 constexpr size_t kMostSamples = 400000;
 constexpr size_t kBlock = size_t{1} << 20;  // points between two looks at the progress
-// Fragments that are a larger share of the points than this may be a tree.
-constexpr double kRemarkable = 0.2;
+// What is said where more than this share of the points goes.
+constexpr double kRemarkable = 0.02;
 
 bool has_real_colors(const PointCloud& cloud) {
     for (const Color8& c : cloud.colors)
@@ -175,9 +175,11 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     if (options.remove_fragments) {
         const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing, progress));
         if (share > kRemarkable)
-            report.warnings.push_back(std::to_string(std::lround(100.0 * share)) +
-                                      " % of the points stand well apart from the rest and were left out. If "
-                                      "they are a tree of their own, give each tree a file of its own.");
+            report.warnings.push_back(
+                std::to_string(std::lround(100.0 * share)) +
+                " % of the points stand well apart from the rest and were left out. If "
+                "they are part of the tree, leave out the cleaning of fragments; if they "
+                "are a tree of their own, give each tree a file of its own.");
     }
     step(0.9);
     cleaning.apply(progress);

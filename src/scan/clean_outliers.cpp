@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
 #include "scan/kd_points.h"
 #include "scan/robust.h"
-#include "scan/samples.h"
 
 namespace treerec {
 
@@ -131,50 +129,6 @@ std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::a
             values.push_back(neighbours.distance(nearest[w * count + n]));
         goes[which[w]] = neighbours.distance(which[w]) > kLocalContrast * quantile(values, 0.5);
     }
-    return goes;
-}
-
-std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spacing,
-                                    const Progress* progress) {
-    std::vector<uint8_t> goes(points.size());
-    if (points.size() < 10) return goes;
-    const std::array<Range, 3> ranges = robust_ranges(points, progress);
-    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
-    if (!(extent > 0.0)) return goes;
-    const std::vector<uint32_t> label =
-        connected_components(points, ranges, std::max(0.03 * extent, 3.0 * spacing), progress);
-
-    const size_t count = *std::max_element(label.begin(), label.end()) + size_t{1};
-    if (count == 1) return goes;
-    std::vector<size_t> size(count);
-    for (const uint32_t l : label)
-        size[l]++;
-    const size_t largest = static_cast<size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-    // Points that are all far from each other are no fragments of anything.
-    if (size[largest] < 10) return goes;
-
-    // A part with a share of the points is one of the tree's unless it stands well apart: a stem below a gap,
-    // a limb seen from one side.
-    const size_t substantial = std::max<size_t>(5, points.size() / 200);
-    const double near = 0.25 * extent;
-    // A few points are a leaf or the end of a twig if they are nearer still.
-    constexpr size_t kFew = 10;
-    const double very_near = 0.08 * extent;
-    std::vector<Vec3> main;
-    for (size_t i = 0; i < points.size(); i++)
-        if (label[i] == largest) main.push_back(points[i]);
-    const KdPoints kd_points{main};
-    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-    std::vector<double> gap(count, std::numeric_limits<double>::max());
-    for (size_t i = 0; i < points.size(); i++) {
-        if (label[i] == largest || size[label[i]] < std::min(kFew, substantial)) continue;
-        uint32_t found = 0;
-        float square = 0.0F;
-        tree.knnSearch(&points[i].x, 1, &found, &square);
-        gap[label[i]] = std::min<double>(gap[label[i]], std::sqrt(square));
-    }
-    for (size_t i = 0; i < points.size(); i++)
-        goes[i] = label[i] != largest && gap[label[i]] > (size[label[i]] < substantial ? very_near : near);
     return goes;
 }
 

@@ -22,7 +22,8 @@ namespace treerec {
 std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges, int k,
                                    double deviations, double& spacing, const Progress* progress);
 
-// Small clusters far from the rest. spacing: as from find_outliers().
+// Small clusters far from the rest, but not what lies beyond a gap in the tree: below the foot, or in line
+// with a stem or limb. spacing: as from find_outliers().
 std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spacing,
                                     const Progress* progress);
 

@@ -20,6 +20,10 @@ constexpr double kFlipMargin = 1.3;
 constexpr double kRivalMargin = 0.8;
 // The same for the other end of the axis that was taken.
 constexpr double kHeadMargin = 0.6;
+// A pruned tree is a pole: with so little crown around the middle, and a stem at either end, neither end
+// tells.
+constexpr double kPoleElongation = 2.0;
+constexpr double kPoleEnd = 2.0;  // slenderness
 // Times the extent: further out there is no tree, and no float either.
 constexpr double kFarthest = 1000.0;
 constexpr double kStemSlenderness = 4.0;
@@ -142,6 +146,12 @@ struct UpGuess {
     UpAxis rival = UpAxis::kZ;  // another axis along which the tree would stand better; else the same
 };
 
+// Whether both ends look like stems, and no crown tells which of them is one.
+bool is_pole(const AxisView& view) {
+    return view.elongation_score > kPoleElongation && view.low_end.slenderness > kPoleEnd &&
+           view.high_end.slenderness > kPoleEnd;
+}
+
 // Laser scans are Z up, photogrammetry is Y up, or Y down where it keeps the camera's axes; few programs put
 // the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
 // without colours, which photos would have given it. A branch may lie along any axis: X and -Z are only taken
@@ -161,7 +171,8 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
     guess.sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
     if (y_score > z_score + margin) {
         if (std::max(y.low_end.slenderness, y.high_end.slenderness) > least_slenderness)
-            guess.up = y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
+            guess.up =
+                !is_pole(y) && y.high_end.score > y.low_end.score + kFlipMargin ? UpAxis::kNegY : UpAxis::kY;
         else
             guess.sure = false;
     }
@@ -176,11 +187,11 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
     consider(UpAxis::kX, x.low_end, x.elongation_score);
     consider(UpAxis::kNegX, x.high_end, x.elongation_score);
     // On its head: the same axis, so that the ends alone count.
-    if (guess.rival == UpAxis::kZ && z.high_end.score > z.low_end.score + kHeadMargin) {
+    if (guess.rival == UpAxis::kZ && !is_pole(z) && z.high_end.score > z.low_end.score + kHeadMargin) {
         guess.rival = UpAxis::kNegZ;
         best = z.high_end.score + z.elongation_score;
     }
-    if (guess.rival == UpAxis::kY && y.high_end.score > y.low_end.score + kHeadMargin)
+    if (guess.rival == UpAxis::kY && !is_pole(y) && y.high_end.score > y.low_end.score + kHeadMargin)
         guess.rival = UpAxis::kNegY;
     if (guess.rival == guess.up) return guess;
     guess.sure = false;

@@ -338,6 +338,52 @@ TEST(ScanTough, ATreeOnItsHeadOrItsSideIsDoubted) {
     }
 }
 
+// A stem with stubs and a long bare top: either end looks like a stem.
+std::vector<Vec3> pruned_tree(uint64_t seed) {
+    Random random(seed);
+    std::vector<Vec3> points;
+    add_cylinder(points, random, {0, 0, 0}, {0.1, 4, 0}, 0.09, 0.03, 6000);
+    for (int i = 0; i < 7; i++) {
+        const double h = 0.85 + 0.22 * i;
+        const double angle = 2.4 * i + random.uniform();
+        const DVec3 foot(0.025 * h, h, 0.0);
+        const double length = i % 3 == 0 ? 1.3 : 0.4;
+        add_cylinder(points, random, foot,
+                     foot + length * glm::normalize(DVec3(std::cos(angle), 0.3, std::sin(angle))), 0.03, 0.02,
+                     static_cast<size_t>(900.0 * length));
+    }
+    return points;
+}
+
+TEST(ScanTough, APrunedTreeIsNotSaidToStandOnItsHead) {
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        for (const UpAxis up : {UpAxis::kY, UpAxis::kZ}) {
+            SCOPED_TRACE(std::to_string(seed) + " " + up_axis_name(up));
+            ScanFrame frame;
+            frame.up = up;
+            PointCloud cloud;
+            for (const Vec3& p : pruned_tree(seed))
+                cloud.positions.emplace_back(frame.to_scan(DVec3(p)));
+            if (up == UpAxis::kY) cloud.colors.assign(cloud.size(), Color8{90, 80, 70});
+            const OrientReport report = orient_cloud(cloud, {});
+            EXPECT_EQ(report.up, up);
+            EXPECT_FALSE(says(report.warnings, "up axis by hand"));
+        }
+    }
+}
+
+TEST(ScanTough, PrunedTreesFromPhotosAreNotDoubted) {
+    const std::string folder = scans_folder();
+    if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    for (const char* name : {"take6_Yup", "take_outside_Yup", "tree_badheader_Yup"}) {
+        SCOPED_TRACE(name);
+        PointCloud cloud = read_cloud(folder + "sfm_pear_" + name + ".ply");
+        const OrientReport report = orient_cloud(cloud, {});
+        EXPECT_EQ(report.up, UpAxis::kY);
+        EXPECT_FALSE(says(report.warnings, "up axis by hand"));
+    }
+}
+
 TEST(ScanTough, RealTreesAreNotDoubtedUprightButOnTheirHeads) {
     const std::string folder = scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
