@@ -17,22 +17,6 @@ constexpr size_t kBlock = size_t{1} << 20;  // points between two looks at the p
 // What is said where more than this share of the points goes.
 constexpr double kRemarkable = 0.02;
 
-bool has_real_colors(const PointCloud& cloud) {
-    for (const Color8& c : cloud.colors)
-        if (c != cloud.colors.front()) return true;
-    return false;
-}
-
-std::vector<uint8_t> find_extreme_colors(const PointCloud& cloud, const CleanOptions& options) {
-    std::vector<uint8_t> goes(cloud.size());
-    for (size_t i = 0; i < cloud.size(); i++) {
-        const Color8& c = cloud.colors[i];
-        const auto [low, high] = std::minmax({c[0], c[1], c[2]});
-        goes[i] = low >= options.white_above || high <= options.black_below;
-    }
-    return goes;
-}
-
 // The samples still in the cloud, and how the steps take some away.
 class Cleaning {
   public:
@@ -124,25 +108,6 @@ class Cleaning {
     std::vector<uint32_t> alive_;
 };
 
-void clean_colors(PointCloud& cloud, const CleanOptions& options, CleanReport& report) {
-    size_t removed = 0;
-    if (has_real_colors(cloud)) {
-        std::vector<uint8_t> goes = find_extreme_colors(cloud, options);
-        removed = static_cast<size_t>(std::count(goes.begin(), goes.end(), uint8_t{1}));
-        // Noise against the sky is a part of the points; half of them would be the way the cloud is painted.
-        if (removed * 2 > cloud.size()) {
-            report.warnings.push_back("More than half of the points are near white or near black (" +
-                                      std::to_string(removed) + "); they were kept.");
-            removed = 0;
-        } else {
-            for (uint8_t& flag : goes)
-                flag = !flag;
-            cloud.keep_only(goes);
-        }
-    }
-    report.steps.push_back({"Extreme colours", removed});
-}
-
 }  // namespace
 
 CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress* progress) {
@@ -154,7 +119,7 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     };
     if (cloud.empty()) throw Error("The cloud has no points.");
     step(0.0);
-    if (options.remove_extreme_colors && cloud.has_colors()) clean_colors(cloud, options, report);
+    if (options.remove_extreme_colors && cloud.has_colors()) clean_colors(cloud, options, report, progress);
     step(0.1);
     Cleaning cleaning(cloud, report, progress);
     step(0.3);

@@ -8,11 +8,17 @@
 
 #include "geometry/vec.h"
 #include "progress.h"
+#include "scan/clean_cloud.h"
 #include "scan/robust.h"
 
 namespace treerec {
 
-// All take points in metres, Y up, and return one flag per point: 1 where it should go. ranges:
+// Takes the points that are near white or near black, where they are few, or where they lie around the wood
+// as sky does or strewn over it as noise does; says so in the report where they are many.
+void clean_colors(PointCloud& cloud, const CleanOptions& options, CleanReport& report,
+                  const Progress* progress);
+
+// All others take points in metres, Y up, and return one flag per point: 1 where it should go. ranges:
 // robust_ranges() of the points or of a cloud that holds them.
 
 // Points whose mean distance to their k nearest neighbours is beyond the median of all points by `deviations`

@@ -118,6 +118,50 @@ TEST(ScanGaps, WhatLiesBesideTheTreeGoesWithAWord) {
     EXPECT_TRUE(says(report.warnings, "4 % of the points stand well apart")) << report.warnings[0];
 }
 
+// Bark that is white or black by nature, or in the sun, is part of the tree.
+TEST(ScanColors, PaleAndDarkBarkStays) {
+    for (const Color8& extreme : {Color8{255, 255, 253}, Color8{2, 1, 0}}) {
+        for (int kind = 0; kind < 4; kind++) {
+            SCOPED_TRACE(std::to_string(extreme[0]) + " " + std::to_string(kind));
+            PointCloud cloud;
+            cloud.positions = tree_points(6);
+            for (const Vec3& p : cloud.positions) {
+                const bool is = kind == 0   ? p.y < 3.0F                          // the foot of the stem
+                                : kind == 1 ? glm::length(Vec2(p.x, p.z)) > 1.0F  // all twigs
+                                : kind == 2 ? std::sin(12.0F * p.y) > 0.5F        // a birch's bands
+                                            : p.x > 0.02F * p.y + 0.02F;          // one side
+                cloud.colors.push_back(is ? extreme : Color8{90, static_cast<uint8_t>(60.0F + p.y), 50});
+            }
+            const size_t all = cloud.size();
+            const CleanReport report = clean_cloud(cloud, {});
+            EXPECT_EQ(report.steps[0].removed, 0U);
+            EXPECT_GT(cloud.size(), all - all / 200);
+            ASSERT_EQ(report.warnings.size(), 1U);
+            EXPECT_TRUE(says(report.warnings, "they were kept")) << report.warnings[0];
+        }
+    }
+}
+
+// Sky that photos gave the rim of the wood.
+TEST(ScanColors, AHaloGoesWithAWord) {
+    Random random(2);
+    PointCloud cloud;
+    cloud.positions = tree_points(6);
+    cloud.colors.assign(cloud.size(), Color8{90, 70, 50});
+    const size_t wood = cloud.size();
+    cloud.colors[0] = {91, 70, 50};
+    for (size_t i = 0; i < wood; i += 2) {
+        cloud.positions.push_back(cloud.positions[i] + Vec3(random.uniform(0.08, 0.15) * random.direction()));
+        cloud.colors.push_back({255, 254, 253});
+    }
+    // What fell into the wood is not at its rim, but there is more outside.
+    const size_t halo = cloud.size() - wood;
+    const CleanReport report = clean_cloud(cloud, {});
+    EXPECT_EQ(report.steps[0].removed, halo);
+    ASSERT_EQ(report.warnings.size(), 1U);
+    EXPECT_TRUE(says(report.warnings, "33 % of the points are near white")) << report.warnings[0];
+}
+
 TEST(ScanGaps, TheFootOfARealTreeBelowAGap) {
     const std::string folder = scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
