@@ -169,6 +169,8 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     infer_radii(axes, limbs);
     refine_axes(axes, limbs, places, points, progress);
     infer_radii(axes, limbs);
+    // Twigs that now lie on the bark of others were none.
+    drop_strips(limbs, axes, 0.5 * twig_options.least_escape);
     clock.stop("Refinement", limbs.size());
 
     result.warnings = gap_warnings(axes, limbs, extent);

@@ -17,6 +17,8 @@ constexpr double kTolerance = 0.12;        // point spacings off the bark: still
 constexpr double kLeastTolerance = 0.005;  // metres
 constexpr double kMostTolerance = 0.02;
 constexpr double kBarkRelief = 0.2;  // of the radius, likewise
+constexpr int kStumpSteps = 12;      // stations back that the end of thick wood is looked for
+constexpr double kStumpEnd = 1.5;    // radii: so long it is
 constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that its points stay on its bark
@@ -85,6 +87,7 @@ class TwigFinder {
                 const BarkPlace place = bark_.nearest(points_[v]);
                 if (place.limb < 0) continue;
                 claim(static_cast<uint32_t>(v), place);
+                if (line_[v] < 0) claim_stump(static_cast<uint32_t>(v), place);
                 outside_[v] = static_cast<float>(place.outside());
                 surface_[v] = static_cast<float>(place.radius);
             }
@@ -128,6 +131,36 @@ class TwigFinder {
         if (place.distance > (1.0 + kBarkRelief) * place.radius + tolerance(v)) return;
         line_[v] = place.limb;
         station_[v] = place.station;
+    }
+
+    // Where thick wood ends in thinner limbs, or is cut off, its end stands around them: a point straight
+    // ahead of the thicker stations behind its place lies on that.
+    void claim_stump(uint32_t v, const BarkPlace& place) {
+        const DVec3 p(points_[v]);
+        int32_t limb = place.limb;
+        int32_t at = place.station;
+        for (int step = 0; step < kStumpSteps; step++) {
+            const std::vector<Station>& line = axes_[limb];
+            const double radius = line[at].radius;
+            if (at > 0) {
+                int32_t behind = at - 1;
+                while (behind > 0 && glm::distance(line[at].position, line[behind].position) < radius)
+                    behind--;
+                const DVec3 along = normalized_or(line[at].position - line[behind].position, DVec3(0, 1, 0));
+                const DVec3 offset = p - line[at].position;
+                const double ahead = glm::dot(offset, along);
+                if (std::abs(ahead) <= kStumpEnd * radius &&
+                    glm::length(offset - ahead * along) <= (1.0 + kBarkRelief) * radius + tolerance(v)) {
+                    line_[v] = limb;
+                    station_[v] = at;
+                    return;
+                }
+            }
+            if (at == 0 && limbs_[limb].parent < 0) return;
+            const int32_t next = at > 0 ? at - 1 : limbs_[limb].attach;
+            if (at == 0) limb = limbs_[limb].parent;
+            at = next;
+        }
     }
 
     double tolerance(uint32_t v) const {

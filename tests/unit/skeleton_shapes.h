@@ -76,6 +76,7 @@ inline WoodScan fork_scan(uint64_t seed, int arms) {
     WoodScan scan;
     scan.tips = static_cast<size_t>(arms);
     const double radius = random.uniform(0.04, 0.2);
+    scan.spacing = radius * random.uniform(0.1, 0.25);
     const DVec3 fork = random.uniform(1.2, 3.0) * tilted({0, 1, 0}, random.uniform(0.0, 0.3), 1.0);
     const double thick = random.uniform(0.85, 0.95) * radius;
     scan.wood.push_back({{0, 0, 0}, fork, radius, thick});
@@ -85,11 +86,27 @@ inline WoodScan fork_scan(uint64_t seed, int arms) {
         const double share = random.uniform(0.55, arms == 2 ? 0.8 : 0.65);
         const DVec3 along = tilted(fork, angle, turn + 2.0 * kPi * (arm + random.uniform(-0.1, 0.1)) / arms);
         scan.wood.push_back({fork, fork + random.uniform(1.0, 2.0) * along, share * thick,
-                             random.uniform(0.2, 0.6) * share * thick});
+                             random.uniform(0.5, 1.2) * scan.spacing});
     }
-    scan.spacing = radius * random.uniform(0.1, 0.25);
-    scan.noise = random.uniform(0.0, 0.05) * radius;
+    scan.noise = random.uniform(0.0, 0.003);
     scan_wood(scan, random);
+    return scan;
+}
+
+// A fork whose stem is cut off above the arms.
+inline WoodScan plain_fork_scan(uint64_t seed) {
+    Random random(seed);
+    WoodScan scan;
+    scan.tips = 2;
+    scan.spacing = 0.012;
+    scan.noise = 0.002;
+    const DVec3 base = {random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)};
+    const DVec3 fork = base + DVec3(0.1, 2.0, 0.05);
+    scan.wood = {{base, fork, 0.10, 0.09},
+                 {fork, fork + DVec3(0.7, 1.4, 0.0), 0.06, 0.02},
+                 {fork, fork + DVec3(-0.6, 1.5, 0.2), 0.06, 0.02}};
+    for (const Wood& wood : scan.wood)
+        add_cone(scan.cloud, random, wood.a, wood.b, wood.radius_a, wood.radius_b, scan.spacing, scan.noise);
     return scan;
 }
 
@@ -99,16 +116,16 @@ inline WoodScan stems_scan(uint64_t seed) {
     WoodScan scan;
     scan.tips = 2;
     const double radius = random.uniform(0.04, 0.12);
+    scan.spacing = radius * random.uniform(0.1, 0.25);
     const double half = radius * random.uniform(1.5, 3.0);
     for (const double side : {-1.0, 1.0}) {
         const double own = radius * random.uniform(0.7, 1.0);
         const DVec3 base(side * half, 0.0, 0.0);
         const DVec3 top = base + DVec3(side * random.uniform(0.15, 0.6), random.uniform(2.5, 3.5),
                                        random.uniform(-0.3, 0.3));
-        scan.wood.push_back({base, top, own, own * random.uniform(0.4, 0.8)});
+        scan.wood.push_back({base, top, own, random.uniform(0.5, 1.2) * scan.spacing});
     }
-    scan.spacing = radius * random.uniform(0.1, 0.25);
-    scan.noise = random.uniform(0.0, 0.04) * radius;
+    scan.noise = random.uniform(0.0, 0.003);
     scan_wood(scan, random);
     return scan;
 }
@@ -119,8 +136,9 @@ inline WoodScan sides_scan(uint64_t seed, int branches, double seen) {
     WoodScan scan;
     scan.tips = static_cast<size_t>(branches) + 1;
     const double radius = random.uniform(0.08, 0.25);
+    scan.spacing = radius * random.uniform(0.06, 0.12);
     const DVec3 top = random.uniform(4.0, 6.0) * tilted({0, 1, 0}, random.uniform(0.0, 0.15), 2.0);
-    Wood stem{{0, 0, 0}, top, radius, radius * random.uniform(0.4, 0.7)};
+    Wood stem{{0, 0, 0}, top, radius, 1.2 * scan.spacing};
     stem.to = seen;
     scan.wood.push_back(stem);
     const DVec3 u = any_perpendicular(glm::normalize(top));
@@ -135,10 +153,9 @@ inline WoodScan sides_scan(uint64_t seed, int branches, double seen) {
         const double own = stem.radius(t) * random.uniform(0.2, 0.5);
         scan.wood.push_back({stem.at(t),
                              stem.at(t) + random.uniform(0.8, 1.6) * along + stem.radius(t) * along, own,
-                             own * random.uniform(0.3, 0.7)});
+                             random.uniform(0.5, 1.0) * scan.spacing});
     }
-    scan.spacing = radius * random.uniform(0.06, 0.12);
-    scan.noise = random.uniform(0.0, 0.03) * radius;
+    scan.noise = random.uniform(0.0, 0.003);
     scan_wood(scan, random);
     return scan;
 }
@@ -173,7 +190,7 @@ inline WoodScan thick_scan(uint64_t seed) {
     }
     scan.tips = static_cast<size_t>(boughs);
     scan.spacing = radius / random.uniform(12.0, 40.0);
-    scan.noise = random.uniform(0.0, 0.02) * radius;
+    scan.noise = random.uniform(0.0, 0.003);
     scan_wood(scan, random);
     return scan;
 }
