@@ -15,7 +15,7 @@ constexpr int kLookAround = 2;     // stations to each side
 constexpr size_t kNearest = 6;     // stations looked at
 constexpr size_t kNearestOf = 24;  // and so many where one limb is left aside
 constexpr double kThick = 0.03;    // metres: from stouter wood,
-constexpr double kWhisker = 0.8;   // so many times what it is stouter, besides
+constexpr double kWhisker = 0.6;   // so many times what it is stouter, besides
 constexpr double kStub = 0.6;      // radii that a branch must reach out of thick wood
 
 }  // namespace
@@ -80,7 +80,8 @@ BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const
 }
 
 double required_escape(double least_escape, double radius) {
-    return std::max({least_escape, kStub * radius, kStub * kThick + kWhisker * (radius - kThick)});
+    if (radius <= kThick) return std::max(least_escape, kStub * radius);
+    return std::max(least_escape, kStub * kThick) + kWhisker * (radius - kThick);
 }
 
 void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, double least_escape) {

@@ -10,14 +10,13 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLowShare = 0.15;     // of the stem's length: where its radius is looked for
-constexpr double kBentRadii = 1.0;     // radii from the root: what may be bent
-constexpr double kSampleRadii = 4.0;   // radii above that: the stem that tells the line,
-constexpr double kSampleShare = 0.02;  // and at least so much of its length
+constexpr double kLowShare = 0.25;    // of the stem's length: the part that is looked at
+constexpr double kUpright = 0.6;      // height over length of a stem that goes up,
+constexpr double kUpRadii = 2.0;      // over so many radii
+constexpr double kBentRadii = 2.0;    // radii more that are not trusted
+constexpr double kSampleRadii = 6.0;  // radii: the stem that tells the line
 constexpr size_t kLeastStations = 4;
-constexpr double kUpright = 0.7;      // height over length
 constexpr double kMostCrooked = 0.4;  // radii: root mean square off the line
-constexpr double kOffLine = 0.5;      // radii: a foot that is no further off stays
 constexpr int kRounds = 3;            // of the fit, each without what the last one is far off
 constexpr double kFarOff = 2.0;       // root mean squares
 
@@ -70,26 +69,31 @@ void plant_foot(std::vector<Station>& stem) {
         if (stem[i].measured) radii.push_back(stem[i].radius);
     if (radii.empty()) return;
     const double radius = quantile(radii, 0.5);
-    const double from = kBentRadii * radius;
-    const double to = from + std::max(kSampleRadii * radius, kSampleShare * arc.back());
-    std::vector<DVec3> sample;
+    // Where the stem starts to go up, and goes on so.
+    const auto goes_up = [&](size_t i) {
+        size_t j = i;
+        while (j + 1 < stem.size() && arc[j] - arc[i] < kUpRadii * radius)
+            j++;
+        return stem[j].position.y - stem[i].position.y >= kUpright * (arc[j] - arc[i]);
+    };
     size_t lowest = stem.size();
-    size_t highest = 0;
-    for (size_t i = 0; i < stem.size(); i++) {
-        if (arc[i] < from || arc[i] > to || stem[i].bridged) continue;
-        sample.push_back(stem[i].position);
-        lowest = std::min(lowest, i);
-        highest = i;
+    for (size_t i = 0; i < stem.size() && arc[i] <= kLowShare * arc.back() + kUpRadii * radius; i++) {
+        if (lowest < stem.size() && arc[i] - arc[lowest] > kUpRadii * radius) break;
+        if (!goes_up(i))
+            lowest = stem.size();
+        else if (lowest == stem.size())
+            lowest = i;
     }
-    if (sample.size() < kLeastStations) return;
-    const double rise = stem[highest].position.y - stem[lowest].position.y;
-    if (rise < kUpright * (arc[highest] - arc[lowest])) return;
+    if (lowest == 0 || lowest == stem.size()) return;
+    // The circles just above still lean to where the axis comes from.
+    const double bent = arc[lowest] + kBentRadii * radius;
+    while (lowest + 1 < stem.size() && arc[lowest] < bent)
+        lowest++;
+    std::vector<DVec3> sample;
+    for (size_t i = lowest; i < stem.size() && arc[i] - arc[lowest] <= kSampleRadii * radius; i++)
+        if (!stem[i].bridged) sample.push_back(stem[i].position);
     const std::optional<Line> line = fit_line(std::move(sample));
     if (!line || line->spread > kMostCrooked * radius) return;
-    double worst = 0.0;
-    for (size_t i = 0; i < lowest; i++)
-        worst = std::max(worst, line->off(stem[i].position));
-    if (worst <= kOffLine * radius) return;
     double ceiling = stem[lowest].position.y;
     for (size_t i = lowest; i-- > 0;) {
         // Each station stands below the one after it.

@@ -8,10 +8,10 @@
 namespace treerec {
 
 // The lowest points of a stem are those of one root spur, or what is left of the ground beside it, and its
-// axis bends towards them. Puts the lowest stations of an upright stem, the root too, on the straight line of
-// the stem above, each at its own height, if they lie off it by more than half the stem's radius. Does
-// nothing where the stem is not upright or not straight, or too short to tell. stem: metres, Y up, from the
-// root.
+// axis runs along them before it goes up. Puts the lowest stations of an upright stem, the root too, on the
+// straight line of the stem above, each at its own height. A foot that is swept but goes up all the way
+// stays, and so does all of a stem that is not straight above, or too short to tell. stem: metres, Y up, from
+// the root.
 void plant_foot(std::vector<Station>& stem);
 
 }  // namespace treerec

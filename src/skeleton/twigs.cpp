@@ -24,7 +24,7 @@ constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that its points stay on its bark
 constexpr double kSharpest = 0.0;     // cosine of the sharpest turn of a twig
 constexpr double kFoot = 4.0;         // radii of the stem: up there roots and ground lie around it, and
-constexpr double kFootEscape = 2.5;   // what reaches less far out is one of them
+constexpr double kFootEscape = 4.0;   // what reaches less far out is one of them
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
 constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
@@ -66,11 +66,9 @@ class TwigFinder {
             }
         });
         find_others();
-        double up = 0.0;
-        while (foot_end_ + 1 < static_cast<int32_t>(axes_[0].size()) && up < kFoot * axes_[0][0].radius) {
-            up += glm::distance(axes_[0][foot_end_ + 1].position, axes_[0][foot_end_].position);
+        while (foot_end_ + 1 < static_cast<int32_t>(axes_[0].size()) &&
+               glm::distance(axes_[0][foot_end_].position, axes_[0][0].position) < kFoot * axes_[0][0].radius)
             foot_end_++;
-        }
         // A path starts on wood.
         for (const uint32_t v : paths_.order)
             if (paths_.parent[v] < 0 && line_[v] < 0) {
