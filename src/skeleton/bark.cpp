@@ -11,12 +11,13 @@ namespace treerec {
 
 namespace {
 
-constexpr int kLookAround = 2;     // stations to each side
-constexpr size_t kNearest = 6;     // stations looked at
-constexpr size_t kNearestOf = 24;  // and so many where one limb is left aside
-constexpr double kThick = 0.03;    // metres: from stouter wood,
-constexpr double kWhisker = 0.6;   // so many times what it is stouter, besides
-constexpr double kStub = 0.6;      // radii that a branch must reach out of thick wood
+constexpr int kLookAround = 2;       // stations to each side
+constexpr size_t kNearest = 6;       // stations looked at
+constexpr size_t kNearestOf = 24;    // and so many where one limb is left aside
+constexpr size_t kNearestThick = 3;  // likewise, of stout wood
+constexpr double kThick = 0.03;      // metres: from stouter wood,
+constexpr double kWhisker = 0.6;     // so many times what it is stouter, besides
+constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
 
 }  // namespace
 
@@ -34,22 +35,28 @@ BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DV
 }
 
 Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes)
-    : limbs_(limbs), axes_(axes), kd_points_{positions_} {
+    : limbs_(limbs), axes_(axes) {
+    const auto add = [](Index& index, const DVec3& position, int32_t limb, int32_t station) {
+        index.positions.emplace_back(position);
+        index.names.emplace_back(limb, station);
+    };
     for (size_t l = 0; l < axes.size(); l++) {
         const int32_t limb = static_cast<int32_t>(l);
         for (size_t i = 0; i < axes[l].size(); i++) {
-            positions_.emplace_back(axes[l][i].position);
-            names_.emplace_back(limb, static_cast<int32_t>(i));
+            const Station& station = axes[l][i];
+            add(all_, station.position, limb, static_cast<int32_t>(i));
+            if (station.radius > kThick) add(thick_, station.position, limb, static_cast<int32_t>(i));
         }
         if (limbs[l].parent < 0) continue;
         // And along the way from the fork to the limb's first station.
         const DVec3& fork = axes[limbs[l].parent][limbs[l].attach].position;
-        for (const double t : {0.25, 0.5, 0.75}) {
-            positions_.emplace_back(fork + t * (axes[l][0].position - fork));
-            names_.emplace_back(limb, 0);
-        }
+        for (const double t : {0.25, 0.5, 0.75})
+            add(all_, fork + t * (axes[l][0].position - fork), limb, 0);
     }
-    tree_ = std::make_unique<KdTree>(3, kd_points_, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+    for (Index* index : {&all_, &thick_})
+        if (!index->positions.empty())
+            index->tree =
+                std::make_unique<KdTree>(3, index->kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
 }
 
 BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
@@ -63,19 +70,25 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
     return place;
 }
 
-BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const {
-    std::array<uint32_t, kNearestOf> index;
+void Bark::look(const Index& index, size_t count, const Vec3& p, const std::vector<uint8_t>* except,
+                BarkPlace& best) const {
+    if (!index.tree) return;
+    std::array<uint32_t, kNearestOf> found;
     std::array<float, kNearestOf> squared;
-    const size_t found =
-        tree_->knnSearch(&p.x, except == nullptr ? kNearest : kNearestOf, index.data(), squared.data());
-    BarkPlace best;
-    best.distance = std::numeric_limits<double>::max();
-    for (size_t k = 0; k < found; k++) {
-        const auto [limb, station] = names_[index[k]];
+    count = index.tree->knnSearch(&p.x, count, found.data(), squared.data());
+    for (size_t k = 0; k < count; k++) {
+        const auto [limb, station] = index.names[found[k]];
         if (except != nullptr && (*except)[limb] != 0) continue;
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
     }
+}
+
+BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const {
+    BarkPlace best;
+    best.distance = std::numeric_limits<double>::max();
+    look(all_, except == nullptr ? kNearest : kNearestOf, p, except, best);
+    look(thick_, kNearestThick, p, except, best);
     return best;
 }
 

@@ -38,10 +38,18 @@ class Bark {
   private:
     const std::vector<Limb>& limbs_;
     const std::vector<std::vector<Station>>& axes_;
-    std::vector<Vec3> positions_;
-    std::vector<std::pair<int32_t, int32_t>> names_;  // the limb and station of each position
-    KdPoints kd_points_;
-    std::unique_ptr<KdTree> tree_;
+    // Stations, to be searched by place.
+    struct Index {
+        std::vector<Vec3> positions;
+        std::vector<std::pair<int32_t, int32_t>> names;  // the limb and station of each position
+        KdPoints kd_points{positions};
+        std::unique_ptr<KdTree> tree;
+    };
+    void look(const Index& index, size_t count, const Vec3& p, const std::vector<uint8_t>* except,
+              BarkPlace& best) const;
+
+    Index all_;
+    Index thick_;  // of stout limbs alone, which many twigs would hide
 };
 
 // What leaves the bark must reach at least so far out of it: less is relief, or a strip of the bark itself.
