@@ -16,7 +16,8 @@ using namespace godot;
 using treerec::DVec3;
 using treerec::NodeId;
 
-const int64_t kSurfaceFlags = int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT;
+const int64_t kSurfaceFlags = (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
+                              (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT);
 
 std::string to_std(const String& p_text) {
     const CharString bytes = p_text.utf8();
@@ -64,6 +65,9 @@ Array to_surface_arrays(const treerec::Mesh& p_mesh) {
     }
     if (!p_mesh.custom0.empty()) {
         arrays[Mesh::ARRAY_CUSTOM0] = copy_values<PackedFloat32Array>(p_mesh.custom0);
+    }
+    if (!p_mesh.radii.empty()) {
+        arrays[Mesh::ARRAY_CUSTOM1] = copy_values<PackedFloat32Array>(p_mesh.radii);
     }
     PackedInt32Array indices;
     indices.resize(int64_t(p_mesh.indices.size()));

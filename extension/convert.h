@@ -28,7 +28,7 @@ std::string to_std(const godot::String& p_text);
 godot::PackedFloat32Array to_godot(const std::vector<float>& p_values);
 godot::PackedInt32Array to_godot(const std::vector<treerec::NodeId>& p_ids);
 
-// Arguments for ArrayMesh::add_surface_from_arrays(), with kSurfaceFlags where there are CUSTOM0 values;
+// Arguments for ArrayMesh::add_surface_from_arrays(), with kSurfaceFlags where there are CUSTOM values;
 // empty for an empty mesh. Turns the triangles, since the engine's front faces are clockwise.
 godot::Array to_surface_arrays(const treerec::Mesh& p_mesh);
 extern const int64_t kSurfaceFlags;

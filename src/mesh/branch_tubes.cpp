@@ -6,6 +6,7 @@
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
 #include "geometry/parallel.h"
+#include "mesh/tube_rings.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -16,11 +17,16 @@ constexpr double kLargestTree = 1e6;       // metres from the origin
 constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood would vanish in floats
 constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
 constexpr double kCollarRadius = 0.012;    // metres; thinner branches get no collar of their own
+constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
+constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
 constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
 constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
 constexpr double kHeightSlack = 1e-3;      // and over the tree's height
+constexpr double kFootRadii = 1.0;         // how far the trunk goes on below the ground, over its radius,
+constexpr double kMostFoot = 0.25;         // and in metres at most
+constexpr double kUpright = 0.5;           // the least y of a standing trunk's direction
 constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
 constexpr size_t kBranchesPerChunk = 32;   // of parallel work
 
@@ -30,13 +36,6 @@ struct BendLimit {
     double bend;
 };
 constexpr BendLimit kBendLimits[] = {{0.02, 0.35}, {0.01, 0.7}, {0.0, 1.2}};
-
-struct Ring {
-    DVec3 centre;
-    DVec3 normal;  // unit, towards the tip
-    double radius;
-    double along;
-};
 
 // How one branch becomes a tube: where its rings lie in its chunk, and its vertices and indices in the mesh.
 struct Tube {
@@ -48,6 +47,8 @@ struct Tube {
     double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
     double parent_radius = 0.0;   // metres, 0 for the trunk
     DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
+    bool standing = false;        // its first ring is cut level, below the ground
+    double foot = 0.0;            // y of that cut
     size_t first_vertex = 0;
     size_t first_index = 0;
 
@@ -120,6 +121,7 @@ struct Builder {
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                     std::vector<Ring>& out) const;
+    void set_foot(const Branch& branch, const Ring* run, Tube& tube) const;
     void emit(size_t index, Mesh& mesh) const;
     bool too_thin(const Branch& branch) const;
 };
@@ -144,6 +146,8 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
     const double sine = glm::length(glm::cross(parent_direction, points.front().direction));
     const double length = points.back().along;
     tube.exit = std::min(attach.radius / std::max(sine, 0.3), 0.7 * length);
+    // One that first goes its parent's way parts from it without a collar.
+    const double follows = 1.0 - glm::smoothstep(0.3, 0.8, sine);
     if (options.level == 0 && own >= kCollarRadius && own < 0.98 * hidden) {
         // Rings at the bark, and two more where the collar has run out.
         size_t hint = 0;
@@ -157,20 +161,18 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
         for (AxisPoint& point : points) {
             const double past = std::max(point.along - 0.85 * tube.exit, 0.0) / (1.4 * own);
             if (past > 3.0) break;
-            const double widened = point.radius * (1.0 + kCollar * std::exp(-past * past));
+            const double widened = point.radius * (1.0 + (1.0 - follows) * kCollar * std::exp(-past * past));
             point.radius = std::min(widened, std::max(point.radius, hidden));
         }
     }
-    // A branch as thick as its parent, or thicker, grows out of it over its first metres.
-    const double until = std::max(tube.exit, 0.5 * points[1].along);
+    // One about as thick as its parent, or that goes its way, starts well within it and grows over its first
+    // metres: its bark comes out of the parent's gradually, not as the rim of a tube.
+    double start = std::min(hidden, std::max(kForkShare * attach.radius, least));
+    start = std::min(start, std::max(own * (1.0 - kForkTaper * follows), least));
+    const double until = 2.0 * std::max({tube.exit, 0.5 * points[1].along, 2.0 * least});
     for (AxisPoint& point : points) {
-        if (point.radius <= hidden) {
-            if (point.along >= until) break;
-            continue;
-        }
-        const double t = std::clamp(point.along / std::max(2.0 * until, 4.0 * least), 0.0, 1.0);
-        if (point.along > 0.0 && t >= 1.0) break;
-        point.radius = hidden + (point.radius - hidden) * t;
+        if (point.along >= until) break;
+        if (point.radius > start) point.radius = start + (point.radius - start) * point.along / until;
     }
 }
 
@@ -232,24 +234,17 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     }
 }
 
-// Two rings must not cross on the inner side of a bend: turns both towards their mean until they clear.
-void limit_tilt(Ring* rings, size_t count) {
-    for (int pass = 0; pass < 3; pass++) {
-        for (size_t i = 0; i + 1 < count; i++) {
-            Ring &a = rings[i], &b = rings[i + 1];
-            const double distance = glm::distance(a.centre, b.centre);
-            const double sine_half = std::min(1.0, 0.4 * distance / std::max(a.radius, b.radius));
-            const double least_cosine = 1.0 - 2.0 * sine_half * sine_half;
-            const double cosine = glm::dot(a.normal, b.normal);
-            if (cosine >= least_cosine) continue;
-            const DVec3 mean =
-                normalized_or(a.normal + b.normal, normalized_or(b.centre - a.centre, a.normal));
-            const DVec3 side = normalized_or(b.normal - mean * glm::dot(b.normal, mean), DVec3(0.0));
-            const double cosine_half = std::sqrt(1.0 - sine_half * sine_half);
-            a.normal = normalized_or(mean * cosine_half - side * sine_half, mean);
-            b.normal = normalized_or(mean * cosine_half + side * sine_half, mean);
-        }
-    }
+// A standing trunk is cut level, and goes on a little below the ground, so that slopes hide the cut. What
+// lies (a branch that was scanned alone) keeps its cut.
+void Builder::set_foot(const Branch& branch, const Ring* run, Tube& tube) const {
+    if (branch.attach != kNoNode || tube.rings < 2 || !tree.node(tree.root()).is_trunk()) return;
+    const Ring &cut = run[0], &next = run[1];
+    if (cut.normal.y < kUpright || next.centre.y <= cut.centre.y) return;
+    tube.standing = true;
+    tube.foot = cut.centre.y - std::min(kFootRadii * cut.radius, kMostFoot);
+    // A leaning trunk's next ring may reach below that: the cut stays under it.
+    const double dip = next.radius * std::sqrt(std::max(0.0, 1.0 - next.normal.y * next.normal.y));
+    tube.foot = std::min(tube.foot, next.centre.y - dip - 0.1 * cut.radius);
 }
 
 void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
@@ -282,6 +277,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     double thickest = 0.0;
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
+    set_foot(branch, out.data() + tube.first_ring, tube);
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
@@ -344,21 +340,25 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     }
     size_t vertex = tube.first_vertex;
     const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double u, double v,
-                         const Vec4& color) {
+                         double radius, const Vec4& color) {
         mesh.positions[vertex] = Vec3(position);
         mesh.normals[vertex] = Vec3(normal);
         mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
         mesh.colors[vertex] = color;
         mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
-        if (options.pivots) mesh.custom0[vertex] = custom0;
+        if (options.pivots) {
+            mesh.custom0[vertex] = custom0;
+            mesh.radii[vertex] = static_cast<float>(radius);
+        }
         vertex++;
     };
-    const auto color_at = [&](const DVec3& centre, double along) {
+    // shade: 0 .. 1, how much of the ring's vertex lies in the crease between the branch and its parent.
+    const auto color_at = [&](const DVec3& centre, double along, double shade) {
         double light = 0.45 + 0.55 * crown.openness(centre);
         if (centre.y < crown.centre.y - crown.radii.y) light = 0.95;
         if (tube.parent_radius > 0.0) {
             const double t = std::clamp((along - tube.exit) / (1.5 * tube.parent_radius), 0.0, 1.0);
-            light *= 0.6 + 0.4 * t;
+            light *= 1.0 - 0.4 * (1.0 - t) * shade;
         } else {
             light *= 0.75 + 0.25 * std::clamp(along / (4.0 * run[0].radius), 0.0, 1.0);
         }
@@ -386,31 +386,43 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         const double slope = std::clamp(
             (after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0, 1.0);
         const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
-        const Vec4 color = color_at(ring.centre, ring.along);
+        const Vec4 color = color_at(ring.centre, ring.along, 1.0);
         const double blend = i == 0 ? 0.0 : blend_at(ring);
         for (uint32_t j = 0; j <= sides; j++) {
             const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            const DVec3 position = ring.centre + radial * ring.radius;
+            DVec3 position = ring.centre + radial * ring.radius;
+            double v = ring.along;
+            if (i == 0 && tube.standing) {
+                // Along the trunk to the level cut.
+                const double down = (position.y - tube.foot) / normal.y;
+                position -= normal * down;
+                v -= down;
+            }
             DVec3 tangent = y * circle[j].x - x * circle[j].y;
             DVec3 outward = (radial - normal * slope) * scale;
+            Vec4 corner_color = color;
             if (blend > 0.0) {
                 const DVec3 from = position - run[0].centre;
                 const DVec3 bark = from - tube.parent_direction * glm::dot(from, tube.parent_direction);
-                outward = normalized_or(outward + normalized_or(bark, outward) * blend, outward);
+                const DVec3 away = normalized_or(bark, outward);
+                // What looks away from the parent's axis lies in no crease.
+                const double shade = 1.0 - glm::smoothstep(0.0, 0.8, glm::dot(radial, away));
+                corner_color = color_at(ring.centre, ring.along, shade);
+                outward = normalized_or(outward + away * blend, outward);
                 tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
             }
-            put(position, outward, tangent, repeats * j / sides, ring.along, color);
+            put(position, outward, tangent, repeats * j / sides, v, ring.radius, corner_color);
         }
     }
     // The tip: a dome, or a point as high as the tip is wide.
     const DVec3 y = glm::cross(normal, x);
-    const Vec4 color = color_at(last_ring.centre, length);
+    const Vec4 color = color_at(last_ring.centre, length, 1.0);
     if (tube.round_tip) {
         for (uint32_t j = 0; j <= sides; j++) {
             const DVec3 radial = x * circle[j].x + y * circle[j].y;
             put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
                 radial * 0.7746 + normal * 0.6325, y * circle[j].x - x * circle[j].y, repeats * j / sides,
-                length + 0.66 * last_ring.radius, color);
+                length + 0.66 * last_ring.radius, last_ring.radius, color);
         }
     }
     const DVec3 apex = last_ring.centre + normal * (0.98 * last_ring.radius);
@@ -419,7 +431,8 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
         // A drawn-out point is lit like the wood below it.
         const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
-        put(apex, outward, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius, color);
+        put(apex, outward, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius,
+            last_ring.radius, color);
     }
     size_t at = tube.first_index;
     const uint32_t base = static_cast<uint32_t>(tube.first_vertex), stride = sides + 1;
@@ -469,7 +482,10 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
     mesh.tangents.resize(vertices);
-    if (options.pivots) mesh.custom0.resize(vertices);
+    if (options.pivots) {
+        mesh.custom0.resize(vertices);
+        mesh.radii.resize(vertices);
+    }
     mesh.indices.resize(indices);
     parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();

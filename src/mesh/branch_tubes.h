@@ -15,10 +15,12 @@ struct TubeOptions {
     int maximum_sides = 24;
     double bark_width =
         1.0;             // metres of circumference per texture repeat, rounded per branch to whole repeats
-    bool pivots = true;  // custom0 is filled; files have no place for it
+    bool pivots = true;  // custom0 and radii are filled; files have no place for them
 };
 
 // Vertices carry normals, tangents, UVs (u around in whole repeats, v along in metres), wind channels.
+// A trunk that stands is cut level and goes on below the root, by its radius or 0.25 m, whichever is less
+// (and further where a thick one leans), so that slopes hide the cut; a branch without a trunk is cut across.
 // An empty tree or a lone root gives an empty mesh. Deterministic. Throws Error for a tree that reaches
 // beyond 1000 km or has too much bark, or Cancelled.
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {},

@@ -106,6 +106,54 @@ func test_a_tree_is_bark_then_leaves() -> void:
 		_viewport.free()
 
 
+# How much redder than green the tree is.
+func _redness(picture: Image) -> float:
+	var sum: float = 0.0
+	for y: int in range(0, picture.get_height(), 2):
+		for x: int in range(0, picture.get_width(), 2):
+			var color: Color = picture.get_pixel(x, y)
+			sum += maxf(color.r - maxf(color.g, color.b), 0.0)
+	return sum
+
+
+func test_thin_wood_is_young_whatever_its_level() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	await _stage(made)
+	_instance.wind = false
+	_instance.leaves = false
+	while _instance.is_rebuilding():
+		await tree.process_frame
+	var material: ShaderMaterial = ShaderMaterial.new()
+	material.shader = load("res://addons/tree_reconstruction/shaders/bark.gdshader")
+	material.set_shader_parameter(&"twig_color", Color(1.0, 0.0, 0.0, 1.0))
+	var seen: Dictionary[float, float] = {}
+	for radius: float in [0.003, 0.02, 0.1]:
+		for level: float in [0.0, 6.0]:
+			var arrays: Array = made.build_mesh_arrays()
+			var radii: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM1]
+			radii.fill(radius)
+			arrays[Mesh.ARRAY_CUSTOM1] = radii
+			var pivots: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM0]
+			for i: int in range(3, pivots.size(), 4):
+				pivots[i] = level
+			arrays[Mesh.ARRAY_CUSTOM0] = pivots
+			var bark: ArrayMesh = ArrayMesh.new()
+			bark.add_surface_from_arrays(
+				Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.MESH_FLAGS
+			)
+			bark.surface_set_material(0, material)
+			_instance.mesh = bark
+			var red: float = _redness(await _picture())
+			if level == 0.0:
+				seen[radius] = red
+			else:
+				check_near(red, seen[radius], 0.01 + 0.05 * seen[radius], "the red of a high level")
+	check(seen[0.003] > 5.0, "Twigs are not of their colour: %.2f." % seen[0.003])
+	check(seen[0.02] < 0.9 * seen[0.003], "Wood of 2 cm is as young as a twig.")
+	check(seen[0.1] < 0.2 * seen[0.02], "Thick wood looks like twigs: %s." % seen)
+	_viewport.free()
+
+
 func test_wind_moves_the_tree_and_can_be_stopped() -> void:
 	await _stage(grown_tree(2))
 	_instance.wind = false

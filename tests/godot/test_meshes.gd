@@ -21,7 +21,10 @@ func _check_surface(arrays: Array) -> void:
 	var normals: PackedVector3Array = arrays[Mesh.ARRAY_NORMAL]
 	var colors: PackedColorArray = arrays[Mesh.ARRAY_COLOR]
 	var custom: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM0]
+	var radii: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM1]
 	var indices: PackedInt32Array = arrays[Mesh.ARRAY_INDEX]
+	check_equal(radii.size(), vertices.size(), "the number of radii")
+	check(radii[0] > 0.0, "The trunk's radius is %f." % radii[0])
 	check_equal(normals.size(), vertices.size(), "the number of normals")
 	check_equal(colors.size(), vertices.size(), "the number of colours")
 	check_equal(custom.size(), vertices.size() * 4, "the number of pivots and levels")

@@ -129,7 +129,7 @@ TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
 }
 
 TEST_F(GltfWrite, AMeshOfManyVerticesHasLongIndices) {
-    bark_ = build_branch_tubes(test::random_tree(5, 12000));
+    bark_ = build_branch_tubes(test::random_tree(5, 20000));
     ASSERT_GT(bark_.positions.size(), 65535u);
     write_gltf(path("many.glb"), model_);
     const tinygltf::Model model = read(path("many.glb"));

@@ -47,7 +47,7 @@ bool same_bytes(const Mesh& a, const Mesh& b) {
     };
     return same(a.positions, b.positions) && same(a.normals, b.normals) && same(a.tangents, b.tangents) &&
            same(a.uvs, b.uvs) && same(a.colors, b.colors) && same(a.custom0, b.custom0) &&
-           same(a.indices, b.indices);
+           same(a.radii, b.radii) && same(a.indices, b.indices);
 }
 
 void expect_sound(const Mesh& mesh, const Tree& tree) {
@@ -145,6 +145,8 @@ TEST(BranchTubes, PivotsCanBeLeftOut) {
     Mesh without = build_branch_tubes(tree, {.pivots = false});
     EXPECT_TRUE(without.custom0.empty());
     without.custom0 = with.custom0;
+    EXPECT_TRUE(without.radii.empty());
+    without.radii = with.radii;
     EXPECT_TRUE(same_bytes(with, without));
 }
 
@@ -369,6 +371,103 @@ TEST(BranchTubes, CoarserLevelsCostLessAndKeepTheTrunk) {
         before = mesh.triangle_count();
         EXPECT_EQ(mesh.custom0[0].w, 0.0f);
     }
+}
+
+// A trunk of 4 m that leans by `lean` metres per metre, with a limb.
+Tree leaning_trunk(double lean, double radius, bool marked) {
+    Tree tree;
+    const uint8_t flags = marked ? kTrunkFlag : 0;
+    NodeId at = tree.add_root({0.3, 0.5, -0.2}, radius, flags), fork = kNoNode;
+    for (int i = 1; i <= 8; i++) {
+        at = tree.add_child(at, {0.3 + lean * 0.5 * i, 0.5 + 0.5 * i, -0.2}, radius * (1.0 - 0.1 * i), flags);
+        if (i == 4) fork = at;
+    }
+    tree.add_child(fork, tree.node(fork).position + DVec3(0.0, 0.4, 1.0), 0.3 * radius);
+    return tree;
+}
+
+TEST(BranchTubes, ATrunkIsCutLevelBelowTheGround) {
+    for (const double lean : {0.0, 0.2, 0.5, 1.0})
+        for (const double radius : {0.02, 0.1, 0.4}) {
+            SCOPED_TRACE(lean);
+            SCOPED_TRACE(radius);
+            const Tree tree = leaning_trunk(lean, radius, true);
+            for (int level = 0; level < 3; level++) {
+                const Mesh mesh = build_branch_tubes(tree, {.level = level});
+                const TubeRange trunk = tubes_of(mesh)[0];
+                double low = 1e9, high = -1e9;
+                size_t corners = 0;
+                for (uint32_t v = trunk.first_vertex; v < trunk.end_vertex && mesh.colors[v].g == 0.0f; v++) {
+                    low = std::min(low, static_cast<double>(mesh.positions[v].y));
+                    high = std::max(high, static_cast<double>(mesh.positions[v].y));
+                    // It goes on the way the trunk leans, on the same cylinder.
+                    const DVec3 axis = glm::normalize(DVec3(lean, 1.0, 0.0));
+                    const DVec3 off = DVec3(mesh.positions[v]) - tree.node(tree.root()).position;
+                    EXPECT_NEAR(glm::length(off - axis * glm::dot(off, axis)), radius, 0.03 * radius);
+                    EXPECT_NEAR(mesh.radii[v], radius, 1e-6);
+                    corners++;
+                }
+                EXPECT_GE(corners, 4u);
+                EXPECT_NEAR(low, high, 1e-5);
+                const double deep = 0.5 - low;
+                EXPECT_GE(deep, std::min(radius, 0.25) - 1e-5);
+                EXPECT_LE(deep, std::max(std::min(radius, 0.25), lean * radius) + 1e-5);
+            }
+            // What lies keeps its cut.
+            const Mesh mesh = build_branch_tubes(leaning_trunk(lean, radius, false));
+            const DVec3 root = tree.node(tree.root()).position;
+            for (uint32_t v = 0; mesh.colors[v].g == 0.0f; v++)
+                EXPECT_NEAR(glm::distance(DVec3(mesh.positions[v]), root), radius, 1e-5);
+        }
+}
+
+TEST(BranchTubes, RadiiAreThoseOfTheDrawnWood) {
+    const Tree tree = test::random_tree(12, 600);
+    const Mesh mesh = build_branch_tubes(tree);
+    ASSERT_EQ(mesh.radii.size(), mesh.positions.size());
+    size_t checked = 0;
+    for (const TubeRange& tube : tubes_of(mesh)) {
+        if (mesh.custom0[tube.first_vertex].w == 0.0f) continue;  // its foot is cut level
+        uint32_t v = tube.first_vertex;
+        for (const DrawnRing& ring : rings_of(mesh, tube)) {
+            const float at = mesh.uvs[v].y;
+            for (; v < tube.end_vertex && mesh.uvs[v].y == at; v++) {
+                if (mesh.colors[v].g >= 1.0f) continue;  // domes and points
+                EXPECT_NEAR(mesh.radii[v], ring.radius, 1e-4 + 1e-3 * ring.radius);
+                checked++;
+            }
+        }
+    }
+    EXPECT_GT(checked, 1000u);
+    EXPECT_TRUE(build_branch_tubes(tree, {.pivots = false}).radii.empty());
+}
+
+// Two stems of one thickness: the second one's bark comes out of the first one's little by little.
+TEST(BranchTubes, AStemOfAForkStartsWellWithinTheOther) {
+    Tree tree;
+    NodeId at = tree.add_root({0, 0, 0}, 0.1, kTrunkFlag);
+    for (int i = 1; i <= 6; i++)
+        at = tree.add_child(at, {0, 0.5 * i, 0}, 0.1, kTrunkFlag);
+    NodeId twin = tree.node(tree.node(tree.node(at).parent).parent).parent;
+    const NodeId fork = twin;
+    for (int i = 1; i <= 8; i++)
+        twin = tree.add_child(twin, tree.node(fork).position + DVec3(0.06 * i, 0.15 * i, 0), 0.1);
+    const Mesh mesh = build_branch_tubes(tree);
+    const std::vector<TubeRange> tubes = tubes_of(mesh);
+    ASSERT_EQ(tubes.size(), 2u);
+    const std::vector<DrawnRing> parent = rings_of(mesh, tubes[0]), child = rings_of(mesh, tubes[1]);
+    EXPECT_LE(child[0].radius, 0.071);
+    EXPECT_LT(outside(parent, child[0].centre), -0.09);
+    for (size_t i = 0; i + 1 < child.size(); i++) {
+        // No gap: until its axis has left the other's bark, the tube reaches into it.
+        if (outside(parent, child[i].centre) < 0.0) {
+            EXPECT_GT(child[i].radius, 0.06);
+        }
+        // No rim: it stands out by less than half of the way that it has come.
+        const double come = glm::distance(child[i].centre, child[0].centre);
+        EXPECT_LT(outside(parent, child[i].centre) + child[i].radius, 0.5 * come + 1e-3);
+    }
+    EXPECT_NEAR(child[child.size() - 3].radius, 0.1, 1e-3);
 }
 
 TEST(BranchTubes, SmallestTrees) {
