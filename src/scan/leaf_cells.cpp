@@ -107,32 +107,6 @@ struct Gathered {
     std::array<float, 6> scatter{};
 };
 
-void add_product(std::array<float, 6>& sum, const Vec3& d, float weight) {
-    sum[0] += weight * d.x * d.x;
-    sum[1] += weight * d.x * d.y;
-    sum[2] += weight * d.x * d.z;
-    sum[3] += weight * d.y * d.y;
-    sum[4] += weight * d.y * d.z;
-    sum[5] += weight * d.z * d.z;
-}
-
-// The square roots of the eigenvalues of a covariance, falling (Smith 1961).
-Vec3 deviations(const std::array<float, 6>& m) {
-    const double mean = (static_cast<double>(m[0]) + m[3] + m[5]) / 3.0;
-    const double a = m[0] - mean, b = m[3] - mean, c = m[5] - mean;
-    const double xy = m[1], xz = m[2], yz = m[4];
-    const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0);
-    if (!(p > 1e-30)) return Vec3(static_cast<float>(std::sqrt(std::max(mean, 0.0))));
-    const double det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
-    const double angle = std::acos(std::clamp(det / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
-    const double first = mean + 2.0 * p * std::cos(angle);
-    const double last = mean + 2.0 * p * std::cos(angle + 2.0 * kPi / 3.0);
-    const double middle = 3.0 * mean - first - last;
-    return {static_cast<float>(std::sqrt(std::max(first, 0.0))),
-            static_cast<float>(std::sqrt(std::max(middle, 0.0))),
-            static_cast<float>(std::sqrt(std::max(last, 0.0)))};
-}
-
 CellShape shape_of(const std::vector<Gathered>& cells, size_t own, Rows& rows, float coarseness) {
     float number = 0.0F;
     float occupied = -1.0F;
@@ -165,6 +139,31 @@ CellShape shape_of(const std::vector<Gathered>& cells, size_t own, Rows& rows, f
 }
 
 }  // namespace
+
+void add_product(std::array<float, 6>& sum, const Vec3& d, float weight) {
+    sum[0] += weight * d.x * d.x;
+    sum[1] += weight * d.x * d.y;
+    sum[2] += weight * d.x * d.z;
+    sum[3] += weight * d.y * d.y;
+    sum[4] += weight * d.y * d.z;
+    sum[5] += weight * d.z * d.z;
+}
+
+Vec3 deviations(const std::array<float, 6>& m) {
+    const double mean = (static_cast<double>(m[0]) + m[3] + m[5]) / 3.0;
+    const double a = m[0] - mean, b = m[3] - mean, c = m[5] - mean;
+    const double xy = m[1], xz = m[2], yz = m[4];
+    const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0);
+    if (!(p > 1e-30)) return Vec3(static_cast<float>(std::sqrt(std::max(mean, 0.0))));
+    const double det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    const double angle = std::acos(std::clamp(det / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
+    const double first = mean + 2.0 * p * std::cos(angle);
+    const double last = mean + 2.0 * p * std::cos(angle + 2.0 * kPi / 3.0);
+    const double middle = 3.0 * mean - first - last;
+    return {static_cast<float>(std::sqrt(std::max(first, 0.0))),
+            static_cast<float>(std::sqrt(std::max(middle, 0.0))),
+            static_cast<float>(std::sqrt(std::max(last, 0.0)))};
+}
 
 Cells make_cells(const std::vector<Vec3>& points, const Progress& progress) {
     CellGrid grid(points, choose_layout(points, progress), &progress);

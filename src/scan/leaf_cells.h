@@ -1,6 +1,7 @@
 // A cloud as the occupied cells of a grid, and how the cells lie around one another. Internal to scan/.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,12 @@
 #include "progress.h"
 
 namespace treerec {
+
+// Scatter as xx xy xz yy yz zz.
+void add_product(std::array<float, 6>& sum, const Vec3& d, float weight);
+
+// The square roots of the eigenvalues of a covariance, falling (Smith 1961).
+Vec3 deviations(const std::array<float, 6>& m);
 
 // Cells in the order of their keys. Metres.
 struct Cells {

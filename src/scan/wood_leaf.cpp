@@ -6,6 +6,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
+#include "scan/leaf_blur.h"
 #include "scan/leaf_cells.h"
 #include "scan/leaf_limbs.h"
 #include "scan/leaf_paths.h"
@@ -295,7 +296,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     const bool resolved =
         resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
         (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
-    if (!colored && !resolved) return result;
+    const bool told_by_shape = resolved && !is_blurred(samples.points, progress);
+    if (!colored && !told_by_shape) return result;
     const CellPaths paths = trace_paths(cells, progress);
 
     std::vector<float> logits(count);
@@ -321,7 +323,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    if (!result.by_colour && (share < kLeastShare || !resolved)) return result;
+    if (!result.by_colour && (share < kLeastShare || !told_by_shape)) return result;
 
     smooth(logits, cells, progress);
     const auto threshold =

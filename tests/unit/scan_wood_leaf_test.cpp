@@ -58,6 +58,23 @@ TEST(WoodLeaf, ABareTreeIsLeftWhole) {
         }
 }
 
+// Several passes, none in its place: what noise makes of twigs are no leaves.
+TEST(WoodLeaf, NoiseIsNoLeaves) {
+    for (const double noise : {0.02, 0.03, 0.05}) {
+        for (const uint64_t seed : {1, 2}) {
+            SCOPED_TRACE(noise);
+            Random random(seed);
+            PointCloud cloud;
+            const VirtualScan made = scan(Habit::kBroadleaf, 0.0, seed, 40000);
+            for (int copy = 0; copy < 6; copy++)
+                for (const Vec3& p : made.cloud.positions)
+                    cloud.positions.push_back(
+                        p + Vec3(noise * DVec3(random.normal(), random.normal(), random.normal())));
+            EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage);
+        }
+    }
+}
+
 TEST(WoodLeaf, ShapeAloneTellsThemApart) {
     VirtualScan made = scan(Habit::kBirch, 0.8, 7, 90000);
     made.cloud.colors.clear();
@@ -157,6 +174,27 @@ TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
           "adtree_tree13_trunk_gap.xyz", "adtree_ahn3_delft_airborne_sparse.xyz", "rtwig_coffeetree.txt",
           "archi_tree2_leafoff.las", "voxr_tree_t0.asc", "voxr_tree_t1.asc"})
         EXPECT_FALSE(tell_wood_from_leaves(real_scan(folder, file)).foliage) << file;
+}
+
+TEST(WoodLeafScans, NoisyLeaflessTreesAreLeftWhole) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    Random random(1);
+    for (const char* file : {"adtree_Lille_11_leafoff_tall.xyz", "adtree_Lille_2_multistem.xyz",
+                             "adtree_tree7.xyz", "adtree_tree13_trunk_gap.xyz"}) {
+        const PointCloud sharp = real_scan(folder, file);
+        for (const double noise : {0.02, 0.05}) {
+            for (const int copies : {1, 10}) {
+                PointCloud cloud;
+                for (int copy = 0; copy < copies; copy++)
+                    for (const Vec3& p : sharp.positions)
+                        cloud.positions.push_back(
+                            p + Vec3(noise * DVec3(random.normal(), random.normal(), random.normal())));
+                EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage)
+                    << file << " " << noise << " m, " << copies;
+            }
+        }
+    }
 }
 
 TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {

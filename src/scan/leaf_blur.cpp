@@ -1,0 +1,69 @@
+#include "scan/leaf_blur.h"
+
+#include <algorithm>
+#include <array>
+
+#include "geometry/quantile.h"
+#include "scan/kd_points.h"
+#include "scan/leaf_cells.h"
+
+namespace treerec {
+
+namespace {
+
+// The foot, of the height.
+constexpr double kFootLow = 0.02;
+constexpr double kFootHigh = 0.15;
+constexpr size_t kLookedAt = 512;
+constexpr size_t kFewest = 50;
+// A piece of a surface is this thin, of its length; points of a cloud without any are about 0.6.
+constexpr std::array<size_t, 2> kPieces{16, 48};  // points
+constexpr float kThin = 0.3F;
+// Leafy scans reach 0.34 and more, blurred bare ones 0.1.
+constexpr double kLeastOnSurface = 0.2;
+
+}  // namespace
+
+bool is_blurred(const std::vector<Vec3>& points, const Progress& progress) {
+    std::vector<float> heights;
+    heights.reserve(points.size());
+    for (const Vec3& p : points)
+        heights.push_back(p.y);
+    const double low = quantile(heights, 0.002);
+    const double height = quantile(heights, 0.998) - low;
+    progress.check();
+    std::vector<Vec3> foot;
+    std::vector<Vec3> around;
+    for (const Vec3& p : points) {
+        const double h = (p.y - low) / height;
+        if (h < 1.5 * kFootHigh) around.push_back(p);
+        if (h > kFootLow && h < kFootHigh) foot.push_back(p);
+    }
+    if (foot.size() < kFewest || around.size() <= kPieces.back()) return false;
+    const KdPoints kd_points{around};
+    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    std::array<size_t, kPieces.size()> thin{};
+    size_t looked_at = 0;
+    std::array<uint32_t, kPieces.back()> found{};
+    std::array<float, kPieces.back()> squares{};
+    const size_t stride = std::max<size_t>(1, foot.size() / kLookedAt);
+    for (size_t i = stride / 2; i < foot.size(); i += stride, looked_at++) {
+        progress.check();
+        tree.knnSearch(&foot[i].x, found.size(), found.data(), squares.data());
+        for (size_t s = 0; s < kPieces.size(); s++) {
+            const auto count = static_cast<float>(kPieces[s]);
+            Vec3 mean(0.0F);
+            for (size_t n = 0; n < kPieces[s]; n++)
+                mean += (around[found[n]] - foot[i]) / count;
+            std::array<float, 6> scatter{};
+            for (size_t n = 0; n < kPieces[s]; n++)
+                add_product(scatter, around[found[n]] - foot[i] - mean, 1.0F / count);
+            const Vec3 deviation = deviations(scatter);
+            thin[s] += deviation.z < kThin * deviation.x;
+        }
+    }
+    return static_cast<double>(*std::ranges::max_element(thin)) <
+           kLeastOnSurface * static_cast<double>(looked_at);
+}
+
+}  // namespace treerec
