@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace treerec {
 
@@ -12,11 +13,13 @@ constexpr double kBentEnd = 4.0;      // radii: so near to the root, a circle is
 constexpr double kSample = 6.0;       // radii: the length of stem that tells the direction
 constexpr double kBaseStretch = 6.0;  // radii: so far down a limb's measured stretch is continued
 constexpr double kBaseSkip = 1.0;     // radii: so long, the first circles are still bent
+constexpr double kBaseFar = 2.5;      // and at most so long, if they
+constexpr double kBaseBend = 0.3;     // radii bend away
 constexpr double kBaseSample = 5.0;   // radii: the length of limb that tells the direction
 constexpr double kLeastSample = 1.5;  // radii
-constexpr double kBaseMove = 2.5;     // radii that a station may move
+constexpr double kBaseMove = 4.0;     // radii that a station may move
 constexpr double kAround = 4.0;       // parent's radii to each side, where the fork may be
-constexpr double kMiss = 0.7;         // radii by which the line may miss the parent's axis
+constexpr double kMiss = 0.8;         // radii by which the line may miss the parent's axis
 
 // first: the lowest station that may move.
 void straighten(std::vector<Station>& line, size_t first) {
@@ -76,7 +79,8 @@ Meeting meet(const DVec3& foot, const DVec3& back, const std::vector<Station>& p
 }
 
 // Lays the first stations of a limb on the line of its first measured stretch.
-void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<Station>& parent) {
+void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<Limb>& limbs,
+                     const std::vector<std::vector<Station>>& axes) {
     const size_t count = line.size();
     size_t first = 0;
     double arc = 0.0;  // from the base
@@ -86,21 +90,50 @@ void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<S
         arc += step(first++);
     }
     if (first + 1 >= count || arc > kBaseStretch * line[first].radius) return;
-    size_t from = first;
-    for (double way = 0.0;
-         from + 1 < count && line[from + 1].measured && way + step(from) <= kBaseSkip * line[first].radius;)
-        way += step(from++);
+    // The measured stretch that begins so many radii further out, as the stations of both its ends.
+    const auto stretch = [&](double skip) {
+        size_t from = first;
+        for (double way = 0.0; from + 1 < count && line[from + 1].measured && !line[from + 1].bridged &&
+                               way + step(from) <= skip * line[first].radius;)
+            way += step(from++);
+        size_t to = from;
+        while (to + 1 < count && line[to + 1].measured && !line[to + 1].bridged &&
+               glm::distance(line[from].position, line[to].position) < kBaseSample * line[from].radius)
+            to++;
+        return std::pair{from, to};
+    };
+    const auto is_long = [&](size_t from, size_t to) {
+        return glm::distance(line[from].position, line[to].position) >= kLeastSample * line[from].radius;
+    };
+    auto [from, to] = stretch(kBaseSkip);
+    // Where the first circles bend away from what follows, they are partly the parent's bark.
+    const auto [far, far_to] = stretch(kBaseFar);
+    if (far > from && is_long(far, far_to)) {
+        const DVec3 along = normalized_or(line[far_to].position - line[far].position, DVec3(0, 1, 0));
+        const DVec3 offset = line[first].position - line[far].position;
+        if (glm::length(offset - glm::dot(offset, along) * along) > kBaseBend * line[far].radius) {
+            from = far;
+            to = far_to;
+        }
+    }
+    if (!is_long(from, to)) return;
     const double radius = line[from].radius;
-    size_t to = from;
-    while (to + 1 < count && line[to + 1].measured && !line[to + 1].bridged &&
-           glm::distance(line[from].position, line[to].position) < kBaseSample * radius)
-        to++;
     const DVec3 foot = line[from].position;
-    if (glm::distance(foot, line[to].position) < kLeastSample * radius) return;
     const DVec3 back = normalized_or(foot - line[to].position, DVec3(0, -1, 0));
-    const Meeting meeting = meet(foot, back, parent, limb.attach);
+    int32_t origin = limb.parent;
+    Meeting meeting = meet(foot, back, axes[origin], limb.attach);
+    const auto misses = [&] {
+        return meeting.miss > kMiss * std::max(axes[origin][meeting.station].radius, radius) ||
+               meeting.way <= 0.0;
+    };
+    // Of limbs that leave a fork together, one may hang on another's base.
+    while (misses() && meeting.station == 0 && limbs[origin].parent >= 0) {
+        meeting = meet(foot, back, axes[limbs[origin].parent], limbs[origin].attach);
+        origin = limbs[origin].parent;
+    }
+    if (misses()) return;
+    const std::vector<Station>& parent = axes[origin];
     const double bark = parent[meeting.station].radius;
-    if (meeting.miss > kMiss * std::max(bark, radius) || meeting.way <= 0.0) return;
     // To where the line goes into the parent's bark.
     const double sine = std::sqrt(std::max(
         0.01,
@@ -124,6 +157,7 @@ void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<S
     if (end > way) place[0] = foot + end * back;
     for (size_t i = 0; i < from; i++)
         line[i].position = place[i];
+    limb.parent = origin;
     limb.attach = meeting.station;
 }
 
@@ -142,7 +176,7 @@ void straighten_stems(const std::vector<Limb>& limbs, std::vector<std::vector<St
 void straighten_bases(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes) {
     for (size_t l = 0; l < limbs.size(); l++)
         if (limbs[l].parent > 0 || (limbs[l].parent == 0 && limbs[l].attach > 0))
-            straighten_base(limbs[l], axes[l], axes[limbs[l].parent]);
+            straighten_base(limbs[l], axes[l], limbs, axes);
 }
 
 }  // namespace treerec

@@ -15,7 +15,8 @@ void straighten_stems(const std::vector<Limb>& limbs, std::vector<std::vector<St
 
 // A limb's first slices are parts of rings, cut off by its parent's bark, and lie beside its axis. Each limb
 // goes straight back from its first measured stretch to its parent's bark instead, if that leads to the
-// parent's axis. Moves stations in place, and the limbs' `attach`. limbs, axes: as from fit_axes().
+// parent's axis. Moves stations in place, and the limbs' `attach`; a limb that hangs on the base of another
+// one that leaves the same fork may change its `parent`. limbs, axes: as from fit_axes().
 void straighten_bases(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes);
 
 }  // namespace treerec

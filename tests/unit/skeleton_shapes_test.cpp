@@ -96,11 +96,11 @@ INSTANTIATE_TEST_SUITE_P(
     All, ShapesTest,
     testing::Values(Kind{"PlainForks", test::plain_fork_scan, 60, 2, 1},
                     Kind{"Forks", [](uint64_t seed) { return test::fork_scan(seed, 2); }, 30, 2, 1},
-                    Kind{"ThreeWayForks", [](uint64_t seed) { return test::fork_scan(seed, 3); }, 20, 5, 5},
+                    Kind{"ThreeWayForks", [](uint64_t seed) { return test::fork_scan(seed, 3); }, 20, 1, 1},
                     Kind{"TwoStems", test::stems_scan, 20, 2, 0},
                     Kind{"SideBranches", [](uint64_t seed) { return test::sides_scan(seed, 4, 1.0); }, 20, 4,
                          5},
-                    Kind{"HalfSeen", [](uint64_t seed) { return test::sides_scan(seed, 2, 0.55); }, 20, 3, 2},
+                    Kind{"HalfSeen", [](uint64_t seed) { return test::sides_scan(seed, 2, 0.55); }, 20, 3, 1},
                     Kind{"Gaps", test::gap_scan, 20, 3, 1}),
     [](const testing::TestParamInfo<Kind>& info) { return std::string(info.param.name); });
 
