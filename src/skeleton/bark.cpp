@@ -12,12 +12,39 @@ namespace treerec {
 namespace {
 
 constexpr int kLookAround = 2;       // stations to each side
-constexpr size_t kNearest = 6;       // stations looked at
-constexpr size_t kNearestOf = 24;    // and so many where one limb is left aside
+constexpr size_t kNearest = 8;       // stations looked at
 constexpr size_t kNearestThick = 3;  // likewise, of stout wood
 constexpr double kThick = 0.03;      // metres: from stouter wood,
 constexpr double kWhisker = 0.6;     // so many times what it is stouter, besides
 constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
+
+// nanoflann's result set for the nearest stations of limbs that are not left aside.
+struct NearestAllowed {
+    using DistanceType = float;
+
+    const std::vector<std::pair<int32_t, int32_t>>& names;
+    const std::vector<uint8_t>* except;
+    size_t wanted;
+    size_t found = 0;
+    std::array<float, kNearest> distance{};
+    std::array<uint32_t, kNearest> index{};
+
+    size_t size() const { return found; }
+    bool full() const { return found == wanted; }
+    float worstDist() const { return full() ? distance[found - 1] : std::numeric_limits<float>::max(); }
+    bool addPoint(float squared, uint32_t candidate) {
+        if (except != nullptr && (*except)[names[candidate].first] != 0) return true;
+        size_t at = full() ? found - 1 : found++;
+        for (; at > 0 && distance[at - 1] > squared; at--) {
+            distance[at] = distance[at - 1];
+            index[at] = index[at - 1];
+        }
+        distance[at] = squared;
+        index[at] = candidate;
+        return true;
+    }
+    void sort() {}
+};
 
 }  // namespace
 
@@ -73,12 +100,10 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
 void Bark::look(const Index& index, size_t count, const Vec3& p, const std::vector<uint8_t>* except,
                 BarkPlace& best) const {
     if (!index.tree) return;
-    std::array<uint32_t, kNearestOf> found;
-    std::array<float, kNearestOf> squared;
-    count = index.tree->knnSearch(&p.x, count, found.data(), squared.data());
-    for (size_t k = 0; k < count; k++) {
-        const auto [limb, station] = index.names[found[k]];
-        if (except != nullptr && (*except)[limb] != 0) continue;
+    NearestAllowed found{index.names, except, count};
+    index.tree->findNeighbors(found, &p.x, nanoflann::SearchParams());
+    for (size_t k = 0; k < found.size(); k++) {
+        const auto [limb, station] = index.names[found.index[k]];
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
     }
@@ -87,7 +112,7 @@ void Bark::look(const Index& index, size_t count, const Vec3& p, const std::vect
 BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const {
     BarkPlace best;
     best.distance = std::numeric_limits<double>::max();
-    look(all_, except == nullptr ? kNearest : kNearestOf, p, except, best);
+    look(all_, kNearest, p, except, best);
     look(thick_, kNearestThick, p, except, best);
     return best;
 }
