@@ -258,7 +258,7 @@ TEST(InferRadii, GuessesAsThickAsTheTreeWasMeasured) {
         station.measured = false;
     infer_radii(axes, limbs);
     EXPECT_NEAR(axes[1][0].radius, 0.003 + 0.0155 * 1.0, 0.001);
-    EXPECT_NEAR(axes[1][10].radius, 0.003, 1e-9);
+    EXPECT_NEAR(axes[1][10].radius, 0.0028, 1e-9);
 }
 
 TEST(InferRadii, ABaseKeepsItsFlare) {
