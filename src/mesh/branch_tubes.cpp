@@ -1,6 +1,7 @@
 #include "mesh/branch_tubes.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "error.h"
 #include "foliage/branch_axis.h"
@@ -24,9 +25,6 @@ constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side 
 constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
 constexpr double kHeightSlack = 1e-3;      // and over the tree's height
-constexpr double kFootRadii = 1.0;         // how far the trunk goes on below the ground, over its radius,
-constexpr double kMostFoot = 0.25;         // and in metres at most
-constexpr double kUpright = 0.5;           // the least y of a standing trunk's direction
 constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
 constexpr size_t kBranchesPerChunk = 32;   // of parallel work
 
@@ -47,8 +45,7 @@ struct Tube {
     double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
     double parent_radius = 0.0;   // metres, 0 for the trunk
     DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
-    bool standing = false;        // its first ring is cut level, below the ground
-    double foot = 0.0;            // y of that cut
+    std::optional<double> foot;   // y of a standing trunk's level cut
     size_t first_vertex = 0;
     size_t first_index = 0;
 
@@ -121,7 +118,6 @@ struct Builder {
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                     std::vector<Ring>& out) const;
-    void set_foot(const Branch& branch, const Ring* run, Tube& tube) const;
     void emit(size_t index, Mesh& mesh) const;
     bool too_thin(const Branch& branch) const;
 };
@@ -234,19 +230,6 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     }
 }
 
-// A standing trunk is cut level, and goes on a little below the ground, so that slopes hide the cut. What
-// lies (a branch that was scanned alone) keeps its cut.
-void Builder::set_foot(const Branch& branch, const Ring* run, Tube& tube) const {
-    if (branch.attach != kNoNode || tube.rings < 2 || !tree.node(tree.root()).is_trunk()) return;
-    const Ring &cut = run[0], &next = run[1];
-    if (cut.normal.y < kUpright || next.centre.y <= cut.centre.y) return;
-    tube.standing = true;
-    tube.foot = cut.centre.y - std::min(kFootRadii * cut.radius, kMostFoot);
-    // A leaning trunk's next ring may reach below that: the cut stays under it.
-    const double dip = next.radius * std::sqrt(std::max(0.0, 1.0 - next.normal.y * next.normal.y));
-    tube.foot = std::min(tube.foot, next.centre.y - dip - 0.1 * cut.radius);
-}
-
 void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     const Branch& branch = list.branches[index];
     Tube& tube = tubes[index];
@@ -277,7 +260,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     double thickest = 0.0;
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
-    set_foot(branch, out.data() + tube.first_ring, tube);
+    if (branch.attach == kNoNode && tree.node(tree.root()).is_trunk())
+        tube.foot = cut_level(out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
@@ -392,9 +376,9 @@ void Builder::emit(size_t index, Mesh& mesh) const {
             const DVec3 radial = x * circle[j].x + y * circle[j].y;
             DVec3 position = ring.centre + radial * ring.radius;
             double v = ring.along;
-            if (i == 0 && tube.standing) {
+            if (i == 0 && tube.foot) {
                 // Along the trunk to the level cut.
-                const double down = (position.y - tube.foot) / normal.y;
+                const double down = (position.y - *tube.foot) / normal.y;
                 position -= normal * down;
                 v -= down;
             }

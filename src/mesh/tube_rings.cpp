@@ -5,6 +5,14 @@
 
 namespace treerec {
 
+namespace {
+
+constexpr double kFootRadii = 1.0;  // how far the trunk goes on below the ground, over its radius,
+constexpr double kMostFoot = 0.25;  // and in metres at most
+constexpr double kUpright = 0.5;    // the least y of a standing trunk's direction
+
+}  // namespace
+
 void limit_tilt(Ring* rings, size_t count) {
     for (int pass = 0; pass < 3; pass++) {
         for (size_t i = 0; i + 1 < count; i++) {
@@ -22,6 +30,22 @@ void limit_tilt(Ring* rings, size_t count) {
             b.normal = normalized_or(mean * cosine_half + side * sine_half, mean);
         }
     }
+}
+
+std::optional<double> cut_level(Ring* rings, size_t count) {
+    if (count < 2) return std::nullopt;
+    Ring& cut = rings[0];
+    const Ring& next = rings[1];
+    // Which way it stands shows a radius above the ground; right there, scans have spurs and leftovers.
+    const Ring* above = rings + 1;
+    while (above + 1 < rings + count && above->along < cut.radius)
+        above++;
+    if (above->normal.y < kUpright || next.centre.y <= cut.centre.y) return std::nullopt;
+    cut.normal = above->normal;
+    const double foot = cut.centre.y - std::min(kFootRadii * cut.radius, kMostFoot);
+    // A leaning trunk's next ring may reach below that: the cut stays under it.
+    const double dip = next.radius * std::sqrt(std::max(0.0, 1.0 - next.normal.y * next.normal.y));
+    return std::min(foot, next.centre.y - dip - 0.1 * cut.radius);
 }
 
 }  // namespace treerec

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "geometry/vec.h"
 
@@ -17,5 +18,10 @@ struct Ring {
 
 // Two rings must not cross on the inner side of a bend: turns both towards their mean until they clear.
 void limit_tilt(Ring* rings, size_t count);
+
+// A standing trunk is cut level, and goes on a little below the ground, so that slopes hide the cut: turns
+// the first ring's normal to where that goes on along, and gives the cut's y. Nothing for what lies or has
+// fewer than two rings. rings: from the root.
+std::optional<double> cut_level(Ring* rings, size_t count);
 
 }  // namespace treerec

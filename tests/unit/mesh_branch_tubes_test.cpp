@@ -3,6 +3,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <string>
 
 #include "error.h"
 #include "geometry/parallel.h"
@@ -389,8 +390,7 @@ Tree leaning_trunk(double lean, double radius, bool marked) {
 TEST(BranchTubes, ATrunkIsCutLevelBelowTheGround) {
     for (const double lean : {0.0, 0.2, 0.5, 1.0})
         for (const double radius : {0.02, 0.1, 0.4}) {
-            SCOPED_TRACE(lean);
-            SCOPED_TRACE(radius);
+            SCOPED_TRACE(std::to_string(lean) + " " + std::to_string(radius));
             const Tree tree = leaning_trunk(lean, radius, true);
             for (int level = 0; level < 3; level++) {
                 const Mesh mesh = build_branch_tubes(tree, {.level = level});
@@ -415,10 +415,21 @@ TEST(BranchTubes, ATrunkIsCutLevelBelowTheGround) {
             }
             // What lies keeps its cut.
             const Mesh mesh = build_branch_tubes(leaning_trunk(lean, radius, false));
-            const DVec3 root = tree.node(tree.root()).position;
             for (uint32_t v = 0; mesh.colors[v].g == 0.0f; v++)
-                EXPECT_NEAR(glm::distance(DVec3(mesh.positions[v]), root), radius, 1e-5);
+                EXPECT_NEAR(glm::distance(mesh.positions[v], Vec3(0.3, 0.5, -0.2)), radius, 1e-5);
         }
+}
+
+TEST(BranchTubes, ASpurAtTheFootDoesNotTurnTheTrunkOver) {
+    Tree tree;
+    NodeId at = tree.add_root({0.1, 0, 0}, 0.2, kTrunkFlag);
+    for (int i = 0; i < 20; i++)
+        at = tree.add_child(at, {0, 0.1 + 0.2 * i, 0}, 0.2, kTrunkFlag);
+    const Mesh mesh = build_branch_tubes(tree);
+    for (uint32_t v = 0; mesh.colors[v].g == 0.0f; v++) {
+        EXPECT_LT(std::abs(mesh.positions[v].x - 0.1f), 0.25f);
+        EXPECT_NEAR(mesh.positions[v].y, -0.2f, 0.08f);
+    }
 }
 
 TEST(BranchTubes, RadiiAreThoseOfTheDrawnWood) {
@@ -448,8 +459,8 @@ TEST(BranchTubes, AStemOfAForkStartsWellWithinTheOther) {
     NodeId at = tree.add_root({0, 0, 0}, 0.1, kTrunkFlag);
     for (int i = 1; i <= 6; i++)
         at = tree.add_child(at, {0, 0.5 * i, 0}, 0.1, kTrunkFlag);
-    NodeId twin = tree.node(tree.node(tree.node(at).parent).parent).parent;
-    const NodeId fork = twin;
+    const NodeId fork = tree.node(tree.node(tree.node(at).parent).parent).parent;
+    NodeId twin = fork;
     for (int i = 1; i <= 8; i++)
         twin = tree.add_child(twin, tree.node(fork).position + DVec3(0.06 * i, 0.15 * i, 0), 0.1);
     const Mesh mesh = build_branch_tubes(tree);
