@@ -176,9 +176,11 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
 void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                          std::vector<Ring>& out) const {
     const int level = std::clamp(options.level, 0, 8);
+    // Of the wood itself: what comes out of a parent starts thinner.
+    const double stoutness = std::max(points.front().radius, tree.node(list.nodes[branch.begin]).radius);
     const double bend_per_ring =
         std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1, [&](const BendLimit& limit) {
-            return points.front().radius >= limit.least_radius;
+            return stoutness >= limit.least_radius;
         })->bend;
     const double bend_limit = std::cos(std::min(bend_per_ring * (1 + level), 1.2));
     const double change_limit = 0.4 * (1 + level);
