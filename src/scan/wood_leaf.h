@@ -29,7 +29,8 @@ struct WoodLeaf {
 // scans and to real ones that have either leaves or wood alone; the tree's own share of leaves is then found
 // by expectation maximisation (Saerens, Latinne and Decaestecker 2002), and neighbours smooth one another.
 // Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or too
-// sparse or noisy to show them, is left whole. The order of the points and the number of threads change nothing.
+// sparse or noisy to show them, is left whole. The order of the points and the number of threads change
+// nothing.
 WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -17,8 +17,13 @@ constexpr double kBentRadii = 2.0;    // radii more that are not trusted
 constexpr double kSampleRadii = 6.0;  // radii: the stem that tells the line
 constexpr size_t kLeastStations = 4;
 constexpr double kMostCrooked = 0.4;  // radii: root mean square off the line
-constexpr int kRounds = 3;            // of the fit, each without what the last one is far off
-constexpr double kFarOff = 2.0;       // root mean squares
+constexpr double kClearShare = 0.05;  // of the stem's length: from there on it stands clear of its foot,
+constexpr double kClearEnd = 0.15;    // and up to there it is about as thick
+constexpr double kFootRadii = 6.0;    // radii: the foot's length at most
+constexpr double kLeastFoot = 0.75;   // of the stem's radius
+constexpr double kMostFoot = 2.0;
+constexpr int kRounds = 3;       // of the fit, each without what the last one is far off
+constexpr double kFarOff = 2.0;  // root mean squares
 
 // x and z as linear functions of the height.
 struct Line {
@@ -99,6 +104,28 @@ void plant_foot(std::vector<Station>& stem) {
         // Each station stands below the one after it.
         ceiling = std::min(ceiling, stem[i].position.y);
         stem[i].position = line->at(ceiling);
+    }
+}
+
+void limit_foot(std::vector<Station>& stem) {
+    // The stem's radius, from where it stands clear of its own foot.
+    double arc = 0.0;
+    std::vector<double> arcs(stem.size(), 0.0);
+    for (size_t i = 1; i < stem.size(); i++)
+        arcs[i] = arc += glm::distance(stem[i].position, stem[i - 1].position);
+    std::vector<double> radii;
+    for (size_t i = 0; i < stem.size(); i++)
+        if (stem[i].measured && arcs[i] >= kClearShare * arc && arcs[i] <= kClearEnd * arc)
+            radii.push_back(stem[i].radius);
+    if (radii.size() < kLeastStations) return;
+    const double radius = quantile(radii, 0.5);
+    for (size_t i = 0; i < stem.size() && arcs[i] < kFootRadii * radius; i++) {
+        if (!stem[i].measured) continue;
+        if (stem[i].radius < kLeastFoot * radius) {
+            stem[i].measured = false;
+            stem[i].radius = 0.0;
+        }
+        stem[i].radius = std::min(stem[i].radius, kMostFoot * radius);
     }
 }
 

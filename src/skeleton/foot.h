@@ -14,4 +14,8 @@ namespace treerec {
 // the root.
 void plant_foot(std::vector<Station>& stem);
 
+// The sections of a foot are those of spurs, buttresses and litter as much as of the stem. Radii there that
+// are well below the stem's above count as unknown, and none is more than twice that. stem: as above, fitted.
+void limit_foot(std::vector<Station>& stem);
+
 }  // namespace treerec

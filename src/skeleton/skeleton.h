@@ -1,4 +1,4 @@
-// From a clean cloud to a Tree: the Delaunay skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2).
+// From a clean cloud to a Tree: the skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2).
 #pragma once
 
 #include <string>

@@ -154,6 +154,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
                                     [](const Limb& limb) { return limb.parent == 0 && limb.attach == 0; }))
         plant_foot(axes.front());
     straighten_bases(limbs, axes);
+    if (!root.lying) limit_foot(axes.front());
     infer_radii(axes, limbs);
     drop_strips(limbs, axes, limb_options.least_escape);
     clock.stop("Radii", limbs.size());
@@ -168,6 +169,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
     refine_axes(axes, limbs, places, points, progress);
+    if (!root.lying) limit_foot(axes.front());
     infer_radii(axes, limbs);
     // Twigs that now lie on the bark of others were none.
     drop_strips(limbs, axes, 0.5 * twig_options.least_escape);
