@@ -19,12 +19,12 @@ TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
         at = tree.add_child(at, {0, 0.25 * i, 0}, 0.03, kTrunkFlag);
         if (i == 4) fork = at;
     }
-    // Half a circle of 0.5 m, tangent to the stem.
+    // Half a circle of 10 cm, tangent to the stem.
     NodeId limb = fork;
     for (int i = 1; i <= 40; i++) {
         const double angle = kPi * i / 40.0;
         limb =
-            tree.add_child(limb, DVec3(0.5 - 0.5 * std::cos(angle), 1.0 + 0.5 * std::sin(angle), 0.0), 0.024);
+            tree.add_child(limb, DVec3(0.1 - 0.1 * std::cos(angle), 1.0 + 0.1 * std::sin(angle), 0.0), 0.024);
     }
     const Mesh mesh = build_branch_tubes(tree);
     std::vector<DVec3> centres;
