@@ -100,7 +100,9 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
         followed.keep_only(told.wood_path);
     }
     const bool follow = followed.size() >= kLeastFollowed;
-    SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, options.skeleton, &growing);
+    SkeletonOptions skeleton_options = options.skeleton;
+    skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
+    SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, skeleton_options, &growing);
     growing.check();
     append(result.warnings, skeleton.warnings);
     result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
@@ -127,14 +129,22 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     SubProgress scoring(progress, kSkeletonEnd, 1.0);
     result.measured = measure(result.tree);
     result.fit = score_scan(result.tree, judged, 0.0, &scoring, options.score_points);
-    if (result.fit.explained_2cm < kLeastExplained)
+    const bool unexplained = result.fit.explained_2cm < kLeastExplained;
+    const bool guessed = result.measured.measured_volume_share < kLeastMeasured;
+    const bool noisy = told.noise > 0.0;
+    if (unexplained && !noisy)
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
                                   " % of the wood's points lie within 2 cm of the wood that was found. Is it "
                                   "a single tree, and are its units right?");
-    if (result.measured.measured_volume_share < kLeastMeasured)
+    if (guessed && !noisy)
         result.warnings.emplace_back(
             "Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is it "
             "a tree?");
+    if (noisy && (unexplained || guessed))
+        result.warnings.push_back(
+            "The scan is noisy: even the stem's points lie on no surface, but about " +
+            std::to_string(std::max(1L, std::lround(100.0 * told.noise))) +
+            " cm or more to either side of it. Twigs and the radii of thin wood are guesses.");
     clock.stop("Score", result.cloud.size());
     return result;
 }

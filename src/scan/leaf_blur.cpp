@@ -24,7 +24,7 @@ constexpr double kLeastOnSurface = 0.2;
 
 }  // namespace
 
-bool is_blurred(const std::vector<Vec3>& points, const Progress& progress) {
+double blur_of(const std::vector<Vec3>& points, const Progress& progress) {
     std::vector<float> heights;
     heights.reserve(points.size());
     for (const Vec3& p : points)
@@ -39,11 +39,12 @@ bool is_blurred(const std::vector<Vec3>& points, const Progress& progress) {
         if (h < 1.5 * kFootHigh) around.push_back(p);
         if (h > kFootLow && h < kFootHigh) foot.push_back(p);
     }
-    if (foot.size() < kFewest || around.size() <= kPieces.back()) return false;
+    if (foot.size() < kFewest || around.size() <= kPieces.back()) return 0.0;
     const KdPoints kd_points{around};
     const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     std::array<size_t, kPieces.size()> thin{};
     size_t looked_at = 0;
+    std::vector<double> thickness;
     std::array<uint32_t, kPieces.back()> found{};
     std::array<float, kPieces.back()> squares{};
     const size_t stride = std::max<size_t>(1, foot.size() / kLookedAt);
@@ -60,10 +61,12 @@ bool is_blurred(const std::vector<Vec3>& points, const Progress& progress) {
                 add_product(scatter, around[found[n]] - foot[i] - mean, 1.0F / count);
             const Vec3 deviation = deviations(scatter);
             thin[s] += deviation.z < kThin * deviation.x;
+            if (s + 1 == kPieces.size()) thickness.push_back(deviation.z);
         }
     }
-    return static_cast<double>(*std::ranges::max_element(thin)) <
-           kLeastOnSurface * static_cast<double>(looked_at);
+    const bool sharp = static_cast<double>(*std::ranges::max_element(thin)) >=
+                       kLeastOnSurface * static_cast<double>(looked_at);
+    return sharp ? 0.0 : quantile(thickness, 0.5);
 }
 
 }  // namespace treerec

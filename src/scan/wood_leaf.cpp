@@ -296,7 +296,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     const bool resolved =
         resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
         (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
-    const bool told_by_shape = resolved && !is_blurred(samples.points, progress);
+    if (resolved) result.noise = blur_of(samples.points, progress);
+    const bool told_by_shape = resolved && !(result.noise > 0.0);
     if (!colored && !told_by_shape) return result;
     const CellPaths paths = trace_paths(cells, progress);
 

@@ -11,9 +11,9 @@
 namespace treerec {
 
 struct WoodLeaf {
-    bool foliage = false;       // whether there are leaves at all; without them the rest is empty
-    double leaf_share = 0.0;    // of the points
-    bool by_colour = false;     // green told more than shape
+    bool foliage = false;     // whether there are leaves at all; without them the rest but the noise is empty
+    double leaf_share = 0.0;  // of the points
+    bool by_colour = false;   // green told more than shape
     std::vector<uint8_t> leaf;  // by point of the cloud: 1 for a leaf
     // By point: 1 for what the skeleton should follow: all wood, and among the leaves the points along the
     // paths of limbs that the leaves hide.
@@ -21,6 +21,7 @@ struct WoodLeaf {
     double hidden_share = 0.0;  // of the limbs' length in the crown: followed through leaves, not seen
     bool fronds = false;        // a palm: the skeleton should be one stem
     double reach = 0.0;         // metres: how far fronds reach from it
+    double noise = 0.0;         // metres, at least, where there is too much of it for shape to tell; else 0
     std::vector<std::string> warnings;
 };
 

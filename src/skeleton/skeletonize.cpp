@@ -161,7 +161,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
-    twig_options.least_escape = std::max(kTwigEscape, kNoiseEscape * noise_of(axes));
+    twig_options.least_escape = std::max(kTwigEscape, kNoiseEscape * std::max(noise_of(axes), options.noise));
     const PointPlaces places =
         add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());

@@ -70,7 +70,12 @@ TEST(WoodLeaf, NoiseIsNoLeaves) {
                 for (const Vec3& p : made.cloud.positions)
                     cloud.positions.push_back(
                         p + Vec3(noise * DVec3(random.normal(), random.normal(), random.normal())));
-            EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage);
+            const WoodLeaf told = tell_wood_from_leaves(cloud);
+            EXPECT_FALSE(told.foliage);
+            EXPECT_LT(told.noise, 1.5 * noise);
+            if (noise > 0.04) {
+                EXPECT_GT(told.noise, 0.2 * noise);
+            }
         }
     }
 }
