@@ -30,6 +30,7 @@ constexpr double kInLine = 0.85;                   // cosine
 constexpr double kLean = 0.35;                     // sideways by height, of a stem through a gap
 constexpr double kAim = 0.2;                       // how far beside it an end may point, by distance
 constexpr size_t kMostRounds = 16;
+constexpr size_t kBlock = 4096;  // points between two looks at the progress
 
 // The straight line through points.
 struct Line {
@@ -266,7 +267,9 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
             double gap = std::numeric_limits<double>::max();
             uint32_t from = 0;
             Vec3 to(0.0F);
-            for (const Vec3& p : parts[l]) {
+            for (size_t i = 0; i < parts[l].size(); i++) {
+                if (progress && i % kBlock == 0) progress->check();
+                const Vec3& p = parts[l][i];
                 uint32_t found = 0;
                 const double distance = main.nearest(p, found);
                 if (distance >= gap) continue;
