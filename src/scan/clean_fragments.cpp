@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/kd_tree.h"
 #include "scan/clean_steps.h"
-#include "scan/kd_points.h"
 #include "scan/samples.h"
 
 namespace treerec {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "geometry/cell_grid.h"
+#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
-#include "scan/kd_points.h"
 #include "scan/robust.h"
 
 namespace treerec {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/kd_tree.h"
 #include "geometry/quantile.h"
-#include "scan/kd_points.h"
 #include "scan/leaf_cells.h"
 
 namespace treerec {

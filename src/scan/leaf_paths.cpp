@@ -4,10 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <nanoflann.hpp>
 #include <queue>
 #include <utility>
 
+#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
 
 namespace treerec {
@@ -17,19 +17,6 @@ namespace {
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr double kFootShare = 0.005;  // of the height: cells as low as this are the ground's
 constexpr size_t kGrain = 4096;
-
-struct KdCells {
-    const std::vector<Vec3>& points;
-
-    size_t kdtree_get_point_count() const { return points.size(); }
-    float kdtree_get_pt(size_t index, size_t axis) const { return points[index][static_cast<int>(axis)]; }
-    template <typename Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
-};
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, KdCells>, KdCells, 3, uint32_t>;
 
 struct Bridge {
     uint32_t from;
@@ -76,7 +63,7 @@ std::vector<Bridge> bridge_parts(const Cells& cells, const Progress& progress) {
         }
     }
     progress.check();
-    const KdCells kd_cells{main};
+    const KdPoints kd_cells{main};
     const KdTree tree(3, kd_cells, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     std::vector<std::pair<float, uint32_t>> nearest(others.size());
     parallel_for(others.size(), kGrain, [&](size_t begin, size_t end) {

@@ -6,7 +6,7 @@
 #include <queue>
 
 #include "geometry/cell_grid.h"
-#include "scan/kd_points.h"
+#include "geometry/kd_tree.h"
 #include "scan/samples.h"
 
 namespace treerec {
