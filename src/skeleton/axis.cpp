@@ -12,6 +12,9 @@ namespace treerec {
 namespace {
 
 constexpr size_t kWantedPoints = 16;  // per circle; the window grows until it has them
+constexpr size_t kWantedOfStem = 40;  // the same for the stem's lower part,
+constexpr double kSparseStem = 0.25;  // where the points' spacing is more than that of its radius,
+constexpr double kStemShare = 0.25;   // of its length
 constexpr size_t kLeastPoints = 8;
 constexpr size_t kMostPoints = 100;
 constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
@@ -135,7 +138,11 @@ class LimbFitter {
         const double radius = std::max(stations_[i].radius, 0.5 * spacing_[i]);
         double reach = std::max(radius, 1.5 * spacing_[i]);
         auto [first, last] = window(i, reach);
-        for (int grow = 0; grow < 3 && begin_[last + 1] - begin_[first] < kWantedPoints; grow++) {
+        // Of a sparse stem, a longer piece tells what a short one cannot.
+        const bool stem = is_first_ && options_.long_windows && arc_[i] <= kStemShare * arc_.back() &&
+                          spacing_[i] > kSparseStem * radius;
+        const size_t wanted = stem ? kWantedOfStem : kWantedPoints;
+        for (int grow = 0; grow < (stem ? 6 : 3) && begin_[last + 1] - begin_[first] < wanted; grow++) {
             reach *= 1.6;
             std::tie(first, last) = window(i, reach);
         }

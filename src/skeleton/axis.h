@@ -23,6 +23,7 @@ struct AxisOptions {
     uint64_t seed = 1;
     double widest_ring = 0.25;  // metres: a wider closed section is a hollow crown unless it is a true circle
     size_t confirmations = 1;   // alike circles within three stations, without which one is an accident
+    bool long_windows = false;  // a sparse stem may be measured over a longer piece
     int rounds = 2;             // fit, then fit again across the better axis
 };
 

@@ -10,11 +10,12 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLowShare = 0.25;    // of the stem's length: the part that is looked at
-constexpr double kUpright = 0.6;      // height over length of a stem that goes up,
-constexpr double kUpRadii = 2.0;      // over so many radii
-constexpr double kBentRadii = 2.0;    // radii more that are not trusted
-constexpr double kSampleRadii = 6.0;  // radii: the stem that tells the line
+constexpr double kLowShare = 0.25;     // of the stem's length: the part that is looked at
+constexpr double kClearOfFoot = 0.12;  // of its length: where its radius can be trusted
+constexpr double kUpright = 0.6;       // height over length of a stem that goes up,
+constexpr double kUpRadii = 2.0;       // over so many radii
+constexpr double kBentRadii = 2.0;     // radii more that are not trusted
+constexpr double kSampleRadii = 6.0;   // radii: the stem that tells the line
 constexpr size_t kLeastStations = 4;
 constexpr double kMostCrooked = 0.4;  // radii: root mean square off the line
 constexpr double kClearShare = 0.05;  // of the stem's length: from there on it stands clear of its foot,
@@ -71,7 +72,7 @@ void plant_foot(std::vector<Station>& stem) {
         arc[i] = arc[i - 1] + glm::distance(stem[i].position, stem[i - 1].position);
     std::vector<double> radii;
     for (size_t i = 0; i < stem.size() && arc[i] <= kLowShare * arc.back(); i++)
-        if (stem[i].measured) radii.push_back(stem[i].radius);
+        if (stem[i].measured && arc[i] >= kClearOfFoot * arc.back()) radii.push_back(stem[i].radius);
     if (radii.empty()) return;
     const double radius = quantile(radii, 0.5);
     // Where the stem starts to go up, and goes on so.

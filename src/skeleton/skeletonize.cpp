@@ -148,6 +148,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     clock.stop("Branches", limbs.size());
 
     progress.update(0.8, "Radii");
+    axis_options.long_windows = true;
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
     straighten_stems(limbs, axes);
     if (!root.lying && std::none_of(limbs.begin(), limbs.end(),
