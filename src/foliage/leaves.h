@@ -29,7 +29,7 @@ struct LeafRules {
     double droop = 20.0;          // towards the ground
     double angle_variation = 20.0;
     bool follow_foliage = true;  // where the scan saw leaves (Foliage), the sprays stand there
-    int maximum_leaves = 60000;  // beyond it fewer, larger leaves cover the same area
+    int maximum_leaves = 24000;  // beyond it fewer, larger leaves cover the same area
 };
 
 // "generic", "maple", "cherry", "oak", "birch", "pine", "none". Throws Error for another name, listing these.
