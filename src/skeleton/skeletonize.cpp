@@ -16,6 +16,7 @@
 #include "skeleton/stems.h"
 #include "skeleton/thickness.h"
 #include "skeleton/thin.h"
+#include "skeleton/tips.h"
 #include "skeleton/twigs.h"
 #include "tree/trunk.h"
 
@@ -174,6 +175,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     infer_radii(axes, limbs);
     // Twigs that now lie on the bark of others were none.
     drop_strips(limbs, axes, 0.5 * twig_options.least_escape);
+    draw_back_tips(axes, limbs, limb_options.minimum_branch);
     clock.stop("Refinement", limbs.size());
 
     result.warnings = gap_warnings(axes, limbs, extent);
