@@ -14,8 +14,8 @@ namespace treerec {
 Mesh build_leaf_card(int level = 0);
 
 // Every leaf as geometry, with rounded-canopy normals and wind channels in colors; colors.g runs from 0 at
-// the card's base to 1 at its tip. custom0 stays empty. Throws Error for too many leaves, or
-// Cancelled.
+// the card's base to 1 at its tip. tangents and custom0 stay empty: this is for files. Throws Error for too
+// many leaves, or Cancelled.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const Progress* progress = nullptr);
 
 // Which leaves a level of detail keeps, and how much larger it draws them (fewer, larger, the same area).

@@ -47,7 +47,7 @@ TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const
 const Mesh& TreeExporter::bark() {
     if (!bark_) {
         TubeOptions tubes;
-        tubes.pivots = false;
+        tubes.shading = false;
         bark_ = build_branch_tubes(tree_, tubes, progress_);
     }
     return *bark_;

@@ -16,6 +16,7 @@ constexpr size_t kGrain = 2048;        // points between two looks at the cancel
 constexpr float kLonger = 3.0f;        // times the shortest link: the links that are compared
 constexpr size_t kNearStarts = 4;      // of them: the shortest,
 constexpr size_t kEndStarts = 8;       // and those from the part's end
+constexpr size_t kPartsPerTask = 8;    // of parallel work
 constexpr uint32_t kSampled = 7;       // one of so many points
 constexpr size_t kLeastPart = 40;      // points: a smaller part runs nowhere
 constexpr size_t kLargePart = 200;     // points: of a larger part,
@@ -106,30 +107,22 @@ class Bridges {
             std::stable_sort(links.begin(), links.end(), [&](const Link& a, const Link& b) {
                 return part_[a.from] != part_[b.from] ? part_[a.from] < part_[b.from] : a.squared < b.squared;
             });
+            std::vector<PartLinks> parts;
             size_t next = 0;
             for (uint32_t part = 0; part < points_.size(); part++) {
-                Link best = shortest[part];
-                if (std::isinf(best.squared)) continue;
+                if (std::isinf(shortest[part].squared)) continue;
                 const size_t begin = next;
                 while (next < links.size() && part_[links[next].from] == part)
                     next++;
+                parts.push_back({part, {links.data() + begin, next - begin}, shortest[part]});
+            }
+            parallel_for(parts.size(), kPartsPerTask, [&](size_t begin, size_t end) {
                 progress.check();
-                const double longest = kLonger * std::sqrt(best.squared);
-                double least = std::numeric_limits<double>::max();
-                const std::span<Link> of_part(links.data() + begin, next - begin);
-                const size_t near = std::min(kNearStarts, of_part.size());
-                const size_t all = std::min(kNearStarts + kEndStarts, of_part.size());
-                // Behind the shortest links, those from the part's end: the farthest from its middle.
-                const Vec3 middle(middle_[part] / static_cast<double>(members_[part]));
-                std::partial_sort(of_part.begin() + static_cast<ptrdiff_t>(near),
-                                  of_part.begin() + static_cast<ptrdiff_t>(all), of_part.end(),
-                                  [&](const Link& a, const Link& b) {
-                                      const float to_a = glm::distance(points_[a.from], middle);
-                                      const float to_b = glm::distance(points_[b.from], middle);
-                                      return to_a != to_b ? to_a > to_b : a.from < b.from;
-                                  });
-                for (size_t i = 0; i < all; i++)
-                    straightest(of_part[i], longest, least, best);
+                for (size_t i = begin; i < end; i++)
+                    choose(parts[i]);
+            });
+            for (const PartLinks& part : parts) {
+                const Link& best = part.best;
                 if (find(leader_, best.from) == find(leader_, best.to)) continue;
                 join(leader_, best.from, best.to);
                 edges.emplace_back(std::min(best.from, best.to), std::max(best.from, best.to));
@@ -138,6 +131,33 @@ class Bridges {
     }
 
   private:
+    // The links that a part may take: the shortest of its points, ascending, and the best so far.
+    struct PartLinks {
+        uint32_t part;
+        std::span<Link> links;
+        Link best;
+    };
+
+    void choose(PartLinks& of_part) const {
+        const double longest = kLonger * std::sqrt(of_part.best.squared);
+        double least = std::numeric_limits<double>::max();
+        const std::span<Link> links = of_part.links;
+        const size_t near = std::min(kNearStarts, links.size());
+        const size_t all = std::min(kNearStarts + kEndStarts, links.size());
+        // Behind the shortest links, those from the part's end: the farthest from its middle.
+        const Vec3 middle(middle_[of_part.part] / static_cast<double>(members_[of_part.part]));
+        std::partial_sort(links.begin() + static_cast<ptrdiff_t>(near),
+                          links.begin() + static_cast<ptrdiff_t>(all), links.end(),
+                          [&](const Link& a, const Link& b) {
+                              const float to_a = glm::distance(points_[a.from], middle);
+                              const float to_b = glm::distance(points_[b.from], middle);
+                              return to_a != to_b ? to_a > to_b : a.from < b.from;
+                          });
+        std::vector<std::pair<uint32_t, float>> around;
+        for (const Link& link : links.first(all))
+            straightest(link, longest, around, least, of_part.best);
+    }
+
     // False where only one part is left.
     bool number_parts() {
         members_.assign(points_.size(), 0u);
@@ -172,12 +192,13 @@ class Bridges {
         bool known = false;
     };
 
-    Run run_around(const Link& link) {
+    // around: scratch.
+    Run run_around(const Link& link, std::vector<std::pair<uint32_t, float>>& around) const {
         const float radius = static_cast<float>(kAround) * std::sqrt(link.squared);
-        tree_.radiusSearch(&points_[link.from].x, radius * radius, around_, nanoflann::SearchParams());
+        tree_.radiusSearch(&points_[link.from].x, radius * radius, around, nanoflann::SearchParams());
         Run run;
         double count = 0.0;
-        for (const auto& [v, distance] : around_) {
+        for (const auto& [v, distance] : around) {
             if (part_[v] != part_[link.from]) continue;
             run.middle += DVec3(points_[v]);
             count += 1.0;
@@ -185,7 +206,7 @@ class Bridges {
         if (count < kLeastAround) return run;
         run.middle /= count;
         DMat3 covariance(0.0);
-        for (const auto& [v, distance] : around_) {
+        for (const auto& [v, distance] : around) {
             if (part_[v] != part_[link.from]) continue;
             const DVec3 d = DVec3(points_[v]) - run.middle;
             covariance += glm::outerProduct(d, d);
@@ -202,11 +223,12 @@ class Bridges {
 
     // Takes the cheapest link from the start of `link` that is at most `longest` metres long, if it costs
     // less than `least`: its length in metres, the more the further it turns aside.
-    void straightest(const Link& link, double longest, double& least, Link& best) {
-        const Run run = run_around(link);
+    void straightest(const Link& link, double longest, std::vector<std::pair<uint32_t, float>>& around,
+                     double& least, Link& best) const {
+        const Run run = run_around(link, around);
         const float radius = static_cast<float>(longest);
-        tree_.radiusSearch(&points_[link.from].x, radius * radius, around_, nanoflann::SearchParams());
-        for (const auto& [to, squared] : around_) {
+        tree_.radiusSearch(&points_[link.from].x, radius * radius, around, nanoflann::SearchParams());
+        for (const auto& [to, squared] : around) {
             if (part_[to] == part_[link.from]) continue;
             const double length = std::sqrt(squared);
             if (length >= least) break;
@@ -231,7 +253,6 @@ class Bridges {
     std::vector<uint32_t> members_;  // by part
     std::vector<DVec3> middle_;      // by part: the sum of its points
     uint32_t largest_ = 0;
-    std::vector<std::pair<uint32_t, float>> around_;  // scratch
 };
 
 }  // namespace

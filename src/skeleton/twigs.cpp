@@ -94,6 +94,7 @@ class TwigFinder {
 
     void run(Progress& progress) {
         std::vector<float> outside(points_.size(), 0.0f);
+        std::vector<uint8_t> may(points_.size(), 0);  // something on the way from the wood may escape it
         // The farthest first. The bits of positive floats are in the order of their values.
         const auto entry = [](float length, uint32_t vertex) {
             return (static_cast<uint64_t>(std::bit_cast<uint32_t>(length)) << 32) | vertex;
@@ -102,7 +103,9 @@ class TwigFinder {
         for (const uint32_t v : paths_.order)
             if (line_[v] < 0) {
                 outside[v] = outside[paths_.parent[v]] + paths_.step[v];
-                entries.push_back(entry(outside[v], v));
+                // Paths only grow shorter, so what cannot escape now never will.
+                may[v] = may[paths_.parent[v]] != 0 || may_escape(v) ? 1 : 0;
+                if (may[v] != 0) entries.push_back(entry(outside[v], v));
             }
         std::priority_queue<uint64_t> queue(std::less<uint64_t>(), std::move(entries));
         size_t looked = 0;
@@ -165,23 +168,31 @@ class TwigFinder {
         return std::clamp(kTolerance * scale_.spacing[v], kLeastTolerance, kMostTolerance);
     }
 
-    // Fills path_, from the base to v; its first vertex hangs on foot_. Empty where it would cross a gap.
+    // Whether the limbs given leave the point free; twigs may still explain it.
+    bool may_escape(uint32_t v) const {
+        return outside_[v] >= required_escape(options_.least_escape, surface_[v]);
+    }
+
+    // Fills path_, from the base to v; its first vertex hangs on foot_. Empty where it would cross a gap, or
+    // nothing of it can escape the bark.
     float path_to(uint32_t v) {
         path_.clear();
         float length = 0.0f;
         bool gap = false;
+        bool may = false;
         while (line_[v] < 0) {
             const uint32_t next = static_cast<uint32_t>(paths_.parent[v]);
             const float step = paths_.step[v];
             gap = gap || step > kGapFactor * edge_reach(scale_, v, next) ||
                   (length < kStrayWood * step && step > kStrayFactor * scale_.reach[next]);
             path_.push_back(v);
+            may = may || may_escape(v);
             length += step;
             v = next;
         }
         foot_ = v;
         std::reverse(path_.begin(), path_.end());
-        if (gap) path_.clear();
+        if (gap || !may) path_.clear();
         return length;
     }
 
@@ -190,14 +201,15 @@ class TwigFinder {
         int32_t station = station_[foot_];
         bool escapes = false;
         const bool at_foot = parent == 0 && station < foot_end_;
-        for (const uint32_t v : path_) {
+        for (size_t i = 0; i < path_.size() && !escapes; i++) {
+            const uint32_t v = path_[i];
             const BarkPlace place = place_near(axes_[parent], station, DVec3(points_[v]));
             station = place.station;
             const double outside = std::min<double>(outside_[v], place.distance - place.radius);
             const double thickest = std::max<double>(surface_[v], place.radius);
             const double required = std::max(required_escape(options_.least_escape, thickest),
                                              at_foot ? kFootEscape * axes_[0][0].radius : 0.0);
-            escapes = escapes || outside >= required;
+            escapes = outside >= required;
         }
         if (!escapes) return;
 
@@ -333,16 +345,24 @@ class TwigFinder {
                 before = here;
             }
         }
-        std::vector<double> distances;
+        // The points' distances, by station.
+        std::vector<size_t> begin(line.size() + 1, 0);
+        for (const uint32_t v : near_)
+            begin[static_cast<size_t>(nearest_[v]) + 1]++;
+        for (size_t i = 0; i < line.size(); i++)
+            begin[i + 1] += begin[i];
+        std::vector<double> distances(near_.size());
+        std::vector<size_t> fill(begin.begin(), begin.end() - 1);
+        for (const uint32_t v : near_)
+            distances[fill[static_cast<size_t>(nearest_[v])]++] =
+                place_near(line, nearest_[v], DVec3(points_[v])).distance;
+        // place_near looks at positions alone, so the radii can be set behind it.
         for (size_t i = 0; i < line.size(); i++) {
-            distances.clear();
-            for (const uint32_t v : near_)
-                if (nearest_[v] == static_cast<int32_t>(i))
-                    distances.push_back(
-                        place_near(line, static_cast<int32_t>(i), DVec3(points_[v])).distance);
-            if (distances.size() < 2) continue;
-            const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
-            std::nth_element(distances.begin(), middle, distances.end());
+            const size_t count = begin[i + 1] - begin[i];
+            if (count < 2) continue;
+            const auto first = distances.begin() + static_cast<ptrdiff_t>(begin[i]);
+            const auto middle = first + static_cast<ptrdiff_t>(count / 2);
+            std::nth_element(first, middle, first + static_cast<ptrdiff_t>(count));
             line[i].radius = *middle;
         }
         return line;
