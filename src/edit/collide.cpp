@@ -1,0 +1,248 @@
+#include "edit/collide.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "edit/scion.h"
+#include "error.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kMostCells = 1 << 18;
+constexpr size_t kCheckEvery = 4096;  // segments between two looks at the progress
+
+struct Capsule {
+    DVec3 a, b;
+    double ra, rb;
+    NodeId id;
+
+    Bounds bounds() const {
+        Bounds box;
+        box.add(a, ra);
+        box.add(b, rb);
+        return box;
+    }
+};
+
+bool overlap(const Bounds& a, const Bounds& b) {
+    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
+}
+
+// Where two segments are nearest, 0..1 along each (Ericson, Real-Time Collision Detection, 2005, 5.1.9).
+std::pair<double, double> nearest(const Capsule& p, const Capsule& q) {
+    const DVec3 d1 = p.b - p.a;
+    const DVec3 d2 = q.b - q.a;
+    const DVec3 r = p.a - q.a;
+    const double a = glm::dot(d1, d1);
+    const double e = glm::dot(d2, d2);
+    const double f = glm::dot(d2, r);
+    if (a <= 0.0 && e <= 0.0) return {0.0, 0.0};
+    if (a <= 0.0) return {0.0, std::clamp(f / e, 0.0, 1.0)};
+    const double c = glm::dot(d1, r);
+    if (e <= 0.0) return {std::clamp(-c / a, 0.0, 1.0), 0.0};
+    const double b = glm::dot(d1, d2);
+    const double determinant = a * e - b * b;
+    double s = determinant > 1e-12 * a * e ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
+    double t = (b * s + f) / e;
+    if (t < 0.0) {
+        t = 0.0;
+        s = std::clamp(-c / a, 0.0, 1.0);
+    } else if (t > 1.0) {
+        t = 1.0;
+        s = std::clamp((b - c) / a, 0.0, 1.0);
+    }
+    return {s, t};
+}
+
+// The capsules of the new wood, by the cells of a box about them that they touch.
+class CapsuleGrid {
+  public:
+    explicit CapsuleGrid(const std::vector<Capsule>& capsules, double clearance) {
+        double length = 0.0;
+        double thick = 0.0;
+        for (const Capsule& capsule : capsules) {
+            Bounds box = capsule.bounds();
+            box_.add(box.min - clearance);
+            box_.add(box.max + clearance);
+            length += glm::distance(capsule.a, capsule.b);
+            thick = std::max({thick, capsule.ra, capsule.rb});
+        }
+        const DVec3 size = glm::max(box_.size(), DVec3(1e-9));
+        cell_ = std::max({length / static_cast<double>(capsules.size()), thick + clearance,
+                          std::cbrt(size.x * size.y * size.z / kMostCells) * 1.1,
+                          std::max({size.x, size.y, size.z}) / 4096.0});
+        // A flat box can still have too many cells.
+        for (;; cell_ *= 1.5) {
+            double cells = 1.0;
+            for (int axis = 0; axis < 3; axis++) {
+                count_[axis] = static_cast<int>(size[axis] / cell_) + 1;
+                cells *= count_[axis];
+            }
+            if (cells <= kMostCells) break;
+        }
+        begin_.assign(static_cast<size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
+        for (const Capsule& capsule : capsules)
+            for_cells(capsule, clearance, [&](size_t c) { begin_[c + 1]++; });
+        for (size_t c = 1; c < begin_.size(); c++)
+            begin_[c] += begin_[c - 1];
+        items_.resize(begin_.back());
+        std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
+        for (size_t i = 0; i < capsules.size(); i++)
+            for_cells(capsules[i], clearance,
+                      [&](size_t c) { items_[next[c]++] = static_cast<uint32_t>(i); });
+    }
+
+    const Bounds& box() const { return box_; }
+
+    // Calls visit(index of a capsule) for every one that shares a cell with `capsule`, some several times.
+    template <typename Visit>
+    void for_near(const Capsule& capsule, const Visit& visit) const {
+        for_cells(capsule, 0.0, [&](size_t c) {
+            for (uint32_t i = begin_[c]; i < begin_[c + 1]; i++)
+                visit(items_[i]);
+        });
+    }
+
+  private:
+    // Piece by piece, so that a long slanting segment does not count to every cell of the box about it.
+    template <typename Body>
+    void for_cells(const Capsule& capsule, double margin, const Body& body) const {
+        // Only the stretch within the box matters.
+        double from = 0.0;
+        double to = 1.0;
+        const DVec3 way = capsule.b - capsule.a;
+        const double reach = std::max(capsule.ra, capsule.rb) + margin;
+        for (int axis = 0; axis < 3; axis++) {
+            if (std::abs(way[axis]) < 1e-300) continue;
+            const double t0 = (box_.min[axis] - reach - capsule.a[axis]) / way[axis];
+            const double t1 = (box_.max[axis] + reach - capsule.a[axis]) / way[axis];
+            from = std::max(from, std::min(t0, t1));
+            to = std::min(to, std::max(t0, t1));
+        }
+        if (from > to) return;
+        const double length = glm::length(way) * (to - from);
+        const int pieces = static_cast<int>(std::min(length / std::max(cell_, reach), 16384.0)) + 1;
+        for (int i = 0; i < pieces; i++) {
+            const DVec3 a = capsule.a + way * (from + (to - from) * i / pieces);
+            const DVec3 b = capsule.a + way * (from + (to - from) * (i + 1) / pieces);
+            int low[3], high[3];
+            for (int axis = 0; axis < 3; axis++) {
+                low[axis] = index(std::min(a[axis], b[axis]) - reach, axis);
+                high[axis] = index(std::max(a[axis], b[axis]) + reach, axis);
+            }
+            for (int x = low[0]; x <= high[0]; x++)
+                for (int y = low[1]; y <= high[1]; y++)
+                    for (int z = low[2]; z <= high[2]; z++)
+                        body((static_cast<size_t>(x) * count_[1] + y) * count_[2] + z);
+        }
+    }
+
+    int index(double at, int axis) const {
+        return static_cast<int>(
+            std::clamp((at - box_.min[axis]) / cell_, 0.0, static_cast<double>(count_[axis] - 1)));
+    }
+
+    Bounds box_;
+    double cell_ = 1.0;
+    std::array<int, 3> count_{1, 1, 1};
+    std::vector<uint32_t> begin_;
+    std::vector<uint32_t> items_;
+};
+
+// skip: by id, the segments to leave out.
+std::vector<Capsule> capsules_of(const Tree& tree, const std::vector<NodeId>& ids,
+                                 const std::vector<uint8_t>* skip) {
+    std::vector<Capsule> capsules;
+    capsules.reserve(ids.size());
+    for (NodeId id : ids) {
+        const Node& node = tree.node(id);
+        if (node.parent == kNoNode || (skip && (*skip)[id])) continue;
+        const Node& parent = tree.node(node.parent);
+        // A branch that leaves stouter wood begins with its own radius.
+        const bool on = parent.child_count == 1 || node.radius > 0.6 * parent.radius;
+        const double from = on ? parent.radius : node.radius;
+        capsules.push_back({parent.position, node.position, from, node.radius, id});
+    }
+    return capsules;
+}
+
+std::vector<Collision> collide(const std::vector<Capsule>& standing, const std::vector<Capsule>& grafted,
+                               const CollisionOptions& options, const Progress* progress) {
+    std::vector<Collision> found;
+    if (standing.empty() || grafted.empty()) return found;
+    const CapsuleGrid grid(grafted, options.clearance);
+    std::vector<uint32_t> seen(grafted.size(), 0);  // 1 + the index of the last segment it was tried with
+    for (size_t i = 0; i < standing.size(); i++) {
+        if (progress && i % kCheckEvery == 0) progress->check();
+        const Capsule& other = standing[i];
+        if (!overlap(other.bounds(), grid.box())) continue;
+        grid.for_near(other, [&](uint32_t g) {
+            if (seen[g] == i + 1) return;
+            seen[g] = static_cast<uint32_t>(i + 1);
+            const Capsule& mine = grafted[g];
+            const auto [s, t] = nearest(mine, other);
+            const DVec3 p = mine.a + (mine.b - mine.a) * s;
+            const DVec3 q = other.a + (other.b - other.a) * t;
+            const double radii = mine.ra + (mine.rb - mine.ra) * s + other.ra + (other.rb - other.ra) * t;
+            const double depth = radii + options.clearance - glm::distance(p, q);
+            if (depth <= 0.0 || glm::distance(p, options.joint) <= options.joint_reach) return;
+            found.push_back({mine.id, other.id, depth, 0.5 * (p + q)});
+        });
+    }
+    std::sort(found.begin(), found.end(), [](const Collision& a, const Collision& b) {
+        return std::tie(a.grafted, a.other) < std::tie(b.grafted, b.other);
+    });
+    return found;
+}
+
+}  // namespace
+
+double joint_reach(const Tree& tree, NodeId joint, NodeId own_child, double own, const DVec3& away,
+                   double clearance) {
+    const Node& host = tree.node(joint);
+    // Two cylinders whose axes part at this angle touch no longer at this distance.
+    double sine = 1.0;
+    const auto parts_from = [&](const DVec3& way) {
+        if (glm::dot(way, away) > 0.0) sine = std::min(sine, glm::length(glm::cross(way, away)));
+    };
+    if (host.parent != kNoNode) parts_from(-direction_at(tree, joint));
+    for (NodeId child : tree.children(joint))
+        if (child != own_child)
+            parts_from(normalized_or(tree.node(child).position - host.position, DVec3(0.0)));
+    return 1.2 * (host.radius + own + clearance) / std::max(sine, 0.25);
+}
+
+std::vector<Collision> find_collisions(const Tree& tree, const Tree& wood, const CollisionOptions& options,
+                                       const Progress* progress) {
+    return collide(capsules_of(tree, tree.depth_first(), nullptr),
+                   capsules_of(wood, wood.depth_first(), nullptr), options, progress);
+}
+
+std::vector<Collision> find_collisions(const Tree& tree, NodeId child, double clearance,
+                                       const Progress* progress) {
+    if (!tree.contains(child)) throw Error("There is no node " + std::to_string(child) + " in this tree.");
+    if (!(clearance >= 0.0) || !std::isfinite(clearance))
+        throw Error("The clearance must be a length in metres that is not negative.");
+    const NodeId joint = tree.node(child).parent;
+    if (joint == kNoNode) return {};
+    const std::vector<NodeId> above = tree.depth_first(child);
+    std::vector<uint8_t> skip(static_cast<size_t>(tree.id_end()), 0);
+    for (NodeId id : above)
+        skip[id] = 1;
+    const Node& host = tree.node(joint);
+    const double own = std::min(tree.node(child).radius, host.radius);
+    const DVec3 away = normalized_or(tree.node(child).position - host.position, direction_at(tree, joint));
+    CollisionOptions options;
+    options.clearance = clearance;
+    options.joint = host.position;
+    options.joint_reach = joint_reach(tree, joint, child, own, away, clearance);
+    return collide(capsules_of(tree, tree.depth_first(), &skip), capsules_of(tree, above, nullptr), options,
+                   progress);
+}
+
+}  // namespace treerec

@@ -1,0 +1,45 @@
+// Where new wood runs into wood that stands already: capsules against capsules, through a grid.
+#pragma once
+
+#include <vector>
+
+#include "progress.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+// Two segments, each named by its upper node, that are nearer to each other than their radii and the
+// clearance allow.
+struct Collision {
+    NodeId grafted = kNoNode;  // of the new wood
+    NodeId other = kNoNode;    // of the wood that stood already
+    double depth = 0.0;        // metres by which they overlap, the clearance included
+    DVec3 place{0.0};          // in tree space, halfway between the two axes where they are nearest
+};
+
+struct CollisionOptions {
+    double clearance = 0.0;  // metres of air to keep between bark and bark
+    // New wood whose axis is within `joint_reach` metres of `joint` (tree space) touches nothing: it grows
+    // out of the wood there.
+    DVec3 joint{0.0};
+    double joint_reach = 0.0;
+};
+
+// The collisions of `wood`, a tree of its own in the tree space of `tree`, with every segment of `tree`;
+// Collision::grafted is an id of `wood`. By ascending ids. Segments are taken as straight, with the radius
+// between both ends interpolated. Linear where the wood is not crowded. Throws Cancelled.
+std::vector<Collision> find_collisions(const Tree& tree, const Tree& wood, const CollisionOptions& options,
+                                       const Progress* progress = nullptr);
+
+// The collisions of the subtree on the segment to `child` with the rest of its tree, about their joint
+// excepted as graft() excepts it. Throws Error for an unknown id or a negative clearance.
+std::vector<Collision> find_collisions(const Tree& tree, NodeId child, double clearance,
+                                       const Progress* progress = nullptr);
+
+// How far from `joint` new wood of radius `own` that leaves it along unit vector `away` still grows out of
+// what is there: at this distance it is clear of the joint's other wood, `own_child` (or kNoNode) not
+// counted. Metres.
+double joint_reach(const Tree& tree, NodeId joint, NodeId own_child, double own, const DVec3& away,
+                   double clearance);
+
+}  // namespace treerec

@@ -1,0 +1,28 @@
+// Seeded variation of a scion, so that no two grafts look the same (papers/000, algorithm 6).
+#pragma once
+
+#include <cstdint>
+
+#include "tree/tree.h"
+
+namespace treerec {
+
+struct Variation {
+    double angle = 0.0;   // degrees, 0..180: what a branch turns and bends by, at most
+    double length = 0.0;  // share, 0..0.9: what a branch grows longer or shorter by, at most
+
+    bool none() const { return angle == 0.0 && length == 0.0; }
+};
+
+// Throws Error for values outside these ranges.
+void require_variation(const Variation& variation);
+
+// The scion with every branch turned at its fork by up to `angle`, about any axis across it, bent along its
+// way by up to `angle` in a smooth arc and by up to half of it in an S, and made longer or shorter by up to
+// `length`; what it bears follows. The first branch leaves its root as before. The paper draws anew for each
+// segment; on a scan's short segments that only makes them jagged, and evens out. Radii, ids and flags stay.
+// The numbers drawn belong to (seed, branch): the same on every platform. Throws Error as
+// require_variation().
+Tree vary_scion(const Tree& scion, const Variation& variation, uint64_t seed);
+
+}  // namespace treerec
