@@ -23,6 +23,9 @@ void run_info(const std::vector<std::string>& words);
 const Command& score_command();
 void run_score(const std::vector<std::string>& words);
 
+const Command& edit_command();
+void run_edit(const std::vector<std::string>& words);
+
 const Command& synth_command();
 void run_synth(const std::vector<std::string>& words);
 

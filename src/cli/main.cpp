@@ -20,6 +20,7 @@ struct Entry {
 std::vector<Entry> entries() {
     return {{reconstruct_command(), run_reconstruct},
             {info_command(), run_info},
+            {edit_command(), run_edit},
             {score_command(), run_score},
             {synth_command(), run_synth},
             {textures_command(), run_textures}};

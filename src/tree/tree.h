@@ -143,6 +143,8 @@ class Tree {
                             const std::vector<NodeId>* ids = nullptr);
 
   private:
+    friend class TreeDelta;  // edit/delta.h: puts back a tree's exact state
+
     NodeId new_node(const DVec3& position, double radius, uint8_t flags);
     void require(NodeId id) const;
     void link_last(NodeId id, NodeId parent);

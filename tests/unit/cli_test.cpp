@@ -1,20 +1,15 @@
-// The program itself, run as a user runs it. TREEREC_CLI names the program; without it these tests skip.
+// The program itself, run as a user runs it (cli_runner.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#ifndef _WIN32
-#include <sys/wait.h>
-#include <unistd.h>
-#endif
-
+#include "cli_runner.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "geometry/random.h"
@@ -26,57 +21,9 @@
 namespace treerec {
 namespace {
 
+using test::Cli;
+using test::Outcome;
 namespace fs = std::filesystem;
-
-struct Outcome {
-    int code = -1;
-    std::string out;
-    std::string error;
-};
-
-class Cli : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        const char* program = std::getenv("TREEREC_CLI");
-        if (!program || !fs::exists(program)) GTEST_SKIP() << "TREEREC_CLI does not name the program";
-        program_ = fs::absolute(program).string();
-        folder_ = fs::temp_directory_path() /
-                  ("treerec_cli_" + std::to_string(::getpid()) + "_" +
-                   std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_ / "out");
-    }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
-    }
-
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    std::string get(const std::string& name) const {
-        std::ifstream in(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    std::string put(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
-
-    // Runs "treerec <words>" in the test's folder.
-    Outcome run(const std::string& words) const {
-        const std::string command = "cd '" + folder_.string() + "' && timeout 120 '" + program_ + "' " +
-                                    words + " >stdout.log 2>stderr.log </dev/null";
-        const int status = std::system(command.c_str());
-        Outcome outcome;
-        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
-        outcome.out = get("stdout.log");
-        outcome.error = get("stderr.log");
-        return outcome;
-    }
-
-    bool out_is_empty() const { return fs::is_empty(folder_ / "out"); }
-
-    std::string program_;
-    fs::path folder_;
-};
 
 std::string xyz(const std::vector<DVec3>& points) {
     std::string text;

@@ -1,0 +1,143 @@
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "edit/script.h"
+#include "exchange/tree_files.h"
+#include "file_bytes.h"
+#include "pipeline/export.h"
+
+namespace treerec {
+
+namespace {
+
+// "factor=1 (0 to 1000)", "node=...".
+std::string describe(const Parameter& parameter) {
+    std::string text = parameter.name + "=";
+    switch (parameter.type) {
+        case ParameterType::kNumber:
+        case ParameterType::kLength:
+        case ParameterType::kWhole:
+            text += parameter.standard.empty() ? "N" : parameter.standard;
+            text += " (" + number_text(parameter.least) + " to " + number_text(parameter.most) + ")";
+            break;
+        case ParameterType::kWord:
+            for (size_t i = 0; i < parameter.words.size(); i++)
+                text += (i ? "|" : "") + parameter.words[i];
+            break;
+        case ParameterType::kSwitch:
+            text += parameter.standard == "yes" ? "yes|no" : "no|yes";
+            break;
+        case ParameterType::kText:
+            text += "TEXT";
+            break;
+        case ParameterType::kNode:
+            text += "NODE";
+            break;
+        case ParameterType::kNodes:
+            text += parameter.standard.empty() ? "NODES" : parameter.standard;
+            break;
+        case ParameterType::kPoint:
+        case ParameterType::kOffset:
+        case ParameterType::kDirection:
+            text += parameter.standard.empty() ? "X,Y,Z" : parameter.standard;
+            break;
+    }
+    return (parameter.required ? text : "[" + text + "]") + "  " + parameter.help;
+}
+
+void print_commands() {
+    for (const EditCommand& command : edit_commands()) {
+        std::printf("%s  %s\n", command.name.c_str(), command.summary.c_str());
+        for (const Parameter& parameter : command.parameters)
+            std::printf("    %s\n", describe(parameter).c_str());
+    }
+}
+
+}  // namespace
+
+const Command& edit_command() {
+    static const Command command{
+        "edit",
+        "edit IN --script FILE -o OUT [options]",
+        "Prunes, shapes and mends a tree by a script of commands.",
+        {{"--script", "FILE", "one command per line, # begins a comment; a log of the editor will do", true},
+         {"-c", "COMMAND", "one command; after the scripts, in the order given", true},
+         {"-o", "FILE", "what to write: .glb .gltf .obj, or .txt .ply .csv (the skeleton)", true},
+         {"--log", "FILE", "writes what was done, nodes by their places too, to be replayed on another tree"},
+         {"--keep-going", "", "leaves out what does not fit the tree, and tells it"},
+         {"--tolerance", "M", "how far away a log's nodes are looked for (default: 1 % of the height)"},
+         {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
+         {"--commands", "", "lists the commands and what they take"},
+         {"--quiet", "", "print errors only"}},
+        "IN: a skeleton (see 'treerec info'). Places and lengths in a script are metres from the tree's "
+        "base, Y\n"
+        "up; those of nodes (node=@x:y:z) are the scan's own coordinates."};
+    return command;
+}
+
+void run_edit(const std::vector<std::string>& words) {
+    const Arguments arguments(edit_command(), words);
+    if (arguments.has("--commands")) {
+        print_commands();
+        return;
+    }
+    if (arguments.positional().size() != 1) throw UsageError("Name one skeleton to edit.");
+    if (!arguments.has("--script") && !arguments.has("-c"))
+        throw UsageError("What is to be done? Name a script with --script, or a command with -c.");
+    if (!arguments.has("-o") && !arguments.has("--log")) throw UsageError("Where to? Name a file with -o.");
+    const std::vector<std::string> none;
+    const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
+    for (const std::string& out : outs)
+        require_writable_format(out);
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet);
+    ScriptOptions options;
+    options.keep_going = arguments.has("--keep-going");
+    options.tolerance = arguments.number("--tolerance", 0.0, 0.0, 1000.0);
+    options.progress = &progress;
+
+    std::vector<std::pair<std::string, std::string>> scripts;  // name and text
+    if (arguments.has("--script"))
+        for (const std::string& path : arguments.all("--script"))
+            scripts.emplace_back("'" + path + "': ", read_file(path).view());
+    if (arguments.has("-c"))
+        for (const std::string& line : arguments.all("-c"))
+            scripts.emplace_back("", line);
+
+    Tree tree = read_skeleton(arguments.positional()[0], up_axis_from(arguments));
+    const size_t before = tree.size();
+    EditLog log;
+    size_t done = 0, left_out = 0;
+    for (const auto& [name, text] : scripts) {
+        ScriptResult result;
+        try {
+            result = run_script(tree, text, options);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& error) {
+            throw Error(name + error.what());
+        }
+        done += result.done;
+        left_out += result.left_out.size();
+        for (const EditLog::Entry& entry : result.log.entries())
+            log.add(entry);
+        progress.clear();
+        for (const LeftOut& one : result.left_out)
+            std::fprintf(stderr, "Left out: %sline %zu: %s: %s\n", name.c_str(), one.line,
+                         one.command.c_str(), one.reason.c_str());
+    }
+    TreeExporter exporter(tree, {}, &progress);
+    for (const std::string& out : outs)
+        exporter.write(out);
+    if (arguments.has("--log")) write_file(arguments.text("--log", ""), log.text());
+    progress.clear();
+    if (quiet) return;
+    std::printf("%zu command%s done, %zu left out; %zu nodes before, %zu after\n", done, done == 1 ? "" : "s",
+                left_out, before, tree.size());
+    for (const std::string& out : outs)
+        std::printf("wrote %s\n", out.c_str());
+    if (arguments.has("--log")) std::printf("wrote %s\n", arguments.text("--log", "").c_str());
+}
+
+}  // namespace treerec

@@ -1,0 +1,36 @@
+// How a command names nodes: by id, and by place, so that it finds them again on a tree that was
+// reconstructed anew from the same scan.
+//
+//     123                          the node with this id
+//     root                         the root
+//     @x:y:z                       the node nearest to this place
+//     123@x:y:z:dx:dy:dz:r         as a log writes it: the node 123 if it is still there, else the wood
+//     nearest
+//                                  to the place that runs in this direction and is about this thick
+//
+// Places, directions and radii of addresses are in the scan's own coordinates, axes and units.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "error.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+// The command is sound, but there is nothing on this tree that it speaks of.
+class Misfit : public Error {
+  public:
+    explicit Misfit(const std::string& sentence) : Error(sentence) {}
+};
+
+// tolerance: metres that the wood may lie away from where it was; 0: a hundredth of the tree's height, or the
+// node's diameter if that is more. Linear in the nodes, but for an id that still fits. Throws Misfit where no
+// node fits, and Error for what is no address.
+NodeId find_node(const Tree& tree, std::string_view address, double tolerance = 0.0);
+
+// The address as a log keeps it; places to a tenth of a millimetre. Precondition: tree.contains(id).
+std::string address_of(const Tree& tree, NodeId id);
+
+}  // namespace treerec

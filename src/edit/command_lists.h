@@ -1,0 +1,12 @@
+// The lists that edit_commands() is put together from; each stands in the file of its topic.
+#pragma once
+
+#include <vector>
+
+#include "edit/commands.h"
+
+namespace treerec {
+
+std::vector<EditCommand> prune_commands();
+
+}  // namespace treerec

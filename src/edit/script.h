@@ -1,0 +1,65 @@
+// Commands in a row: scripts that users write, and the log of what was done to a tree.
+//
+// A script is lines of commands (edit/command_text.h); # begins a comment. A line
+//     frame origin=x,y,z unit=0.01 up=z
+// says in which frame the places and lengths that follow are written, so that they stay where they were in
+// the scan; without it they are in the tree's own. A log is a script that begins with "# treerec edit log 1";
+// what did not fit the tree when the log was last replayed stands in it as "#? command".
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edit/commands.h"
+
+namespace treerec {
+
+class EditLog {
+  public:
+    struct Entry {
+        std::string command;
+        ScanFrame frame;     // in which it is written
+        std::string reason;  // why it does not fit; empty if it does
+        bool fits() const { return reason.empty(); }
+    };
+
+    void add(const Edit& edit) { entries_.push_back({edit.command, edit.frame, ""}); }
+    void add(Entry entry) { entries_.push_back(std::move(entry)); }
+    // Forgets the last entry that fits; no entry, no effect.
+    void forget_last();
+    void clear() { entries_.clear(); }
+
+    const std::vector<Entry>& entries() const { return entries_; }
+    std::string text() const;
+
+  private:
+    std::vector<Entry> entries_;
+};
+
+struct ScriptOptions {
+    double tolerance = 0.0;  // of addresses (find_node())
+    // What does not fit is left out and told, instead of failing; "#?" lines are tried again.
+    bool keep_going = false;
+    const Progress* progress = nullptr;
+};
+
+struct LeftOut {
+    size_t line = 0;  // of the script, from 1
+    std::string command;
+    std::string reason;
+};
+
+struct ScriptResult {
+    size_t done = 0;  // commands
+    std::vector<LeftOut> left_out;
+    EditLog log;                    // what was done, as found on this tree, and what was left out
+    TreeDelta delta;                // of all together
+    std::vector<std::string> said;  // a sentence of each command that was done
+};
+
+// Runs all commands. Throws Error with line and column, or Cancelled; the tree then is as it was. With
+// keep_going only a script of a newer version, or a frame line that is wrong, throws.
+ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions& options = {});
+
+}  // namespace treerec
