@@ -132,7 +132,29 @@ void Tree::dissolve(NodeId id) {
         update_depths(root_);
         return;
     }
-    // Splice the list of children into the sibling list where the node stood.
+    splice_out(id);
+    for (NodeId child = gone.first_child; child != gone.next_sibling && child != kNoNode;
+         child = nodes_[child].next_sibling)
+        update_depths(child);
+}
+
+void Tree::dissolve_all(const std::vector<NodeId>& ids) {
+    std::vector<uint8_t> goes(nodes_.size(), 0);
+    for (NodeId id : ids) {
+        require(id);
+        if (id == root_) throw Error("The root cannot be dissolved together with other nodes.");
+        goes[id] = 1;
+    }
+    // From the root upwards, so that every node moves to its new parent once.
+    for (NodeId id : depth_first())
+        if (goes[id]) splice_out(id);
+    if (!empty()) update_depths(root_);
+}
+
+// Removes a node that is not the root; its children stand where it stood. Depths above it are left as they
+// are.
+void Tree::splice_out(NodeId id) {
+    const Node gone = nodes_[id];
     Node& host = nodes_[gone.parent];
     const NodeId before = gone.previous_sibling;
     const NodeId after = gone.next_sibling;
@@ -155,9 +177,6 @@ void Tree::dissolve(NodeId id) {
     host.child_count += gone.child_count - 1;
     nodes_[id] = Node{};
     count_--;
-    for (NodeId child = gone.first_child; child != after && child != kNoNode;
-         child = nodes_[child].next_sibling)
-        update_depths(child);
 }
 
 NodeId Tree::insert_before(NodeId id, const DVec3& position, double radius, uint8_t flags) {

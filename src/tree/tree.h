@@ -106,6 +106,9 @@ class Tree {
     // Removes one node; its children take its place among its siblings. The root can go only if it has
     // exactly one child. Throws Error otherwise.
     void dissolve(NodeId id);
+    // dissolve() for many nodes at once, in time that grows with the tree alone. The root must not be among
+    // them. Throws Error for an unknown id or the root, before anything is changed.
+    void dissolve_all(const std::vector<NodeId>& ids);
     // Puts a new node between `id` and its parent, in id's place. Throws Error for the root.
     NodeId insert_before(NodeId id, const DVec3& position, double radius, uint8_t flags = 0);
     // Hangs the subtree at `id` under `parent` as its last child. Throws Error where that would make a cycle.
@@ -148,6 +151,7 @@ class Tree {
     NodeId new_node(const DVec3& position, double radius, uint8_t flags);
     void require(NodeId id) const;
     void link_last(NodeId id, NodeId parent);
+    void splice_out(NodeId id);
     void unlink(NodeId id);
     void update_depths(NodeId from);
 

@@ -1,0 +1,189 @@
+#include "fidelity/silhouette.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <numbers>
+#include <vector>
+
+#include "error.h"
+#include "geometry/parallel.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr int kSamples = 4;  // across a pixel and down it
+
+// One view's picture plane: x to the right, y up, in metres.
+struct View {
+    double right_x = 1.0, right_z = 0.0;
+    DVec2 least{0.0};
+    double sample = 1.0;        // metres between two samples
+    int width = 0, height = 0;  // in samples, whole pixels
+
+    DVec2 project(const Vec3& p) const { return {right_x * p.x + right_z * p.z, p.y}; }
+};
+
+class Mask {
+  public:
+    explicit Mask(const View& view)
+        : view_(view),
+          words_((static_cast<size_t>(view.width) + 63) / 64),
+          bits_(words_ * static_cast<size_t>(view.height), 0) {}
+
+    void draw(const Mesh& mesh, const Progress* progress) {
+        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+            if (progress && i % 65536 == 0) progress->check();
+            DVec2 corners[3];
+            for (int k = 0; k < 3; k++)
+                corners[k] =
+                    (view_.project(mesh.positions[mesh.indices[i + k]]) - view_.least) / view_.sample;
+            fill(corners);
+        }
+    }
+
+    // How many samples of pixel (x, y) are covered.
+    int covered(int x, int y) const {
+        int count = 0;
+        for (int row = kSamples * y; row < kSamples * (y + 1); row++)
+            count += std::popcount(bits_[words_ * static_cast<size_t>(row) + static_cast<size_t>(x / 16)] >>
+                                       (kSamples * (x % 16)) &
+                                   0xFU);
+        return count;
+    }
+
+  private:
+    // Sets the samples whose centres lie in the triangle, row by row.
+    void fill(const DVec2 (&corners)[3]) {
+        const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+        const int first = std::max(static_cast<int>(std::ceil(low - 0.5)), 0);
+        const int last = std::min(static_cast<int>(std::floor(high - 0.5)), view_.height - 1);
+        for (int row = first; row <= last; row++) {
+            const double y = row + 0.5;
+            double from = INFINITY, to = -INFINITY;
+            for (int k = 0; k < 3; k++) {
+                const DVec2 &a = corners[k], &b = corners[(k + 1) % 3];
+                if ((a.y < y && b.y < y) || (a.y > y && b.y > y)) continue;
+                if (a.y == b.y) {
+                    from = std::min({from, a.x, b.x});
+                    to = std::max({to, a.x, b.x});
+                    continue;
+                }
+                const double x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+                from = std::min(from, x);
+                to = std::max(to, x);
+            }
+            const int begin = std::max(static_cast<int>(std::ceil(from - 0.5)), 0);
+            const int end = std::min(static_cast<int>(std::floor(to - 0.5)), view_.width - 1);
+            if (begin <= end) set(row, begin, end);
+        }
+    }
+
+    void set(int row, int begin, int end) {
+        uint64_t* words = &bits_[words_ * static_cast<size_t>(row)];
+        const int first = begin / 64, last = end / 64;
+        const uint64_t head = ~uint64_t{0} << (begin % 64), tail = ~uint64_t{0} >> (63 - end % 64);
+        if (first == last) {
+            words[first] |= head & tail;
+            return;
+        }
+        words[first] |= head;
+        for (int i = first + 1; i < last; i++)
+            words[i] = ~uint64_t{0};
+        words[last] |= tail;
+    }
+
+    const View& view_;
+    size_t words_;
+    std::vector<uint64_t> bits_;
+};
+
+std::array<View, 4> views_of(const Mesh& before, const Mesh& after, int pixels) {
+    std::array<View, 4> views;
+    std::array<DVec2, 4> most;
+    double longest = 0.0;
+    for (size_t v = 0; v < views.size(); v++) {
+        const double azimuth = static_cast<double>(v) * std::numbers::pi / 4.0;
+        views[v].right_x = std::cos(azimuth);
+        views[v].right_z = std::sin(azimuth);
+        views[v].least = DVec2(INFINITY);
+        most[v] = DVec2(-INFINITY);
+        for (const Mesh* mesh : {&before, &after})
+            for (uint32_t index : mesh->indices) {
+                const DVec2 p = views[v].project(mesh->positions[index]);
+                views[v].least = glm::min(views[v].least, p);
+                most[v] = glm::max(most[v], p);
+            }
+        if (most[v].y < views[v].least.y) views[v].least = most[v] = DVec2(0.0);
+        const DVec2 size = most[v] - views[v].least;
+        longest = std::max({longest, size.x, size.y});
+    }
+    for (size_t v = 0; v < views.size(); v++) {
+        View& view = views[v];
+        const double pixel = longest > 0.0 ? longest / pixels : 1.0;
+        const DVec2 size = (most[v] - view.least) / pixel;
+        view.sample = pixel / kSamples;
+        view.width = kSamples * std::clamp(static_cast<int>(std::ceil(size.x)), 1, pixels);
+        view.height = kSamples * std::clamp(static_cast<int>(std::ceil(size.y)), 1, pixels);
+    }
+    return views;
+}
+
+double share(double part, double whole) {
+    return whole > 0.0 ? part / whole : 0.0;
+}
+
+}  // namespace
+
+double SilhouetteView::share_of_silhouette() const {
+    return share(differing, 0.5 * (before + after + differing));
+}
+
+double SilhouetteView::share_of_picture() const {
+    return share(differing, pixels);
+}
+
+SilhouetteView SilhouetteChange::all() const {
+    SilhouetteView sum;
+    for (const SilhouetteView& view : views) {
+        sum.pixels += view.pixels;
+        sum.before += view.before;
+        sum.after += view.after;
+        sum.differing += view.differing;
+    }
+    return sum;
+}
+
+SilhouetteChange compare_silhouettes(const Mesh& before, const Mesh& after, int pixels,
+                                     const Progress* progress) {
+    if (pixels < 16 || pixels > 4096) throw Error("A silhouette is drawn with 16 to 4096 pixels.");
+    const std::array<View, 4> views = views_of(before, after, pixels);
+    SilhouetteChange change;
+    parallel_for(views.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; v++) {
+            Mask first(views[v]), second(views[v]);
+            first.draw(before, progress);
+            second.draw(after, progress);
+            SilhouetteView& view = change.views[v];
+            const int width = views[v].width / kSamples, height = views[v].height / kSamples;
+            int64_t covered_before = 0, covered_after = 0, differing = 0;
+            for (int y = 0; y < height; y++)
+                for (int x = 0; x < width; x++) {
+                    const int a = first.covered(x, y), b = second.covered(x, y);
+                    covered_before += a;
+                    covered_after += b;
+                    differing += std::abs(a - b);
+                }
+            constexpr double kPerPixel = kSamples * kSamples;
+            view = {static_cast<double>(width) * height, static_cast<double>(covered_before) / kPerPixel,
+                    static_cast<double>(covered_after) / kPerPixel,
+                    static_cast<double>(differing) / kPerPixel};
+        }
+    });
+    return change;
+}
+
+}  // namespace treerec
