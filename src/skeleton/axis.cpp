@@ -21,6 +21,8 @@ constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
 constexpr double kMostSpread = 0.12;    // median residual over radius
 constexpr double kLeastArc = 0.31;      // the same for one that is seen from one side
 constexpr double kArcSpread = 0.03;
+constexpr size_t kArcPoints = 24;       // which is enough of a stem's foot if the radius'
+constexpr double kArcError = 0.12;      // standard error is so small a share of it
 constexpr double kMostInside = 0.08;    // share of points well inside: a crown, not a stem
 constexpr double kWideSpread = 0.09;    // the same for one that is wide for its tree: bark keeps to its
 constexpr double kWideInside = 0.03;    // circle, and nothing shines through it; a hollow crown is neither
@@ -139,8 +141,8 @@ class LimbFitter {
         double reach = std::max(radius, 1.5 * spacing_[i]);
         auto [first, last] = window(i, reach);
         // Of a sparse stem, a longer piece tells what a short one cannot.
-        const bool stem = is_first_ && options_.long_windows && arc_[i] <= kStemShare * arc_.back() &&
-                          spacing_[i] > kSparseStem * radius;
+        const bool stem_foot = is_first_ && arc_[i] <= kStemShare * arc_.back();
+        const bool stem = stem_foot && options_.long_windows && spacing_[i] > kSparseStem * radius;
         const size_t wanted = stem ? kWantedOfStem : kWantedPoints;
         for (int grow = 0; grow < (stem ? 6 : 3) && begin_[last + 1] - begin_[first] < wanted; grow++) {
             reach *= 1.6;
@@ -174,6 +176,10 @@ class LimbFitter {
             if (circle->coverage >= kLeastCoverage && spread <= (wide ? kWideSpread : kMostSpread))
                 return circle;
             if (circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
+            // Of a noisy stem that is seen from one side, many points tell what few cannot.
+            if (stem_foot && !wide && circle->coverage >= kLeastArc && spread <= kMostSpread &&
+                flat.size() >= kArcPoints && circle->error <= kArcError * circle->radius)
+                return circle;
         }
         const std::optional<CircleFit> ring = fit_ring(flat);
         if (ring && plausible(*ring) && ring->coverage >= kRingCoverage && ring->inside <= kRingInside &&

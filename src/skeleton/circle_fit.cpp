@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace treerec {
 
@@ -111,6 +112,8 @@ struct Circle {
     float y = 0.0f;
     float radius = 0.0f;
     float spread = 0.0f;
+    // The radius' standard error over the points'.
+    float error = std::numeric_limits<float>::max();
 };
 
 bool circle_through(const Section& s, size_t i, size_t j, size_t k, Circle& circle) {
@@ -189,6 +192,7 @@ void refine_circle(Section& section, float max_radius, Circle& circle) {
         const double c = xy * y - yy * x;
         const double det = xx * a + xy * b + x * c;
         if (!(det > 1e-9 * xx * yy * w)) return;
+        circle.error = static_cast<float>(std::sqrt((xx * yy - xy * xy) / det));
         const double sx = (rx * a + ry * b + r * c) / det;
         const double sy = (rx * b + ry * (xx * w - x * x) + r * (x * xy - xx * y)) / det;
         const double sr = (rx * c + ry * (xy * x - xx * y) + r * (xx * yy - xy * xy)) / det;
@@ -233,6 +237,7 @@ std::optional<CircleFit> fit_circle(std::span<const DVec2> points, double max_ra
         if (dx * dx + dy * dy < kWellInside * kWellInside * circle.radius * circle.radius) inside++;
     }
     fit.spread = section.median(section.count);
+    fit.error = static_cast<double>(kMadToSigma) * fit.spread * circle.error;
     fit.inside = static_cast<double>(inside) / static_cast<double>(section.count);
     fit.coverage = static_cast<double>(std::count(hit.begin(), hit.end(), true)) / kSectors;
     return fit;

@@ -14,6 +14,7 @@ struct CircleFit {
     double radius = 0.0;
     double spread = 0.0;    // median distance of the points from the circle
     double coverage = 0.0;  // share of the circle's 16 sectors that hold points on the circle, 0..1
+    double error = 0.0;     // standard error of the radius, as the spread of the points tells
     double inside = 0.0;    // share of the points that lie well inside the circle
 };
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "skeleton/circle_fit.h"
@@ -28,6 +29,29 @@ TEST(FitCircle, FindsACircleAmongOutliers) {
         EXPECT_GE(fit->coverage, 0.5);
         EXPECT_LT(fit->spread, 0.1 * radius);
     }
+}
+
+// Arcs of half a circle: what the fit says of its error is what it errs by.
+TEST(FitCircle, KnowsItsError) {
+    std::vector<double> wrong;
+    std::vector<double> said;
+    for (uint64_t seed = 1; seed <= 201; seed++) {
+        Random random(seed);
+        std::vector<DVec2> points;
+        for (int i = 0; i < 80; i++) {
+            const double angle = random.uniform(0.0, 3.0);
+            points.push_back((1.0 + 0.05 * random.normal()) * DVec2(std::cos(angle), std::sin(angle)));
+        }
+        const std::optional<CircleFit> fit = fit_circle(points, 10.0, Random(seed));
+        ASSERT_TRUE(fit.has_value());
+        wrong.push_back(std::abs(fit->radius - 1.0));
+        said.push_back(fit->error);
+    }
+    std::sort(wrong.begin(), wrong.end());
+    std::sort(said.begin(), said.end());
+    // Half of all normal errors are below 0.67 standard errors.
+    EXPECT_GT(0.67 * said[100], 0.7 * wrong[100]);
+    EXPECT_LT(0.67 * said[100], 1.4 * wrong[100]);
 }
 
 TEST(FitCircle, RefusesLinesAndFewPoints) {

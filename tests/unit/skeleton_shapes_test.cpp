@@ -121,5 +121,28 @@ TEST(Shapes, AThickStemIsMeasured) {
     }
 }
 
+// From a car: one side alone, a point every few centimetres, noise.
+TEST(Shapes, ASparseHalfSeenStemIsMeasured) {
+    double wrong = 0.0;
+    const int kTrials = 8;
+    for (uint64_t seed = 1; seed <= kTrials; seed++) {
+        Random random(seed);
+        WoodScan scan;
+        test::add_cone(scan.cloud, random, {0, 0, 0}, {0, 4, 0}, 0.13, 0.12, 0.035, 0.014, 0.0, 0.38);
+        for (int i = 0; i < 6; i++) {
+            const DVec3 from(0.0, 3.0 + 0.15 * i, 0.0);
+            const DVec3 to = from + DVec3(1.8 * std::cos(1.1 * i), 2.2, 1.8 * std::sin(1.1 * i));
+            test::add_cone(scan.cloud, random, from, to, 0.05, 0.01, 0.03, 0.01);
+        }
+        double radius = 0.0;
+        for (const Piece& piece : pieces_of(skeletonize(scan.cloud, {}), scan))
+            if (std::min(piece.a.y, piece.b.y) <= 1.3 && std::max(piece.a.y, piece.b.y) > 1.3)
+                radius = std::max(radius, piece.radius);
+        EXPECT_GT(radius, 0.1) << seed;
+        wrong += (radius - 0.127) / kTrials;
+    }
+    EXPECT_LT(std::abs(wrong), 0.012);
+}
+
 }  // namespace
 }  // namespace treerec
