@@ -7,12 +7,15 @@
 
 #include "cli/arguments.h"
 #include "geometry/scan_frame.h"
+#include "lsystem/lstring.h"
 
 namespace treerec {
 
 // What several commands read in the same way: "--up x" (default z) and "--columns x,y,z". Throw UsageError.
 UpAxis up_axis_from(const Arguments& arguments);
 std::vector<std::string> columns_from(const Arguments& arguments);
+// "--dialect paper" (default turtle). Throws UsageError.
+LStringDialect dialect_from(const Arguments& arguments);
 
 const Command& reconstruct_command();
 void run_reconstruct(const std::vector<std::string>& words);
@@ -28,6 +31,12 @@ void run_edit(const std::vector<std::string>& words);
 
 const Command& synth_command();
 void run_synth(const std::vector<std::string>& words);
+
+const Command& lstring_command();
+void run_lstring(const std::vector<std::string>& words);
+
+const Command& grow_command();
+void run_grow(const std::vector<std::string>& words);
 
 const Command& textures_command();
 void run_textures(const std::vector<std::string>& words);

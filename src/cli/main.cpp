@@ -23,6 +23,8 @@ std::vector<Entry> entries() {
             {edit_command(), run_edit},
             {score_command(), run_score},
             {synth_command(), run_synth},
+            {lstring_command(), run_lstring},
+            {grow_command(), run_grow},
             {textures_command(), run_textures}};
 }
 

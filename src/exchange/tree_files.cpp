@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "exchange/lstring_file.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "file_bytes.h"
@@ -197,7 +198,7 @@ Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) 
 
 namespace {
 
-enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv };
+enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kLString };
 
 // From the file's first 4 kB.
 SkeletonFormat sniff(const std::string& path) {
@@ -208,6 +209,7 @@ SkeletonFormat sniff(const std::string& path) {
     if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0)
         return SkeletonFormat::kNone;
     bytes.resize(static_cast<size_t>(in.gcount()));
+    if (is_lstring_file(bytes)) return SkeletonFormat::kLString;
     std::string_view rest = bytes;
     if (rest.starts_with("ply")) {
         bool edges = false;
@@ -249,6 +251,8 @@ Tree read_skeleton(const std::string& path, UpAxis up) {
             return read_node_csv(path, up);
         case SkeletonFormat::kQsmCsv:
             return read_qsm_csv(path, up);
+        case SkeletonFormat::kLString:
+            return read_lstring_file(path).tree;
         case SkeletonFormat::kNone:
             break;
     }

@@ -2,6 +2,7 @@
 
 #include "error.h"
 #include "exchange/gltf.h"
+#include "exchange/lstring_file.h"
 #include "exchange/obj.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
@@ -13,7 +14,7 @@ namespace treerec {
 
 namespace {
 
-enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kUnknown };
+enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
 
 constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
 
@@ -24,6 +25,7 @@ Format format_of(const std::string& path) {
     if (extension == "ply") return Format::kPly;
     if (extension == "txt") return Format::kTreefile;
     if (extension == "csv") return Format::kCsv;
+    if (extension == "lstring") return Format::kLString;
     return Format::kUnknown;
 }
 
@@ -34,7 +36,7 @@ void require_writable_format(const std::string& path) {
         throw Error(
             "'" + path +
             "' names no format that can be written; end it in .glb, .gltf or .obj (the tree with bark and "
-            "leaves), or .ply, .txt or .csv (its skeleton).");
+            "leaves), or .ply, .txt, .csv or .lstring (its skeleton).");
     require_writable(path);
 }
 
@@ -85,6 +87,8 @@ void TreeExporter::write(const std::string& path) {
             return write_treefile(path, tree_);
         case Format::kCsv:
             return write_qsm_csv(path, tree_);
+        case Format::kLString:
+            return write_lstring_file(path, tree_, {}, progress_);
         case Format::kUnknown:
             return require_writable_format(path);
         case Format::kGltf:

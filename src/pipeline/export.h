@@ -28,8 +28,8 @@ class TreeExporter {
     TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);
 
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
-    // the tree has it; with leaves) or .ply .txt .csv (the skeleton in scan coordinates). Throws Error for
-    // another extension, or if it cannot be written.
+    // the tree has it; with leaves) or .ply .txt .csv .lstring (the skeleton in scan coordinates). Throws
+    // Error for another extension, or if it cannot be written.
     void write(const std::string& path);
 
     size_t triangles();  // of bark and leaves together

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "exchange/lstring_file.h"
+#include "file_bytes.h"
+#include "lsystem/grammar.h"
+#include "pipeline/export.h"
+#include "tree/measure.h"
+
+namespace treerec {
+
+namespace {
+
+std::string preset_list() {
+    std::string names;
+    for (const std::string& name : grammar_preset_names())
+        names += (names.empty() ? "" : " ") + name;
+    return names;
+}
+
+// The text of a file, or of a grammar that ships with the program.
+std::string source_text(const std::string& name) {
+    std::error_code failure;
+    const std::vector<std::string> presets = grammar_preset_names();
+    if (!std::filesystem::exists(path_of(name), failure)) {
+        if (std::find(presets.begin(), presets.end(), name) != presets.end()) return grammar_preset(name);
+        throw Error("There is no file '" + name + "', and no grammar of that name; there are " +
+                    preset_list() + ".");
+    }
+    return std::string(read_file(name).view());
+}
+
+struct Grown {
+    LStringTree read;
+    std::string string;      // as it was drawn; empty for one that was read from a file
+    LStringOptions options;  // by which it was drawn
+};
+
+Grown grow(const std::string& name, const std::string& text, const Arguments& arguments,
+           const Progress& progress) {
+    Grown grown;
+    LStringOptions& options = grown.options;
+    const bool grammatical = is_grammar(text);
+    Grammar grammar;
+    if (grammatical) {
+        grammar = Grammar::parse(text);
+        options = grammar.turtle;
+    }
+    if (arguments.has("--dialect")) options.dialect = dialect_from(arguments);
+    options.angle = arguments.number("--angle", options.angle, -360.0, 360.0);
+    options.step = arguments.number("--step", options.step, 1e-6, 1e3);
+    options.radius = arguments.number("--radius", options.radius, 1e-6, 1e3);
+    options.angle_spread = arguments.number("--vary-angle", 0.0, 0.0, 90.0);
+    options.length_spread = arguments.number("--vary-length", 0.0, 0.0, 0.9);
+    options.seed = arguments.whole("--seed", grammatical ? grammar.seed : 1, 0, UINT64_MAX);
+    if (!grammatical) {
+        if (arguments.has("--iterations"))
+            throw UsageError("'" + name + "' is an L-string, which has no iterations.");
+        grown.read = parse_lstring_file(text, name, options, &progress);
+        return grown;
+    }
+    RewriteOptions rewriting;
+    rewriting.seed = options.seed;
+    rewriting.iterations = static_cast<int>(
+        arguments.whole("--iterations", static_cast<uint64_t>(grammar.iterations), 0, 10000));
+    grown.string = rewrite(grammar, rewriting, &progress);
+    grown.read = read_lstring_with_leaves(grown.string, options, &progress);
+    return grown;
+}
+
+bool wants_string(const std::string& path) {
+    return extension_of(path) == "lstring";
+}
+
+}  // namespace
+
+const Command& grow_command() {
+    static const Command command{
+        "grow",
+        "grow STRING-OR-GRAMMAR -o FILE [options]",
+        "Makes a tree from an L-string or a grammar.",
+        {{"-o", "FILE",
+          "the file to write: .glb .gltf .obj .ply .txt .csv, or .lstring for the string; again for more",
+          true},
+         {"--seed", "N", "what is drawn by chance (default: the grammar's)"},
+         {"--iterations", "N", "of the grammar (default: its own)"},
+         {"--dialect", "NAME", "of an L-string: turtle or paper (default: as it says itself, or turtle)"},
+         {"--angle", "A", "degrees of + - & ^ \\ / without a number"},
+         {"--step", "M", "metres of F without a number"},
+         {"--radius", "M", "metres, where no ! says it"},
+         {"--vary-angle", "A", "vary every segment's direction by up to so many degrees (default 0)"},
+         {"--vary-length", "F", "vary every segment's length by up to this share (default 0)"},
+         {"--leaves", "NAME", "the leaf preset of models (default generic; none)"},
+         {"--quiet", "", "print errors only"}},
+        "STRING-OR-GRAMMAR: a file, or one of the program's own grammars: " + preset_list() + "."};
+    return command;
+}
+
+void run_grow(const std::vector<std::string>& words) {
+    const Arguments arguments(grow_command(), words);
+    const std::vector<std::string>& positional = arguments.positional();
+    if (positional.empty())
+        throw UsageError("What should grow? Name an L-string, a grammar or one of: " + preset_list() + ".");
+    if (positional.size() > 1)
+        throw UsageError("'" + positional[1] + "' is too much; name files to write with -o.");
+    const std::vector<std::string>& outs = arguments.all("-o");
+    if (outs.empty()) throw UsageError("Where to? Name at least one file to write with -o.");
+    ExportOptions exports;
+    exports.textures = arguments.text("--leaves", "generic");
+    try {
+        exports.leaves = leaf_preset(exports.textures);
+        for (const std::string& out : outs)
+            if (!wants_string(out))
+                require_writable_format(out);
+            else
+                require_writable(out);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet);
+    progress.update(0.0, "Growing");
+    const Grown grown = grow(positional[0], source_text(positional[0]), arguments, progress);
+    const Tree& tree = grown.read.tree;
+    exports.seed = grown.options.seed;
+    if (!grown.read.leaves.empty()) {
+        std::vector<Vec3> places;
+        for (const LStringLeaf& leaf : grown.read.leaves)
+            places.push_back(Vec3(leaf.position));
+        exports.foliage = gather_foliage(places, {}, &progress);
+    }
+    TreeExporter exporter(tree, exports, &progress);
+    for (size_t i = 0; i < outs.size(); i++) {
+        progress.check();
+        progress.update(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
+        if (wants_string(outs[i]) && !grown.string.empty())
+            write_file(outs[i], lstring_file_text(grown.string, tree.frame(), grown.options));
+        else
+            exporter.write(outs[i]);
+    }
+    progress.clear();
+    if (quiet) return;
+    const Measurements m = measure(tree);
+    std::printf("a %.2f m high tree, %zu nodes, %zu tips, %.1f m of wood\n", m.height, m.nodes, m.tips,
+                m.total_length);
+    for (const std::string& out : outs)
+        std::printf("wrote %s\n", out.c_str());
+}
+
+}  // namespace treerec

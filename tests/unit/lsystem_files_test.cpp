@@ -1,0 +1,226 @@
+// L-strings in files, and the commands 'lstring' and 'grow' of the program (which TREEREC_CLI names).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#ifndef _WIN32
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
+#include "error.h"
+#include "exchange/lstring_file.h"
+#include "exchange/tree_files.h"
+#include "lsystem/grammar.h"
+#include "random_tree.h"
+
+namespace treerec {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LStringFiles : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  ("treerec_lstring_" + std::to_string(::getpid()) + "_" +
+                   std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string get(const std::string& name) const {
+        std::ifstream in(path(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    std::string put(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+        return path(name);
+    }
+
+    // Runs "treerec <words>" in the test's folder; its exit code.
+    int run(const std::string& words) const {
+        const std::string program = fs::absolute(std::getenv("TREEREC_CLI")).string();
+        const std::string command = "cd '" + folder_.string() + "' && timeout 120 '" + program + "' " +
+                                    words + " >stdout.log 2>stderr.log </dev/null";
+        const int status = std::system(command.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
+    }
+
+    fs::path folder_;
+};
+
+#define SKIP_WITHOUT_PROGRAM()                                                  \
+    if (!std::getenv("TREEREC_CLI") || !fs::exists(std::getenv("TREEREC_CLI"))) \
+    GTEST_SKIP() << "TREEREC_CLI does not name the program"
+
+ScanFrame utm_frame() {
+    ScanFrame frame;
+    frame.origin = DVec3(500123.4567890123, 5432109.876543, 231.5);
+    frame.metres_per_unit = 0.3048;
+    frame.up = UpAxis::kZ;
+    return frame;
+}
+
+// Places in the scan within 1e-5 of each segment's length, in order, with their flags.
+void expect_same_in_scan(const Tree& a, const Tree& b) {
+    const std::vector<NodeId> in_a = a.depth_first(), in_b = b.depth_first();
+    ASSERT_EQ(in_a.size(), in_b.size());
+    EXPECT_EQ(a.frame().up, b.frame().up);
+    EXPECT_EQ(a.frame().metres_per_unit, b.frame().metres_per_unit);
+    for (size_t i = 0; i < in_a.size(); i++) {
+        const Node &x = a.node(in_a[i]), &y = b.node(in_b[i]);
+        const double length =
+            x.parent == kNoNode ? 0.0 : glm::distance(x.position, a.node(x.parent).position);
+        const double off = glm::distance(a.frame().to_scan(x.position), b.frame().to_scan(y.position)) *
+                           a.frame().metres_per_unit;
+        // A double is that coarse at these coordinates.
+        ASSERT_LE(off, 1e-5 * length + 5e-9);
+        ASSERT_NEAR(x.radius, y.radius, 1e-4 * std::min(1.0, x.radius));
+        ASSERT_EQ(x.flags, y.flags);
+        ASSERT_EQ(x.child_count, y.child_count);
+    }
+}
+
+TEST_F(LStringFiles, ComeBackInTheirOwnCoordinates) {
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        Tree tree = test::random_tree(seed, 400);
+        tree.set_frame(utm_frame());
+        tree.rebase({1.0, 2.0, 3.0});
+        write_lstring_file(path("tree.lstring"), tree);
+        EXPECT_TRUE(is_skeleton_file(path("tree.lstring")));
+        const Tree back = read_skeleton(path("tree.lstring"));
+        expect_same_in_scan(tree, back);
+        EXPECT_EQ(back.node(back.root()).position, DVec3(0.0));
+        LStringOptions paper;
+        paper.dialect = LStringDialect::kPaper;
+        write_lstring_file(path("paper.lstring"), tree, paper);
+        const LStringTree read = read_lstring_file(path("paper.lstring"));
+        ASSERT_EQ(read.tree.size(), tree.size());
+    }
+}
+
+TEST_F(LStringFiles, HaveShortLinesAndReadTheSame) {
+    const Tree tree = test::random_tree(3, 3000);
+    const std::string string = write_lstring(tree, tree.root());
+    const std::string text = lstring_file_text(string, {}, {});
+    std::string_view rest = text;
+    size_t longest = 0;
+    for (size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+        end = text.find('\n', at);
+        ASSERT_NE(end, std::string::npos);
+        if (at > 0) longest = std::max(longest, end - at);
+    }
+    EXPECT_LT(longest, 140u);
+    EXPECT_EQ(write_lstring(read_lstring(text), 0), write_lstring(read_lstring(string), 0));
+    EXPECT_TRUE(
+        rest.starts_with("# L-string; treerec 1 up y metres_per_unit 1 origin 0 0 0 dialect turtle\n"));
+}
+
+TEST_F(LStringFiles, CarryWhatTheirNumberlessSymbolsMean) {
+    LStringOptions options;
+    options.angle = 90.0;
+    options.step = 2.0;
+    options.radius = 0.5;
+    options.thinning = 0.5;
+    options.leaf_symbols = "L";
+    options.tropism = {0, -1, 0};
+    options.elasticity = 0.125;
+    const std::string text = lstring_file_text("F!+FL~", {}, options);
+    const LStringTree read = parse_lstring_file(text, "a file");
+    const LStringTree wanted = read_lstring_with_leaves("F!+FL~", options);
+    EXPECT_EQ(write_lstring(read.tree, 0), write_lstring(wanted.tree, 0));
+    EXPECT_EQ(read.leaves.size(), 2u);
+    EXPECT_EQ(read.leaves[0].kind, 'L');
+}
+
+TEST_F(LStringFiles, DamagedOnesAreRefused) {
+    const auto sentence = [](const std::string& bytes) -> std::string {
+        try {
+            parse_lstring_file(bytes, "x.lstring");
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_EQ(
+        sentence("F(1)\nF)"),
+        "'x.lstring' holds no L-string that can be read: The L-string, line 2, column 2: ')' is no symbol "
+        "of an L-string.");
+    EXPECT_EQ(sentence("# L-string; treerec 2 up z metres_per_unit 1\nF"),
+              "'x.lstring' was written by a newer version of this program; update to open it.");
+    EXPECT_EQ(sentence("# L-string; treerec 1 up z\nF"), "'x.lstring', line 1, is damaged.");
+    EXPECT_EQ(sentence("# L-string; treerec 1 up z metres_per_unit 1 origin 1 2\nF"),
+              "'x.lstring', line 1: '' is no number.");
+    EXPECT_EQ(sentence("# L-string; treerec 1 up z metres_per_unit 1 radius nan\nF"),
+              "'x.lstring', line 1: 'nan' is no number.");
+    EXPECT_EQ(sentence("# L-string; treerec 1 up z metres_per_unit 1 radius -1\nF"),
+              "'x.lstring' holds no L-string that can be read: An L-string's radius must be positive.");
+}
+
+TEST_F(LStringFiles, ATreeFileGoesThroughLstringAndGrow) {
+    SKIP_WITHOUT_PROGRAM();
+    Tree tree = test::random_tree(5, 700);
+    tree.set_frame(utm_frame());
+    write_treefile(path("a.txt"), tree);
+    ASSERT_EQ(run("lstring a.txt -o a.lstring"), 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lstring -o b.txt -o b.glb -o b.lstring"), 0) << get("stderr.log");
+    expect_same_in_scan(read_treefile(path("a.txt")), read_treefile(path("b.txt")));
+    EXPECT_GT(fs::file_size(path("b.glb")), 10000u);
+    ASSERT_EQ(run("info b.lstring"), 0) << get("stderr.log");
+    EXPECT_NE(get("stdout.log").find("700"), std::string::npos);
+    // On the terminal, and of a branch alone.
+    ASSERT_EQ(run("lstring a.txt --node 300 --no-flags"), 0) << get("stderr.log");
+    const std::string branch = get("stdout.log");
+    EXPECT_TRUE(branch.starts_with("!(")) << branch;
+    EXPECT_EQ(branch.find('@'), std::string::npos);
+    // The node, all above it, and the joint below it.
+    EXPECT_EQ(read_lstring(branch).size(), read_treefile(path("a.txt")).depth_first(300).size() + 1);
+}
+
+TEST_F(LStringFiles, GrammarsGrow) {
+    SKIP_WITHOUT_PROGRAM();
+    put("a.lsys",
+        "iterations: 3\nangle: 30\nstep: 0.5\nradius: 0.05\naxiom: X\nX -> F[+X]F[-X]~ : 0.5\nX -> FX : "
+        "0.5\nF -> FF\n");
+    ASSERT_EQ(run("grow a.lsys --seed 4 -o a.txt -o a.lstring -o a.glb"), 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lsys --seed 4 -o b.txt"), 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lsys --seed 5 -o c.txt"), 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lstring -o d.txt"), 0) << get("stderr.log");
+    EXPECT_EQ(get("a.txt"), get("b.txt"));
+    EXPECT_NE(get("a.txt"), get("c.txt"));
+    EXPECT_EQ(get("a.txt"), get("d.txt"));
+    EXPECT_EQ(run("grow a.lsys --iterations 40 -o e.txt"), 1);
+    EXPECT_NE(get("stderr.log").find("grows past 5000000 symbols"), std::string::npos) << get("stderr.log");
+    for (const std::string& name : grammar_preset_names())
+        EXPECT_EQ(run("grow " + name + " -o " + name + ".ply --quiet"), 0) << get("stderr.log");
+}
+
+TEST_F(LStringFiles, WrongCommandLinesAreTold) {
+    SKIP_WITHOUT_PROGRAM();
+    put("a.lstring", "F[");
+    put("b.lstring", "F(1)[+F(1)]");
+    for (const auto& [words, code] :
+         std::vector<std::pair<std::string, int>>{{"grow", 2},
+                                                  {"grow b.lstring", 2},
+                                                  {"grow b.lstring -o x.xyz", 2},
+                                                  {"grow b.lstring -o x.txt --iterations 3", 2},
+                                                  {"grow b.lstring -o x.txt --dialect french", 2},
+                                                  {"grow b.lstring -o x.txt --leaves lettuce", 2},
+                                                  {"grow a.lstring -o x.txt", 1},
+                                                  {"grow nothing.lstring -o x.txt", 1},
+                                                  {"lstring", 2},
+                                                  {"lstring nothing.txt -o x.lstring", 1},
+                                                  {"lstring b.lstring --accuracy 5 -o x.lstring", 2}}) {
+        EXPECT_EQ(run(words), code) << words;
+        EXPECT_GT(get("stderr.log").size(), 20u) << words;
+        EXPECT_FALSE(fs::exists(path("x.txt")) || fs::exists(path("x.lstring"))) << words;
+    }
+}
+
+}  // namespace
+}  // namespace treerec
