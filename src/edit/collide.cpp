@@ -14,20 +14,17 @@ namespace treerec {
 namespace {
 
 constexpr double kMostCells = 1 << 18;
+constexpr double kTaper = 1.6;        // how much thicker a segment may start than it ends
 constexpr size_t kCheckEvery = 4096;  // segments between two looks at the progress
 
-struct Capsule {
-    DVec3 a, b;
-    double ra, rb;
-    NodeId id;
+using Capsule = StandingWood::Segment;
 
-    Bounds bounds() const {
-        Bounds box;
-        box.add(a, ra);
-        box.add(b, rb);
-        return box;
-    }
-};
+Bounds bounds_of(const Capsule& capsule) {
+    Bounds box;
+    box.add(capsule.a, capsule.ra);
+    box.add(capsule.b, capsule.rb);
+    return box;
+}
 
 bool overlap(const Bounds& a, const Bounds& b) {
     return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
@@ -66,7 +63,7 @@ class CapsuleGrid {
         double length = 0.0;
         double thick = 0.0;
         for (const Capsule& capsule : capsules) {
-            Bounds box = capsule.bounds();
+            const Bounds box = bounds_of(capsule);
             box_.add(box.min - clearance);
             box_.add(box.max + clearance);
             length += glm::distance(capsule.a, capsule.b);
@@ -154,20 +151,23 @@ class CapsuleGrid {
     std::vector<uint32_t> items_;
 };
 
+// The segment that ends at `id`; not for the root.
+Capsule capsule_of(const Tree& tree, NodeId id) {
+    const Node& node = tree.node(id);
+    const Node& parent = tree.node(node.parent);
+    // A branch that leaves stouter wood begins about as thick as it goes on.
+    const double from = std::min(parent.radius, kTaper * node.radius);
+    return {parent.position, node.position, from, node.radius, id};
+}
+
 // skip: by id, the segments to leave out.
 std::vector<Capsule> capsules_of(const Tree& tree, const std::vector<NodeId>& ids,
                                  const std::vector<uint8_t>* skip) {
     std::vector<Capsule> capsules;
     capsules.reserve(ids.size());
-    for (NodeId id : ids) {
-        const Node& node = tree.node(id);
-        if (node.parent == kNoNode || (skip && (*skip)[id])) continue;
-        const Node& parent = tree.node(node.parent);
-        // A branch that leaves stouter wood begins with its own radius.
-        const bool on = parent.child_count == 1 || node.radius > 0.6 * parent.radius;
-        const double from = on ? parent.radius : node.radius;
-        capsules.push_back({parent.position, node.position, from, node.radius, id});
-    }
+    for (NodeId id : ids)
+        if (tree.node(id).parent != kNoNode && !(skip && (*skip)[id]))
+            capsules.push_back(capsule_of(tree, id));
     return capsules;
 }
 
@@ -180,7 +180,7 @@ std::vector<Collision> collide(const std::vector<Capsule>& standing, const std::
     for (size_t i = 0; i < standing.size(); i++) {
         if (progress && i % kCheckEvery == 0) progress->check();
         const Capsule& other = standing[i];
-        if (!overlap(other.bounds(), grid.box())) continue;
+        if (!overlap(bounds_of(other), grid.box())) continue;
         grid.for_near(other, [&](uint32_t g) {
             if (seen[g] == i + 1) return;
             seen[g] = static_cast<uint32_t>(i + 1);
@@ -217,10 +217,16 @@ double joint_reach(const Tree& tree, NodeId joint, NodeId own_child, double own,
     return 1.2 * (host.radius + own + clearance) / std::max(sine, 0.25);
 }
 
-std::vector<Collision> find_collisions(const Tree& tree, const Tree& wood, const CollisionOptions& options,
-                                       const Progress* progress) {
-    return collide(capsules_of(tree, tree.depth_first(), nullptr),
-                   capsules_of(wood, wood.depth_first(), nullptr), options, progress);
+StandingWood::StandingWood(const Tree& tree) : segments_(capsules_of(tree, tree.depth_first(), nullptr)) {}
+
+void StandingWood::add(const Tree& tree, const std::vector<NodeId>& ids) {
+    for (NodeId id : ids)
+        segments_.push_back(capsule_of(tree, id));
+}
+
+std::vector<Collision> find_collisions(const StandingWood& standing, const Tree& wood,
+                                       const CollisionOptions& options, const Progress* progress) {
+    return collide(standing.segments(), capsules_of(wood, wood.depth_first(), nullptr), options, progress);
 }
 
 std::vector<Collision> find_collisions(const Tree& tree, NodeId child, double clearance,

@@ -25,11 +25,30 @@ struct CollisionOptions {
     double joint_reach = 0.0;
 };
 
-// The collisions of `wood`, a tree of its own in the tree space of `tree`, with every segment of `tree`;
-// Collision::grafted is an id of `wood`. By ascending ids. Segments are taken as straight, with the radius
-// between both ends interpolated. Linear where the wood is not crowded. Throws Cancelled.
-std::vector<Collision> find_collisions(const Tree& tree, const Tree& wood, const CollisionOptions& options,
-                                       const Progress* progress = nullptr);
+// The segments of a tree as capsules, kept for several questions while the tree grows.
+class StandingWood {
+  public:
+    struct Segment {
+        DVec3 a, b;     // tree space
+        double ra, rb;  // metres, at either end; between them it tapers
+        NodeId id;      // of its upper node
+    };
+
+    explicit StandingWood(const Tree& tree);
+    // The segments that end at `ids`, which are new in the tree and not its root.
+    void add(const Tree& tree, const std::vector<NodeId>& ids);
+
+    const std::vector<Segment>& segments() const { return segments_; }
+
+  private:
+    std::vector<Segment> segments_;
+};
+
+// The collisions of `wood`, a tree of its own in the same tree space, with what stands; Collision::grafted is
+// an id of `wood`. By ascending ids. A segment starts at most 1.6 times as thick as it ends. Linear where the
+// wood is not crowded. Throws Cancelled.
+std::vector<Collision> find_collisions(const StandingWood& standing, const Tree& wood,
+                                       const CollisionOptions& options, const Progress* progress = nullptr);
 
 // The collisions of the subtree on the segment to `child` with the rest of its tree, about their joint
 // excepted as graft() excepts it. Throws Error for an unknown id or a negative clearance.

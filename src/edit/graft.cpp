@@ -145,7 +145,8 @@ struct Attempt {
     }
 };
 
-Attempt attempt(const Joint& joint, uint64_t seed, int number, const Progress* progress) {
+Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed, int number,
+                const Progress* progress) {
     Attempt made;
     made.seed = number == 0 ? seed : hash_seed(seed, static_cast<uint64_t>(number));
     if (number > 0) made.spin = Random(made.seed, 1).uniform(0.0, 360.0);
@@ -170,7 +171,7 @@ Attempt attempt(const Joint& joint, uint64_t seed, int number, const Progress* p
     const double own = std::min(there.node(there.root()).radius, host.radius);
     const DVec3 away = normalized_or(axes * joint.own, DVec3(0.0, 1.0, 0.0));
     collision.joint_reach = joint_reach(joint.tree, joint.host, kNoNode, own, away, joint.options.clearance);
-    made.collisions = find_collisions(joint.tree, there, collision, progress);
+    made.collisions = find_collisions(standing, there, collision, progress);
     for (const Collision& one : made.collisions)
         made.depth += one.depth;
     return made;
@@ -179,6 +180,38 @@ Attempt attempt(const Joint& joint, uint64_t seed, int number, const Progress* p
 void require_host(const Tree& tree, NodeId host) {
     if (!tree.contains(host))
         throw Error("There is no node " + std::to_string(host) + " in this tree to graft onto.");
+}
+
+GraftResult graft_beside(Tree& tree, StandingWood& standing, NodeId host, const Tree& scion,
+                         const GraftOptions& options, const Progress* progress) {
+    require_host(tree, host);
+    require_scion(scion);
+    require_options(options);
+    const Joint joint = plan_joint(tree, host, scion, options);
+    Attempt best;
+    int tries = 0;
+    while (tries < options.tries && (tries == 0 || !best.collisions.empty())) {
+        if (progress) progress->check();
+        Attempt made = attempt(joint, standing, options.seed, tries, progress);
+        if (tries++ == 0 || made.better_than(best)) best = std::move(made);
+    }
+    GraftResult result;
+    result.host = host;
+    result.scale = joint.scale;
+    result.seed = best.seed;
+    result.spin = best.spin;
+    result.tries = tries;
+    result.added = place_scion(tree, host, best.wood, {});
+    // Ids of the wood become ids of the tree.
+    std::vector<NodeId> moved(static_cast<size_t>(best.wood.id_end()), kNoNode);
+    const std::vector<NodeId> order = best.wood.depth_first();
+    for (size_t i = 1; i < order.size(); i++)
+        moved[order[i]] = result.added[i - 1];
+    standing.add(tree, result.added);
+    result.collisions = std::move(best.collisions);
+    for (Collision& one : result.collisions)
+        one.grafted = moved[one.grafted];
+    return result;
 }
 
 }  // namespace
@@ -215,32 +248,8 @@ void smooth_joint(Tree& wood, double host_radius, double ratio, bool blend) {
 GraftResult graft(Tree& tree, NodeId host, const Tree& scion, const GraftOptions& options,
                   const Progress* progress) {
     require_host(tree, host);
-    require_scion(scion);
-    require_options(options);
-    const Joint joint = plan_joint(tree, host, scion, options);
-    Attempt best;
-    int tries = 0;
-    while (tries < options.tries && (tries == 0 || !best.collisions.empty())) {
-        if (progress) progress->check();
-        Attempt made = attempt(joint, options.seed, tries, progress);
-        if (tries++ == 0 || made.better_than(best)) best = std::move(made);
-    }
-    GraftResult result;
-    result.host = host;
-    result.scale = joint.scale;
-    result.seed = best.seed;
-    result.spin = best.spin;
-    result.tries = tries;
-    result.added = place_scion(tree, host, best.wood, {});
-    // Ids of the wood become ids of the tree.
-    std::vector<NodeId> moved(static_cast<size_t>(best.wood.id_end()), kNoNode);
-    const std::vector<NodeId> order = best.wood.depth_first();
-    for (size_t i = 1; i < order.size(); i++)
-        moved[order[i]] = result.added[i - 1];
-    result.collisions = std::move(best.collisions);
-    for (Collision& one : result.collisions)
-        one.grafted = moved[one.grafted];
-    return result;
+    StandingWood standing(tree);
+    return graft_beside(tree, standing, host, scion, options, progress);
 }
 
 std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, std::span<const Tree> scions,
@@ -249,13 +258,14 @@ std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, s
         require_host(tree, host);
     if (scions.empty()) throw Error("There is no branch to graft.");
     const Tree before = tree;
+    StandingWood standing(tree);
     std::vector<GraftResult> results;
     try {
         for (size_t i = 0; i < hosts.size(); i++) {
             GraftOptions own = options;
             own.seed = hash_seed(options.seed, i);
             const uint32_t which = Random(own.seed, 2).below(static_cast<uint32_t>(scions.size()));
-            results.push_back(graft(tree, hosts[i], scions[which], own, progress));
+            results.push_back(graft_beside(tree, standing, hosts[i], scions[which], own, progress));
         }
     } catch (...) {
         tree = before;

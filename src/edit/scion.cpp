@@ -108,6 +108,9 @@ std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
                                 const ScionPlacement& placement) {
     if (!tree.contains(joint)) throw Error("There is no node " + std::to_string(joint) + " in this tree.");
     require_scion(scion);
+    if (static_cast<int64_t>(tree.id_end()) + static_cast<int64_t>(scion.size()) > int64_t{kLargestId} + 2)
+        throw Error("The tree would have more than " + std::to_string(kLargestId) +
+                    " nodes, which no file could hold: graft less, or lighten the tree first.");
     const DVec3 foot = scion.node(scion.root()).position;
     const DVec3 place = tree.node(joint).position;
     const std::vector<NodeId> order = scion.depth_first();

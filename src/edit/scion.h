@@ -50,7 +50,7 @@ struct ScionPlacement {
 // Hangs the scion's nodes (all but its root, which the joint stands for) under `joint` as last children and
 // returns their ids, in the scion's depth-first order. Of the flags only kGuessFlag stays: nothing of it was
 // measured here, and the trunk is the tree's own affair. Throws Error, before anything changes, for an
-// unknown joint, for no scion, or where a number would overflow.
+// unknown joint, for no scion, where a number would overflow, or for more nodes than kLargestId.
 std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion, const ScionPlacement& placement);
 
 }  // namespace treerec

@@ -129,5 +129,16 @@ TEST(EditGraftScion, RefusesWhatIsNone) {
     EXPECT_EQ(tree.check(), std::nullopt);
 }
 
+TEST(EditGraftScion, LeavesRoomForIds) {
+    const std::vector<NodeId> ids{0, kLargestId - 1};
+    Tree tree = Tree::from_arrays({-1, 0}, {DVec3(0), DVec3(0, 1, 0)}, {1, 1}, {0, 0}, &ids);
+    Tree scion;
+    scion.add_root({0, 0, 0}, 0.1);
+    scion.add_child(0, {0, 1, 0}, 0.1);
+    EXPECT_EQ(place_scion(tree, 0, scion, {})[0], kLargestId);
+    EXPECT_THROW(place_scion(tree, 0, scion, {}), Error);
+    EXPECT_EQ(tree.size(), 3u);
+}
+
 }  // namespace
 }  // namespace treerec
