@@ -14,8 +14,8 @@ namespace treerec {
 namespace {
 
 constexpr double kMostCells = 1 << 18;
-constexpr double kTaper = 1.6;        // how much thicker a segment may start than it ends
-constexpr size_t kCheckEvery = 4096;  // segments between two looks at the progress
+constexpr double kTaper = 1.6;  // how much thicker a segment may start than it ends
+constexpr size_t kRunLength = 64;
 
 using Capsule = StandingWood::Segment;
 
@@ -160,39 +160,39 @@ Capsule capsule_of(const Tree& tree, NodeId id) {
     return {parent.position, node.position, from, node.radius, id};
 }
 
-// skip: by id, the segments to leave out.
-std::vector<Capsule> capsules_of(const Tree& tree, const std::vector<NodeId>& ids,
-                                 const std::vector<uint8_t>* skip) {
+std::vector<Capsule> capsules_of(const Tree& tree, const std::vector<NodeId>& ids) {
     std::vector<Capsule> capsules;
     capsules.reserve(ids.size());
     for (NodeId id : ids)
-        if (tree.node(id).parent != kNoNode && !(skip && (*skip)[id]))
-            capsules.push_back(capsule_of(tree, id));
+        if (tree.node(id).parent != kNoNode) capsules.push_back(capsule_of(tree, id));
     return capsules;
 }
 
-std::vector<Collision> collide(const std::vector<Capsule>& standing, const std::vector<Capsule>& grafted,
-                               const CollisionOptions& options, const Progress* progress) {
+std::vector<Collision> collide(const StandingWood& standing, const std::vector<Capsule>& grafted,
+                               const CollisionOptions& options, const std::vector<uint8_t>* skip,
+                               const Progress* progress) {
     std::vector<Collision> found;
-    if (standing.empty() || grafted.empty()) return found;
+    if (grafted.empty()) return found;
     const CapsuleGrid grid(grafted, options.clearance);
-    std::vector<uint32_t> seen(grafted.size(), 0);  // 1 + the index of the last segment it was tried with
-    for (size_t i = 0; i < standing.size(); i++) {
-        if (progress && i % kCheckEvery == 0) progress->check();
-        const Capsule& other = standing[i];
-        if (!overlap(bounds_of(other), grid.box())) continue;
-        grid.for_near(other, [&](uint32_t g) {
-            if (seen[g] == i + 1) return;
-            seen[g] = static_cast<uint32_t>(i + 1);
-            const Capsule& mine = grafted[g];
-            const auto [s, t] = nearest(mine, other);
-            const DVec3 p = mine.a + (mine.b - mine.a) * s;
-            const DVec3 q = other.a + (other.b - other.a) * t;
-            const double radii = mine.ra + (mine.rb - mine.ra) * s + other.ra + (other.rb - other.ra) * t;
-            const double depth = radii + options.clearance - glm::distance(p, q);
-            if (depth <= 0.0 || glm::distance(p, options.joint) <= options.joint_reach) return;
-            found.push_back({mine.id, other.id, depth, 0.5 * (p + q)});
-        });
+    std::vector<NodeId> seen(grafted.size(), kNoNode);  // the last segment that it was tried with
+    for (const StandingWood::Run& run : standing.runs()) {
+        if (!overlap(run.box, grid.box())) continue;
+        if (progress) progress->check();
+        for (const Capsule& other : run.segments) {
+            if ((skip && (*skip)[other.id]) || !overlap(bounds_of(other), grid.box())) continue;
+            grid.for_near(other, [&](uint32_t g) {
+                if (seen[g] == other.id) return;
+                seen[g] = other.id;
+                const Capsule& mine = grafted[g];
+                const auto [s, t] = nearest(mine, other);
+                const DVec3 p = mine.a + (mine.b - mine.a) * s;
+                const DVec3 q = other.a + (other.b - other.a) * t;
+                const double radii = mine.ra + (mine.rb - mine.ra) * s + other.ra + (other.rb - other.ra) * t;
+                const double depth = radii + options.clearance - glm::distance(p, q);
+                if (depth <= 0.0 || glm::distance(p, options.joint) <= options.joint_reach) return;
+                found.push_back({mine.id, other.id, depth, 0.5 * (p + q)});
+            });
+        }
     }
     std::sort(found.begin(), found.end(), [](const Collision& a, const Collision& b) {
         return std::tie(a.grafted, a.other) < std::tie(b.grafted, b.other);
@@ -217,16 +217,31 @@ double joint_reach(const Tree& tree, NodeId joint, NodeId own_child, double own,
     return 1.2 * (host.radius + own + clearance) / std::max(sine, 0.25);
 }
 
-StandingWood::StandingWood(const Tree& tree) : segments_(capsules_of(tree, tree.depth_first(), nullptr)) {}
+StandingWood::StandingWood(const Tree& tree) {
+    runs_.reserve(tree.size() / kRunLength + 1);
+    for (NodeId id : tree.depth_first())
+        if (tree.node(id).parent != kNoNode) add(capsule_of(tree, id));
+}
+
+void StandingWood::add(const Segment& segment) {
+    if (runs_.empty() || runs_.back().segments.size() == kRunLength) {
+        runs_.emplace_back();
+        runs_.back().segments.reserve(kRunLength);
+    }
+    const Bounds box = bounds_of(segment);
+    runs_.back().segments.push_back(segment);
+    runs_.back().box.add(box.min);
+    runs_.back().box.add(box.max);
+}
 
 void StandingWood::add(const Tree& tree, const std::vector<NodeId>& ids) {
     for (NodeId id : ids)
-        segments_.push_back(capsule_of(tree, id));
+        add(capsule_of(tree, id));
 }
 
 std::vector<Collision> find_collisions(const StandingWood& standing, const Tree& wood,
                                        const CollisionOptions& options, const Progress* progress) {
-    return collide(standing.segments(), capsules_of(wood, wood.depth_first(), nullptr), options, progress);
+    return collide(standing, capsules_of(wood, wood.depth_first()), options, nullptr, progress);
 }
 
 std::vector<Collision> find_collisions(const Tree& tree, NodeId child, double clearance,
@@ -247,8 +262,7 @@ std::vector<Collision> find_collisions(const Tree& tree, NodeId child, double cl
     options.clearance = clearance;
     options.joint = host.position;
     options.joint_reach = joint_reach(tree, joint, child, own, away, clearance);
-    return collide(capsules_of(tree, tree.depth_first(), &skip), capsules_of(tree, above, nullptr), options,
-                   progress);
+    return collide(StandingWood(tree), capsules_of(tree, above), options, &skip, progress);
 }
 
 }  // namespace treerec

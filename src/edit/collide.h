@@ -38,10 +38,17 @@ class StandingWood {
     // The segments that end at `ids`, which are new in the tree and not its root.
     void add(const Tree& tree, const std::vector<NodeId>& ids);
 
-    const std::vector<Segment>& segments() const { return segments_; }
+    // Runs of neighbouring segments, and the box about each.
+    struct Run {
+        std::vector<Segment> segments;
+        Bounds box;
+    };
+    const std::vector<Run>& runs() const { return runs_; }
 
   private:
-    std::vector<Segment> segments_;
+    void add(const Segment& segment);
+
+    std::vector<Run> runs_;
 };
 
 // The collisions of `wood`, a tree of its own in the same tree space, with what stands; Collision::grafted is

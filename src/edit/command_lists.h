@@ -8,5 +8,6 @@
 namespace treerec {
 
 std::vector<EditCommand> prune_commands();
+std::vector<EditCommand> graft_commands();
 
 }  // namespace treerec

@@ -257,15 +257,29 @@ std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, s
     for (NodeId host : hosts)
         require_host(tree, host);
     if (scions.empty()) throw Error("There is no branch to graft.");
+    for (const Tree& scion : scions)
+        require_scion(scion);
+    std::vector<uint64_t> seeds;
+    std::vector<const Tree*> chosen;
+    size_t nodes = 0;
+    for (size_t i = 0; i < hosts.size(); i++) {
+        seeds.push_back(hash_seed(options.seed, i));
+        const uint32_t which = Random(seeds[i], 2).below(static_cast<uint32_t>(scions.size()));
+        chosen.push_back(&scions[which]);
+        nodes += scions[which].size() - 1;
+    }
+    if (nodes > options.most_nodes)
+        throw Error("These grafts would add " + std::to_string(nodes) + " nodes, more than the " +
+                    std::to_string(options.most_nodes) + " that are allowed: graft onto fewer nodes, " +
+                    "graft smaller branches, or allow more.");
     const Tree before = tree;
     StandingWood standing(tree);
     std::vector<GraftResult> results;
     try {
+        GraftOptions own = options;
         for (size_t i = 0; i < hosts.size(); i++) {
-            GraftOptions own = options;
-            own.seed = hash_seed(options.seed, i);
-            const uint32_t which = Random(own.seed, 2).below(static_cast<uint32_t>(scions.size()));
-            results.push_back(graft_beside(tree, standing, hosts[i], scions[which], own, progress));
+            own.seed = seeds[i];
+            results.push_back(graft_beside(tree, standing, hosts[i], *chosen[i], own, progress));
         }
     } catch (...) {
         tree = before;

@@ -56,6 +56,8 @@ struct GraftOptions {
     // Up to so many seeds are tried, from `seed` on, until one is free of collisions; else the best stays.
     // Each further one also turns the scion about its own direction. 1..1000.
     int tries = 1;
+    // graft_many() refuses to add more.
+    size_t most_nodes = size_t{1} << 22;
 };
 
 struct GraftResult {

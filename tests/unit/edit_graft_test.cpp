@@ -306,6 +306,8 @@ TEST(EditGraft, ManyAtOnceOrNone) {
     EXPECT_THROW(graft_many(none, tips, scions, options), Error);
     tips.pop_back();
     EXPECT_THROW(graft_many(none, tips, std::vector<Tree>(), options), Error);
+    options.most_nodes = 10;
+    EXPECT_THROW(graft_many(none, tips, scions, options), Error);
     EXPECT_TRUE(same_bits(none, start));
     EXPECT_EQ(none.id_end(), start.id_end());
 }
