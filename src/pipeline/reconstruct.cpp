@@ -101,6 +101,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     }
     const bool follow = followed.size() >= kLeastFollowed;
     SkeletonOptions skeleton_options = options.skeleton;
+    skeleton_options.one_stem = skeleton_options.one_stem || told.fronds;
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
     SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, skeleton_options, &growing);
     growing.check();

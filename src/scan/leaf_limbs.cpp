@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "geometry/quantile.h"
 
@@ -19,12 +20,14 @@ constexpr double kCrownBase = 0.1;    // of the leaves are lower
 constexpr double kFootGap = 0.15;     // of the crown's height, below its base
 constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well below the crown are bark
 
-// A palm. Broad-leaved crowns have 0.17 to 0.25 of the planarity, palms 0.35.
-constexpr double kMostCrownWood = 0.01;  // cells of wood in the crown, per cell of leaf
+// A palm. Broad-leaved crowns have 0.17 to 0.30 of the planarity, palms 0.35 and more.
+constexpr double kMostCrownWood = 0.12;  // cells of wood above the hub, per cell of leaf
 constexpr double kHubShare = 0.05;       // of the height: the leaves' paths start as near to one another
 constexpr double kLeastPlanarity = 0.29;
-constexpr double kRibCells = 3.0;   // wood that far from the stem, above the hub, is a rib of a frond
-constexpr double kStemCells = 1.5;  // radius of the stem that is followed through the fronds
+constexpr double kRibCells = 3.0;    // wood that far from the stem, above the hub, is a rib of a frond
+constexpr double kSliceCells = 4.0;  // height of the slices in which the stem is walked up
+constexpr double kStemBulge = 1.5;   // times the stem's usual radius: what lies further out is not of it
+constexpr double kStemCells = 0.8;   // radius of the stem that is followed through the fronds
 
 struct Crown {
     double base = 0.0;    // height
@@ -83,19 +86,14 @@ void clear_foot(const Cells& cells, const Crown& crown, std::vector<uint8_t>& le
 
 bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
                 const std::vector<uint8_t>& leaf, const Crown& crown, DVec3& hub) {
-    size_t wood = 0;
     double planarity = 0.0;
     float low = cells.centres[0].y;
     for (size_t v = 0; v < cells.count(); v++) {
         low = std::min(low, cells.centres[v].y);
-        if (leaf[v])
-            planarity += shapes[v * kShapeScales + 1].planarity;
-        else
-            wood += cells.centres[v].y > crown.base;
+        if (leaf[v]) planarity += shapes[v * kShapeScales + 1].planarity;
     }
     const auto leaves = static_cast<double>(crown.cells);
-    if (static_cast<double>(wood) > kMostCrownWood * leaves || planarity < kLeastPlanarity * leaves)
-        return false;
+    if (planarity < kLeastPlanarity * leaves) return false;
     // Where the way from each leaf meets wood.
     std::vector<uint32_t> from(cells.count());
     DVec3 sum(0.0);
@@ -112,7 +110,12 @@ bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& t
     if (met < 0.5 * leaves) return false;
     hub = sum / met;
     const double spread = std::sqrt(std::max(0.0, square / met - hub.y * hub.y));
-    return spread < kHubShare * (crown.top.y - low);
+    if (spread >= kHubShare * (crown.top.y - low)) return false;
+    // Fronds hang down around their stem, but nothing of it stands above them.
+    double wood = 0.0;
+    for (size_t v = 0; v < cells.count(); v++)
+        if (!leaf[v] && cells.centres[v].y > hub.y + spread + kRibCells * cells.size) wood += 1.0;
+    return wood <= kMostCrownWood * leaves;
 }
 
 double distance_to(const DVec3& p, const DVec3& from, const DVec3& to) {
@@ -122,15 +125,54 @@ double distance_to(const DVec3& p, const DVec3& from, const DVec3& to) {
     return glm::distance(p, from + t * along);
 }
 
-// The stem of a palm: all wood, and on from the hub through the crown's middle to its top.
+// Walks up the stem slice by slice. Wood beside it, above its lower half, is of fronds that hang down.
+void clear_stem(const Cells& cells, std::vector<uint8_t>& leaf, double low, const DVec3& hub) {
+    const double height = kSliceCells * cells.size;
+    const auto slice_of = [&](double y) { return static_cast<ptrdiff_t>(std::floor((y - low) / height)); };
+    const ptrdiff_t count = slice_of(hub.y) + 1;
+    std::vector<std::vector<uint32_t>> slices(static_cast<size_t>(std::max<ptrdiff_t>(count, 0)));
+    for (uint32_t v = 0; v < cells.count(); v++) {
+        const ptrdiff_t slice = slice_of(cells.centres[v].y);
+        if (!leaf[v] && slice >= 0 && slice < count) slices[static_cast<size_t>(slice)].push_back(v);
+    }
+    DVec2 centre(0.0);
+    double radius = std::numeric_limits<double>::max();  // of the stem, flared at first
+    for (size_t i = 0; i < slices.size(); i++) {
+        const auto off = [&](uint32_t v) {
+            return glm::distance(DVec2(cells.centres[v].x, cells.centres[v].z), centre);
+        };
+        const double most = kStemBulge * radius + kRibCells * cells.size;
+        std::vector<float> x, z;
+        for (const uint32_t v : slices[i]) {
+            if (off(v) > most) {
+                if (2 * i > slices.size()) leaf[v] = 1;
+                continue;
+            }
+            x.push_back(cells.centres[v].x);
+            z.push_back(cells.centres[v].z);
+        }
+        if (x.empty()) continue;
+        centre = {quantile(x, 0.5), quantile(z, 0.5)};
+        std::vector<float> offs;
+        for (const uint32_t v : slices[i])
+            offs.push_back(static_cast<float>(off(v)));
+        radius = std::min<double>(radius, quantile(offs, 0.5));
+    }
+}
+
+// The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to the crown's middle,
+// where they spring from.
 void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub,
                  Limbs& limbs) {
+    float low = cells.centres[0].y;
+    for (const Vec3& p : cells.centres)
+        low = std::min(low, p.y);
+    clear_stem(cells, leaf, low, hub);
     const double radius = kStemCells * cells.size;
     std::vector<float> reaches;
     for (size_t v = 0; v < cells.count(); v++) {
         const DVec3 p(cells.centres[v]);
-        const double off =
-            std::min(distance_to(p, hub, crown.middle), distance_to(p, crown.middle, crown.top));
+        const double off = distance_to(p, hub, crown.middle.y > hub.y ? crown.middle : hub);
         // Wood off the stem is a frond's rib.
         if (!leaf[v] && p.y > hub.y && off > kRibCells * cells.size) leaf[v] = 1;
         limbs.path[v] = !leaf[v] || off < radius;

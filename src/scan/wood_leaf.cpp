@@ -345,7 +345,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     for (size_t i = 0; i < cloud.size(); i++) {
         const uint32_t v = cell_of_point[i];
         bool is_leaf = leaf[v] != 0;
-        if (result.by_colour && leaf[v] == (logits[v] > threshold)) {
+        // A frond's brown tip is no wood.
+        if (result.by_colour && !limbs.fronds && leaf[v] == (logits[v] > threshold)) {
             const Color8& c = cloud.colors[i];
             const double sum = std::max(1, c[0] + c[1] + c[2]);
             const float own = greenness((2 * c[1] - c[0] - c[2]) / sum, groups);

@@ -16,6 +16,7 @@ struct SkeletonOptions {
     double spacing = 0.0;            // thinning: at most one point per cell of this size; 0 automatic
     double minimum_branch = 0.0;     // shorter end branches are noise; 0 automatic
     double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
+    bool one_stem = false;           // a palm: what branches off its stem is left out
     double noise = 0.0;              // of the points, at least, where it is known (standard deviation)
     bool fit_radii = true;           // measure radii where the points allow it
     uint64_t seed = 1;               // of the robust fits

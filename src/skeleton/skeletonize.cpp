@@ -1,5 +1,6 @@
 #include <array>
 #include <cstdio>
+#include <limits>
 
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
@@ -151,6 +152,10 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.8, "Radii");
     axis_options.long_windows = true;
     std::vector<std::vector<Station>> axes = fit_axes(limbs, slices, points, scale, axis_options, progress);
+    if (options.one_stem) {
+        limbs.resize(1);
+        axes.resize(1);
+    }
     straighten_stems(limbs, axes);
     if (!root.lying && std::none_of(limbs.begin(), limbs.end(),
                                     [](const Limb& limb) { return limb.parent == 0 && limb.attach == 0; }))
@@ -164,6 +169,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     TwigOptions twig_options;
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = std::max(kTwigEscape, kNoiseEscape * std::max(noise_of(axes), options.noise));
+    if (options.one_stem) twig_options.least_escape = std::numeric_limits<double>::max();
     const PointPlaces places =
         add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());

@@ -247,6 +247,23 @@ TEST(PipelineOnScans, ABirchOf46kPointsHasItsTapedHeightAndDbh) {
     EXPECT_LT(score_scan(result.tree, result.cloud).median_mm, 15.0);
 }
 
+// Fronds that hang around the stem hid it once, and every rib became a branch.
+TEST_F(Pipeline, APalmIsOneStem) {
+    for (const uint64_t seed : {1, 2, 3, 4}) {
+        SCOPED_TRACE(seed);
+        const Tree palm = grow_tree({Habit::kPalm, 0.0, seed});
+        VirtualScanOptions options = scan_options_for(Habit::kPalm);
+        options.seed = seed;
+        write_cloud(path("palm.ply"), scan_tree(palm, options).cloud);
+        const Reconstruction made = reconstruct_file(path("palm.ply"), {}, nullptr);
+        const Measurements measured = measure(palm);
+        EXPECT_EQ(made.tree.nodes_of_kind(NodeKind::kLeaf).size(), 1u);
+        EXPECT_NEAR(made.measured.total_length, measured.total_length, 0.05 * measured.total_length);
+        EXPECT_NEAR(made.measured.dbh, measured.dbh, 0.03 * measured.dbh);
+        EXPECT_GT(made.foliage.reach, 1.0);
+    }
+}
+
 TEST_F(Pipeline, LeavesBecomeFoliageAndTheSkeletonFollowsWood) {
     const Tree grown = grow_tree({Habit::kBirch, 8.0, 4});
     VirtualScanOptions options;
