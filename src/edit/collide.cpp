@@ -67,10 +67,11 @@ class CapsuleGrid {
             box_.add(box.min - clearance);
             box_.add(box.max + clearance);
             length += glm::distance(capsule.a, capsule.b);
-            thick = std::max({thick, capsule.ra, capsule.rb});
+            thick += capsule.ra + capsule.rb;
         }
         const DVec3 size = glm::max(box_.size(), DVec3(1e-9));
-        cell_ = std::max({length / static_cast<double>(capsules.size()), thick + clearance,
+        const double count = static_cast<double>(capsules.size());
+        cell_ = std::max({length / count, thick / count + clearance,
                           std::cbrt(size.x * size.y * size.z / kMostCells) * 1.1,
                           std::max({size.x, size.y, size.z}) / 4096.0});
         // A flat box can still have too many cells.
@@ -176,10 +177,11 @@ std::vector<Collision> collide(const StandingWood& standing, const std::vector<C
     const CapsuleGrid grid(grafted, options.clearance);
     std::vector<NodeId> seen(grafted.size(), kNoNode);  // the last segment that it was tried with
     for (const StandingWood::Run& run : standing.runs()) {
-        if (!overlap(run.box, grid.box())) continue;
+        if (found.size() > options.most || !overlap(run.box, grid.box())) continue;
         if (progress) progress->check();
         for (const Capsule& other : run.segments) {
             if ((skip && (*skip)[other.id]) || !overlap(bounds_of(other), grid.box())) continue;
+            if (found.size() > options.most) break;
             grid.for_near(other, [&](uint32_t g) {
                 if (seen[g] == other.id) return;
                 seen[g] = other.id;
@@ -188,7 +190,10 @@ std::vector<Collision> collide(const StandingWood& standing, const std::vector<C
                 const DVec3 p = mine.a + (mine.b - mine.a) * s;
                 const DVec3 q = other.a + (other.b - other.a) * t;
                 const double radii = mine.ra + (mine.rb - mine.ra) * s + other.ra + (other.rb - other.ra) * t;
-                const double depth = radii + options.clearance - glm::distance(p, q);
+                const double reach = radii + options.clearance;
+                const DVec3 gap = p - q;
+                if (glm::dot(gap, gap) >= reach * reach) return;
+                const double depth = reach - glm::length(gap);
                 if (depth <= 0.0 || glm::distance(p, options.joint) <= options.joint_reach) return;
                 found.push_back({mine.id, other.id, depth, 0.5 * (p + q)});
             });

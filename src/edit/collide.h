@@ -1,6 +1,7 @@
 // Where new wood runs into wood that stands already: capsules against capsules, through a grid.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "progress.h"
@@ -23,6 +24,9 @@ struct CollisionOptions {
     // out of the wood there.
     DVec3 joint{0.0};
     double joint_reach = 0.0;
+    // The search may end once it has found more than so many: whoever has a better place already need not
+    // know them all.
+    size_t most = std::numeric_limits<size_t>::max();
 };
 
 // The segments of a tree as capsules, kept for several questions while the tree grows.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "edit/scion.h"
@@ -145,7 +146,8 @@ struct Attempt {
     }
 };
 
-Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed, int number,
+// most: collisions beyond which the try is not wanted.
+Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed, int number, size_t most,
                 const Progress* progress) {
     Attempt made;
     made.seed = number == 0 ? seed : hash_seed(seed, static_cast<uint64_t>(number));
@@ -168,6 +170,7 @@ Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed,
     CollisionOptions collision;
     collision.clearance = joint.options.clearance;
     collision.joint = host.position;
+    collision.most = most;
     const double own = std::min(there.node(there.root()).radius, host.radius);
     const DVec3 away = normalized_or(axes * joint.own, DVec3(0.0, 1.0, 0.0));
     collision.joint_reach = joint_reach(joint.tree, joint.host, kNoNode, own, away, joint.options.clearance);
@@ -192,7 +195,8 @@ GraftResult graft_beside(Tree& tree, StandingWood& standing, NodeId host, const 
     int tries = 0;
     while (tries < options.tries && (tries == 0 || !best.collisions.empty())) {
         if (progress) progress->check();
-        Attempt made = attempt(joint, standing, options.seed, tries, progress);
+        const size_t most = tries == 0 ? std::numeric_limits<size_t>::max() : best.collisions.size();
+        Attempt made = attempt(joint, standing, options.seed, tries, most, progress);
         if (tries++ == 0 || made.better_than(best)) best = std::move(made);
     }
     GraftResult result;
