@@ -25,6 +25,7 @@ constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that 
 constexpr double kSharpest = 0.0;     // cosine of the sharpest turn of a twig
 constexpr double kFoot = 4.0;         // radii of the stem: up there roots and ground lie around it, and
 constexpr double kFootEscape = 4.0;   // what reaches less far out is one of them
+constexpr size_t kLeastPoints = 3;    // of a twig on measured wood: where that is seen, so are its twigs
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
 constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
@@ -226,6 +227,7 @@ class TwigFinder {
         for (const uint32_t v : near_)
             nearest_[v] = -1;
         if (length < 1.01 * options_.minimum_branch) return;
+        if (axes_[parent][twig.attach].measured && near_.size() < kLeastPoints) return;
 
         const int32_t index = static_cast<int32_t>(limbs_.size());
         limbs_.push_back(std::move(twig));

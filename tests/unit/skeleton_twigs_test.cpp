@@ -46,6 +46,15 @@ TEST(Twigs, ASingleFileOfPointsIsATwig) {
     EXPECT_EQ(tips(result.tree), 2u);
 }
 
+TEST(Twigs, TwoStrayPointsOnAStemAreNone) {
+    PointCloud cloud = stem(9, 0.002);
+    cloud.positions.emplace_back(0.135, 1.0, 0.0);
+    cloud.positions.emplace_back(0.175, 1.02, 0.0);
+    cloud.positions.emplace_back(-0.165, 2.0, 0.01);
+    const SkeletonResult result = skeletonize(cloud, {});
+    EXPECT_EQ(tips(result.tree), 1u);
+}
+
 TEST(Twigs, StubsNoiseAndBarkReliefAreNone) {
     PointCloud cloud = stem(4, 0.006);
     Random random(5);
