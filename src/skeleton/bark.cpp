@@ -16,6 +16,7 @@ constexpr size_t kNearest = 8;       // stations looked at
 constexpr size_t kNearestThick = 3;  // likewise, of stout wood
 constexpr double kThick = 0.03;      // metres: from stouter wood,
 constexpr double kWhisker = 0.6;     // so many times what it is stouter, besides
+constexpr float kFar = 0.12f;        // metres: no station of thin wood so far away explains a place
 constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
 
 // nanoflann's result set for the nearest stations of limbs that are not left aside.
@@ -25,13 +26,14 @@ struct NearestAllowed {
     const std::vector<std::pair<int32_t, int32_t>>& names;
     const std::vector<uint8_t>* except;
     size_t wanted;
+    float most;  // squared metres
     size_t found = 0;
     std::array<float, kNearest> distance{};
     std::array<uint32_t, kNearest> index{};
 
     size_t size() const { return found; }
     bool full() const { return found == wanted; }
-    float worstDist() const { return full() ? distance[found - 1] : std::numeric_limits<float>::max(); }
+    float worstDist() const { return full() ? distance[found - 1] : most; }
     bool addPoint(float squared, uint32_t candidate) {
         if (except != nullptr && (*except)[names[candidate].first] != 0) return true;
         size_t at = full() ? found - 1 : found++;
@@ -97,10 +99,10 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
     return place;
 }
 
-void Bark::look(const Index& index, size_t count, const Vec3& p, const std::vector<uint8_t>* except,
-                BarkPlace& best) const {
+void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
+                const std::vector<uint8_t>* except, BarkPlace& best) const {
     if (!index.tree) return;
-    NearestAllowed found{index.names, except, count};
+    NearestAllowed found{index.names, except, count, reach * reach};
     index.tree->findNeighbors(found, &p.x, nanoflann::SearchParams());
     for (size_t k = 0; k < found.size(); k++) {
         const auto [limb, station] = index.names[found.index[k]];
@@ -115,11 +117,11 @@ void Bark::look(const Index& index, size_t count, const Vec3& p, const std::vect
     }
 }
 
-BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except) const {
+BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except, float reach) const {
     BarkPlace best;
     best.distance = std::numeric_limits<double>::max();
-    look(all_, kNearest, p, except, best);
-    look(thick_, kNearestThick, p, except, best);
+    look(all_, kNearest, reach, p, except, best);
+    look(thick_, kNearestThick, std::numeric_limits<float>::infinity(), p, except, best);
     return best;
 }
 
@@ -136,7 +138,7 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
     // A place that no limb but `except` explains.
     const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
         return std::any_of(line.rbegin(), line.rend(), [&](const Station& station) {
-            const BarkPlace place = bark.nearest(Vec3(station.position), &except);
+            const BarkPlace place = bark.nearest(Vec3(station.position), &except, kFar);
             return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
         });
     };

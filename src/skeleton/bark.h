@@ -1,6 +1,7 @@
 // The surface of the limbs found so far: which of them a point lies on.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -33,7 +34,9 @@ class Bark {
     BarkPlace on_limb(int32_t limb, int32_t station, const DVec3& p) const;
 
     // The limb whose surface is nearest to p, those marked in `except` left aside; limb -1 for none near.
-    BarkPlace nearest(const Vec3& p, const std::vector<uint8_t>* except = nullptr) const;
+    // reach: metres, how far axes of thin wood are looked for.
+    BarkPlace nearest(const Vec3& p, const std::vector<uint8_t>* except = nullptr,
+                      float reach = std::numeric_limits<float>::infinity()) const;
 
   private:
     const std::vector<Limb>& limbs_;
@@ -45,8 +48,8 @@ class Bark {
         KdPoints kd_points{positions};
         std::unique_ptr<KdTree> tree;
     };
-    void look(const Index& index, size_t count, const Vec3& p, const std::vector<uint8_t>* except,
-              BarkPlace& best) const;
+    void look(const Index& index, size_t count, float reach, const Vec3& p,
+              const std::vector<uint8_t>* except, BarkPlace& best) const;
 
     Index all_;
     Index thick_;  // of stout limbs alone, which many twigs would hide
