@@ -7,6 +7,7 @@
 #include "edit/commands.h"
 #include "edit/scion.h"
 #include "edit/twig_library.h"
+#include "edit/twig_picture.h"
 #include "error.h"
 #include "lsystem/lstring.h"
 #include "random_tree.h"
@@ -82,6 +83,36 @@ TEST(EditGraftLibrary, EachGrowsInItsOwnWay) {
     // A spruce's spray is flat.
     const DVec3 spray = scion("spruce").bounds().size();
     EXPECT_LT(spray.z, 0.5 * spray.x);
+}
+
+TEST(EditGraftLibrary, DrawsWhatItHolds) {
+    for (const LibraryTwig& twig : twig_library()) {
+        const Image image = draw_twig(read_lstring(twig.string), 96);
+        int there = 0;
+        int left = 95, right = 0, top = 95, bottom = 0;
+        for (int y = 0; y < 96; y++) {
+            for (int x = 0; x < 96; x++) {
+                const uint8_t* pixel = image.at(x, y);
+                if (pixel[3] == 0) continue;
+                there++;
+                EXPECT_GT(pixel[0], 60) << twig.name;
+                left = std::min(left, x), right = std::max(right, x);
+                top = std::min(top, y), bottom = std::max(bottom, y);
+            }
+        }
+        // Fills the picture one way, without touching its edge.
+        EXPECT_GE(std::max(right - left, bottom - top), 85) << twig.name;
+        EXPECT_GT(std::min({left, top, 95 - right, 95 - bottom}), 0) << twig.name;
+        EXPECT_GT(there, 300) << twig.name;
+        EXPECT_LT(there, 96 * 96 / 2) << twig.name;
+        // It comes in from the left.
+        EXPECT_LT(left, 30) << twig.name;
+    }
+    Tree wild = test::wild_tree(3, 40);
+    EXPECT_EQ(draw_twig(wild, 16).pixels.size(), 16u * 16u * 4u);
+    EXPECT_THROW(draw_twig(Tree(), 64), Error);
+    EXPECT_THROW(draw_twig(wild, 8), Error);
+    EXPECT_THROW(draw_twig(wild, 513), Error);
 }
 
 TEST(EditGraftCommands, ATwigAndAGraftOnIt) {
