@@ -4,6 +4,7 @@
 
 #include <godot_cpp/core/class_db.hpp>
 
+#include "tree_edit.h"
 #include "tree_reconstruction.h"
 
 #ifdef TREEREC_EDITOR
@@ -33,6 +34,7 @@ static void load_class_reference() {
 void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
     switch (p_level) {
         case MODULE_INITIALIZATION_LEVEL_SCENE:
+            GDREGISTER_CLASS(TreeEdit)
             GDREGISTER_CLASS(TreeReconstruction)
 #ifdef TREEREC_EDITOR
             GDREGISTER_CLASS(

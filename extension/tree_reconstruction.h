@@ -6,14 +6,18 @@
 #include <godot_cpp/core/class_db.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
+#include <godot_cpp/variant/typed_array.hpp>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include "edit/script.h"
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "tree/tree.h"
+
+class TreeEdit;
 
 // A reconstructed tree: its skeleton, where it comes from, and the rules by which it gets bark and leaves.
 // The builders may run on any thread, also while another thread changes the tree: they see it as it was when
@@ -92,6 +96,18 @@ class TreeReconstruction : public godot::Resource {
     static godot::Array build_leaf_card_arrays(int p_lod);
     static godot::PackedStringArray get_leaf_preset_names();
 
+    // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
+    godot::Ref<TreeEdit> edit(const godot::String& p_command);
+    godot::String check_edit(const godot::String& p_command) const;
+    godot::Error apply_edit(const godot::Ref<TreeEdit>& p_edit);
+    godot::Error revert_edit(const godot::Ref<TreeEdit>& p_edit);
+    godot::Dictionary replay(const godot::String& p_log, double p_tolerance);
+    godot::Ref<TreeEdit> run_script(const godot::String& p_script);
+    void set_edit_log(const godot::String& p_log);
+    godot::String get_edit_log() const;
+    godot::PackedInt32Array select_nodes(const godot::String& p_selection) const;
+    static godot::TypedArray<godot::Dictionary> get_edit_commands();
+
   protected:
     static void _bind_methods();
     void _validate_property(godot::PropertyInfo& p_property) const;
@@ -107,6 +123,9 @@ class TreeReconstruction : public godot::Resource {
     std::optional<treerec::Node> _find_node(int p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
     static void _bind_properties();
+    static void _bind_editing();
+    std::shared_ptr<const treerec::Tree> _editable_tree() const;
+    godot::Ref<TreeEdit> _edit(const godot::String& p_command);
 
     // Guards what the builders read, so that they may run while the main thread edits.
     mutable std::mutex mutex_;
@@ -115,6 +134,7 @@ class TreeReconstruction : public godot::Resource {
     treerec::LeafRules leaf_rules_;
     int64_t seed_ = 1;
 
+    treerec::EditLog edit_log_;
     godot::String leaf_preset_ = "generic";
     godot::Dictionary provenance_;
     godot::Dictionary newer_foliage_;  // likewise

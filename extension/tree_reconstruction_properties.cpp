@@ -208,6 +208,7 @@ void TreeReconstruction::_bind_properties() {
 
 void TreeReconstruction::_bind_methods() {
     _bind_properties();
+    _bind_editing();
 
     ClassDB::bind_method(D_METHOD("is_empty"), &TreeReconstruction::is_empty);
     ClassDB::bind_method(D_METHOD("get_node_count"), &TreeReconstruction::get_node_count);

@@ -8,6 +8,7 @@
 namespace treerec {
 
 std::vector<EditCommand> prune_commands();
+std::vector<EditCommand> shape_commands();
 std::vector<EditCommand> graft_commands();
 
 }  // namespace treerec

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/address.h"
+#include "edit/node_sets.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -11,14 +11,6 @@ namespace treerec {
 namespace {
 
 constexpr double kLeastStub = 0.01;  // of the segment
-
-void require_node(const Tree& tree, NodeId id) {
-    if (!tree.contains(id)) throw Misfit("There is no node " + std::to_string(id) + " in this tree.");
-}
-
-double segment_length(const Tree& tree, NodeId id) {
-    return glm::distance(tree.node(id).position, tree.node(tree.node(id).parent).position);
-}
 
 // An end in the segment to `id`, at a share of its way; what is above is not cut off here. It is measured
 // wood only where both ends are.
@@ -78,10 +70,10 @@ Removed prune_twigs(Tree& tree, const PruneOptions& options) {
         double length = twig.length;
         for (NodeId at = twig.leaf; nodes > 0; at = tree.node(at).parent) {
             const Node& node = tree.node(at);
-            const bool spared =
-                (options.spare_leader && node.is_trunk()) || node.radius >= options.minimum_radius;
-            if (spared || (options.in_metres ? length : nodes) <= limit || length <= options.minimum_length)
-                break;
+            const bool spared = (options.spare_leader && node.is_trunk()) ||
+                                node.radius >= options.minimum_radius ||
+                                (options.minimum_length > 0.0 && length <= options.minimum_length);
+            if (spared || (options.in_metres ? length : nodes) <= limit) break;
             lowest = at;
             length -= segment_length(tree, at);
             nodes--;

@@ -11,7 +11,8 @@ Region Region::box(const DVec3& one_corner, const DVec3& other_corner) {
     region.shape = Shape::kBox;
     region.a = glm::min(one_corner, other_corner);
     region.b = glm::max(one_corner, other_corner);
-    if (!is_finite(region.a) || !is_finite(region.b)) throw Error("A box's corners must be finite numbers.");
+    if (!is_finite(one_corner) || !is_finite(other_corner))
+        throw Error("A box's corners must be finite numbers.");
     return region;
 }
 

@@ -1,5 +1,6 @@
 #include "edit/script.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -13,6 +14,7 @@ namespace {
 constexpr std::string_view kHeader = "# treerec edit log ";
 constexpr int kLogVersion = 1;
 constexpr std::string_view kUnfit = "#? ";
+constexpr std::string_view kReason = "# This did not fit: ";
 
 std::string frame_line(const ScanFrame& frame) {
     std::string line = "frame";
@@ -51,14 +53,22 @@ ScanFrame parse_frame(const CommandLine& line) {
     return frame;
 }
 
-void check_header(std::string_view line) {
-    if (!line.starts_with(kHeader)) return;
+// The version that a log's first line tells; nothing for another line.
+std::optional<int> version_of(std::string_view line) {
+    if (!line.starts_with(kHeader)) return std::nullopt;
     const std::string_view text = line.substr(kHeader.size());
     int version = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), version);
-    if (failure != std::errc() || version > kLogVersion)
-        throw Error("This log was written by a newer version (" + quote_word(text) +
-                    "; this one reads up to " + std::to_string(kLogVersion) + "). Update to replay it.");
+    std::from_chars(text.data(), text.data() + text.size(), version);
+    return version;
+}
+
+// Splits off the next line, without its end.
+std::string_view take_line(std::string_view& text) {
+    const size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return line;
 }
 
 std::string place_of(size_t line, size_t column) {
@@ -67,16 +77,12 @@ std::string place_of(size_t line, size_t column) {
 
 }  // namespace
 
-void EditLog::forget_last() {
-    for (size_t i = entries_.size(); i-- > 0;) {
-        if (!entries_[i].fits()) continue;
-        entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(i));
-        return;
-    }
+void EditLog::remove_last(size_t count) {
+    entries_.resize(entries_.size() - std::min(count, entries_.size()));
 }
 
 std::string EditLog::text() const {
-    std::string text = std::string(kHeader) + std::to_string(kLogVersion) + "\n";
+    std::string text = newer_.empty() ? std::string(kHeader) + std::to_string(kLogVersion) + "\n" : newer_;
     const ScanFrame* frame = nullptr;
     for (const Entry& entry : entries_) {
         if (!frame || !(*frame == entry.frame)) text += frame_line(entry.frame) + "\n";
@@ -85,10 +91,49 @@ std::string EditLog::text() const {
             text += entry.command + "\n";
             continue;
         }
-        text += "# This did not fit: " + entry.reason + "\n";
+        text += std::string(kReason) + entry.reason + "\n";
         text += std::string(kUnfit) + entry.command + "\n";
     }
     return text;
+}
+
+EditLog EditLog::parse(std::string_view text) {
+    EditLog log;
+    ScanFrame frame;
+    std::string reason;
+    size_t number = 0;
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::string_view line = take_line(rest);
+        number++;
+        if (version_of(line).value_or(0) > kLogVersion) {
+            log.entries_.clear();
+            log.newer_ = text;
+            if (!log.newer_.ends_with('\n')) log.newer_ += '\n';
+            return log;
+        }
+        if (line.starts_with(kReason)) {
+            reason = line.substr(kReason.size());
+            continue;
+        }
+        if (line.starts_with(kUnfit)) {
+            log.add({std::string(line.substr(kUnfit.size())), frame,
+                     reason.empty() ? "It did not fit." : reason});
+            reason.clear();
+            continue;
+        }
+        const size_t first = line.find_first_not_of(" \t");
+        if (first == std::string_view::npos || line[first] == '#') continue;
+        if (line.substr(first, 6) != "frame ") {
+            log.add({std::string(line), frame, ""});
+            continue;
+        }
+        try {
+            frame = parse_frame(*parse_command_line(line));
+        } catch (const CommandError& error) {
+            throw Error(place_of(number, error.column()) + error.what());
+        }
+    }
+    return log;
 }
 
 ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions& options) {
@@ -99,12 +144,11 @@ ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions
     std::string_view rest = script;
     while (!rest.empty()) {
         number++;
-        const size_t end = rest.find('\n');
-        std::string_view text = rest.substr(0, end);
-        rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-        if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+        std::string_view text = take_line(rest);
         if (options.progress) options.progress->check();
-        check_header(text);
+        if (version_of(text).value_or(0) > kLogVersion)
+            throw Error("This log was written by a newer version (" + std::to_string(*version_of(text)) +
+                        "; this one reads up to " + std::to_string(kLogVersion) + "). Update to replay it.");
         if (options.keep_going && text.starts_with(kUnfit)) text.remove_prefix(kUnfit.size());
         bool frame_line = false;
         const auto leave_out = [&](const std::string& reason) {

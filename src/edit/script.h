@@ -26,15 +26,20 @@ class EditLog {
 
     void add(const Edit& edit) { entries_.push_back({edit.command, edit.frame, ""}); }
     void add(Entry entry) { entries_.push_back(std::move(entry)); }
-    // Forgets the last entry that fits; no entry, no effect.
-    void forget_last();
-    void clear() { entries_.clear(); }
+    // The last `count`, or as many as there are.
+    void remove_last(size_t count);
+    void clear() { *this = EditLog(); }
+    bool empty() const { return entries_.empty() && newer_.empty(); }
 
     const std::vector<Entry>& entries() const { return entries_; }
     std::string text() const;
+    // Reads what text() writes. Commands are not looked at: what they mean is asked when they are replayed. A
+    // log of a newer version is kept as it is, before what is added. Throws Error for a wrong frame line.
+    static EditLog parse(std::string_view text);
 
   private:
     std::vector<Entry> entries_;
+    std::string newer_;
 };
 
 struct ScriptOptions {

@@ -41,6 +41,7 @@ std::optional<std::pair<double, double>> read_range(std::string_view text) {
         if (!number) return std::nullopt;
         range.second = *number;
     }
+    if (range.first > range.second) return std::nullopt;
     return range;
 }
 

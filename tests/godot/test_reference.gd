@@ -1,7 +1,7 @@
 extends "./suite.gd"
 ## The class reference covers every class and member, in whole sentences.
 
-const CLASSES: PackedStringArray = ["TreeReconstruction", "TreeReconstructor"]
+const CLASSES: PackedStringArray = ["TreeEdit", "TreeReconstruction", "TreeReconstructor"]
 const HERE: String = "../../extension/doc_classes/%s.xml"
 
 
