@@ -20,10 +20,10 @@ constexpr double kCrownBase = 0.1;    // of the leaves are lower
 constexpr double kFootGap = 0.15;     // of the crown's height, below its base
 constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well below the crown are bark
 
-// A palm. Broad-leaved crowns have 0.17 to 0.30 of the planarity, palms 0.35 and more.
+// A palm. Broad-leaved crowns have 0.17 to 0.25 of the planarity, palms 0.35 and more.
 constexpr double kMostCrownWood = 0.12;  // cells of wood above the hub, per cell of leaf
 constexpr double kHubShare = 0.05;       // of the height: the leaves' paths start as near to one another
-constexpr double kLeastPlanarity = 0.29;
+constexpr double kLeastPlanarity = 0.27;
 constexpr double kRibCells = 3.0;    // wood that far from the stem, above the hub, is a rib of a frond
 constexpr double kSliceCells = 4.0;  // height of the slices in which the stem is walked up
 constexpr double kStemBulge = 1.5;   // times the stem's usual radius: what lies further out is not of it
