@@ -108,6 +108,16 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedInt32Array select_nodes(const godot::String& p_selection) const;
     static godot::TypedArray<godot::Dictionary> get_edit_commands();
 
+    // Grafting (tree_reconstruction_grafting.cpp).
+    godot::Ref<TreeEdit> make_twig(int p_id, const godot::Dictionary& p_options);
+    godot::Ref<TreeEdit> graft(int p_id, const godot::Dictionary& p_options);
+    godot::Ref<TreeEdit> graft_many(const godot::PackedInt32Array& p_ids, const godot::Dictionary& p_options);
+    godot::String take_branch(int p_id) const;
+    godot::TypedArray<godot::Dictionary> find_collisions(int p_id, double p_clearance) const;
+    static godot::Dictionary measure_branch(const godot::String& p_lstring);
+    static godot::PackedByteArray draw_branch(const godot::String& p_lstring, int p_size);
+    static godot::TypedArray<godot::Dictionary> get_twig_library();
+
   protected:
     static void _bind_methods();
     void _validate_property(godot::PropertyInfo& p_property) const;
@@ -124,8 +134,11 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
     static void _bind_properties();
     static void _bind_editing();
+    static void _bind_grafting();
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
+    godot::Ref<TreeEdit> _edit_with(const char* p_command, const godot::Variant& p_where,
+                                    const godot::Dictionary& p_options);
 
     // Guards what the builders read, so that they may run while the main thread edits.
     mutable std::mutex mutex_;

@@ -1,0 +1,72 @@
+@tool
+class_name Twig
+extends Resource
+## A branch to graft onto trees: its wood as an L-string, with a name and a picture for a list.
+##
+## [TwigLibrary] holds the ones that ship with the addon. Make others of any branch of a tree with
+## [method from_branch], or write an L-string. [codeblock]
+## tree.graft(node, {"string": twig.lstring, "seed": 5})
+## [/codeblock]
+
+## The name in a list.
+@export var title: String = "":
+	set(value):
+		title = value
+		emit_changed()
+
+## What is special about it, in a line.
+@export var description: String = "":
+	set(value):
+		description = value
+		emit_changed()
+
+## Its wood: metres and degrees, relative to the branch that it is grafted onto.
+@export_multiline var lstring: String = "":
+	set(value):
+		lstring = value
+		_measures = {}
+		emit_changed()
+
+## A picture for a list. [method draw_thumbnail] makes one.
+@export var thumbnail: Texture2D:
+	set(value):
+		thumbnail = value
+		emit_changed()
+
+## The longest way from its base to a tip, in metres; 0 while [member lstring] is no branch.
+var length: float:
+	get:
+		return _measure().get("length", 0.0)
+
+## Its radius at the base, in metres; 0 while [member lstring] is no branch.
+var base_radius: float:
+	get:
+		return _measure().get("base_radius", 0.0)
+
+var _measures: Dictionary = {}
+
+
+## A copy of the branch that begins at node [param id] of [param tree], with a picture.
+static func from_branch(tree: TreeReconstruction, id: int, called: String = "") -> Twig:
+	var twig: Twig = Twig.new()
+	twig.title = called
+	twig.lstring = tree.take_branch(id)
+	if not twig.lstring.is_empty():
+		twig.draw_thumbnail()
+	return twig
+
+
+## Makes [member thumbnail] anew from [member lstring], [param size] pixels wide and high.
+func draw_thumbnail(size: int = 128) -> void:
+	var pixels: PackedByteArray = TreeReconstruction.draw_branch(lstring, size)
+	if pixels.is_empty():
+		thumbnail = null
+		return
+	var image: Image = Image.create_from_data(size, size, false, Image.FORMAT_RGBA8, pixels)
+	thumbnail = ImageTexture.create_from_image(image)
+
+
+func _measure() -> Dictionary:
+	if _measures.is_empty() and not lstring.is_empty():
+		_measures = TreeReconstruction.measure_branch(lstring)
+	return _measures
