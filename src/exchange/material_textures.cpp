@@ -1,5 +1,6 @@
 #include "exchange/material_textures.h"
 
+#include <algorithm>
 #include <iterator>
 
 #include "error.h"
@@ -24,8 +25,8 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kNames[] = {"bark_albedo",         "bark_normal", "bark_roughness",
-                                  "bark_roughness_grey", "leaf_albedo", "leaf_normal"};
+constexpr const char* kNames[] = {"bark_albedo", "bark_normal", "bark_roughness", "bark_roughness_grey",
+                                  "leaf_albedo", "leaf_normal", "blade_albedo",   "blade_normal"};
 std::span<const ReadyPicture> ready_pictures;
 
 Image channel_of(const Image& image, int channel) {
@@ -53,8 +54,10 @@ std::vector<uint8_t> encode_png(const Image& image) {
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed) {
     const BarkTextures bark = make_bark_textures(preset, size, seed);
     const LeafTextures leaf = make_leaf_textures(preset, size, seed);
+    const LeafTextures blade = make_blade_textures(preset, std::max(16, size / 2), seed);
     const Image grey = channel_of(bark.roughness, 1);
-    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey, &leaf.albedo, &leaf.normal};
+    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey,
+                             &leaf.albedo, &leaf.normal, &blade.albedo,   &blade.normal};
     std::vector<NamedPicture> pictures(std::size(kNames));
     parallel_for(pictures.size(), 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
@@ -76,6 +79,14 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uin
             for (const ReadyPicture& ready : ready_pictures)
                 if (ready.preset == preset && ready.name == name) pictures.push_back({name, ready.png, {}});
     return pictures.size() == std::size(kNames) ? pictures : draw_pictures(preset, size, seed);
+}
+
+std::vector<NamedPicture> pictures_of_leaves(std::vector<NamedPicture> pictures, bool blade) {
+    const std::string_view dropped = blade ? "leaf_" : "blade_";
+    std::erase_if(pictures, [&](const NamedPicture& picture) { return picture.name.starts_with(dropped); });
+    for (NamedPicture& picture : pictures)
+        if (picture.name.starts_with("blade_")) picture.name.replace(0, 5, "leaf");
+    return pictures;
 }
 
 std::vector<std::string> write_pictures(const std::string& directory, const std::string& preset,

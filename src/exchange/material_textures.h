@@ -20,7 +20,8 @@ std::vector<uint8_t> encode_png(const Image& image);
 
 struct NamedPicture {
     // "bark_albedo", "bark_normal", "bark_roughness" (mesh/textures.h), "bark_roughness_grey" (the roughness
-    // alone, for formats that want it so), "leaf_albedo" or "leaf_normal".
+    // alone, for formats that want it so), "leaf_albedo", "leaf_normal" (a spray), "blade_albedo" or
+    // "blade_normal" (one leaf, half as large).
     std::string name;
     std::string_view png;                               // its bytes
     std::shared_ptr<const std::vector<uint8_t>> drawn;  // what holds them; null for the build's own
@@ -36,12 +37,15 @@ struct ReadyPicture {
 // Takes pictures that need no drawing any more; they must outlive all use. Not while others make pictures.
 void set_ready_pictures(std::span<const ReadyPicture> pictures);
 
-// The six pictures of a preset, in this order: the build's, where it drew these.
+// The eight pictures of a preset, in this order: the build's, where it drew these.
 std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kTextureSize,
                                         uint64_t seed = kTextureSeed);
 
 // The same bytes, always drawn anew; it takes about a second.
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed);
+
+// Those that one tree needs: the leaf's are of a spray or, with `blade`, of one leaf.
+std::vector<NamedPicture> pictures_of_leaves(std::vector<NamedPicture> pictures, bool blade);
 
 // Writes <directory>/<preset>_<name>.png for each picture and returns the paths; makes the directory. Throws
 // Error, naming the path, where it cannot write.

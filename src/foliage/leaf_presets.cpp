@@ -1,5 +1,7 @@
+#include <cmath>
+
 #include "error.h"
-#include "foliage/leaves.h"
+#include "foliage/leaf_rules.h"
 
 namespace treerec {
 
@@ -15,19 +17,101 @@ LeafRules rules(LeafArrangement arrangement, double internode, double leaf_size,
     return made;
 }
 
+LeafRules willow() {
+    // Long whips that hang, with narrow leaves.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.055, 0.34, 28.0, 62.0);
+    made.twig_length = 0.9;
+    made.angle_variation = 14.0;
+    made.blade_width = 0.16;
+    made.curl = 26.0;
+    return made;
+}
+
+LeafRules apple() {
+    // Leaves stand in rosettes on spurs.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.055, 0.23, 58.0, 14.0);
+    made.clustering = 0.25;
+    made.closing = 0.2;
+    made.blade_width = 0.62;
+    return made;
+}
+
+LeafRules pine() {
+    // Tufts at the ends of bare twigs.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.045, 0.26, 52.0, -6.0);
+    made.clustering = 0.35;
+    made.closing = 0.5;
+    made.leaflets = 2;
+    made.blade_width = 0.02;
+    made.curl = 8.0;
+    return made;
+}
+
+LeafRules spruce() {
+    // Flat sprays to both sides of the twigs, which hang a little.
+    LeafRules made = rules(LeafArrangement::kAlternate, 0.05, 0.27, 50.0, 24.0);
+    made.twig_length = 0.9;
+    made.angle_variation = 12.0;
+    made.leaflets = 1;
+    made.blade_width = 0.06;
+    made.phototropism = 0.6;
+    made.curl = 12.0;
+    return made;
+}
+
+LeafRules palm() {
+    // Fronds at the end of the stem alone: young ones upright, old ones hanging.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.014, 2.6, 118.0, 12.0);
+    made.twig_length = 0.55;
+    made.maximum_radius = 0.5;
+    made.closing = 0.85;
+    made.size_variation = 0.12;
+    made.angle_variation = 10.0;
+    made.phototropism = 0.5;
+    made.curl = 75.0;
+    made.leaflets = 41;
+    made.blade_width = 0.06;
+    made.follow_density = 0.0;
+    return made;
+}
+
+constexpr double kLongest = 1e4;  // metres
+
+void require(double value, double low, double high, const char* what) {
+    if (!(value >= low && value <= high))
+        throw Error(std::string("The leaf rule's ") + what + " is out of its range.");
+}
+
 }  // namespace
 
 std::vector<std::string> leaf_preset_names() {
-    return {"generic", "maple", "cherry", "oak", "birch", "pine", "none"};
+    return {"generic", "maple", "cherry", "oak",  "birch", "willow",
+            "apple",   "pine",  "spruce", "palm", "none"};
 }
 
 LeafRules leaf_preset(const std::string& name) {
     if (name == "generic") return {};
-    if (name == "maple") return rules(LeafArrangement::kOpposite, 0.075, 0.32, 52.0, 18.0);
-    if (name == "cherry") return rules(LeafArrangement::kAlternate, 0.050, 0.27, 50.0, 28.0);
-    if (name == "oak") return rules(LeafArrangement::kAlternate, 0.060, 0.29, 55.0, 10.0);
-    if (name == "birch") return rules(LeafArrangement::kAlternate, 0.045, 0.23, 42.0, 45.0);
-    if (name == "pine") return rules(LeafArrangement::kAlternate, 0.050, 0.26, 45.0, 0.0);
+    if (name == "maple") {
+        LeafRules maple = rules(LeafArrangement::kDecussate, 0.075, 0.32, 52.0, 18.0);
+        maple.blade_width = 1.0;
+        return maple;
+    }
+    if (name == "cherry") return rules(LeafArrangement::kSpiral, 0.050, 0.27, 50.0, 28.0);
+    if (name == "oak") {
+        LeafRules oak = rules(LeafArrangement::kSpiral, 0.060, 0.29, 55.0, 10.0);
+        oak.blade_width = 0.6;
+        return oak;
+    }
+    if (name == "birch") {
+        LeafRules birch = rules(LeafArrangement::kSpiral, 0.045, 0.23, 42.0, 45.0);
+        birch.blade_width = 0.74;
+        return birch;
+    }
+    if (name == "willow") return willow();
+    if (name == "apple") return apple();
+    if (name == "pine") return pine();
+    if (name == "spruce") return spruce();
+    if (name == "palm") return palm();
     if (name == "none") {
         LeafRules none;
         none.enabled = false;
@@ -37,6 +121,48 @@ LeafRules leaf_preset(const std::string& name) {
     for (const std::string& other : leaf_preset_names())
         known += (known.empty() ? "" : ", ") + other;
     throw Error("'" + name + "' is no leaf preset; use one of: " + known + ".");
+}
+
+void check_leaf_rules(const LeafRules& rules) {
+    require(rules.whorl, 1, 64, "number of leaves in a whorl");
+    require(rules.divergence, -360.0, 360.0, "divergence");
+    require(rules.internode, 1e-4, kLongest, "internode");
+    require(rules.twig_length, 0.0, kLongest, "twig length");
+    require(rules.clustering, 0.0, 1.0, "clustering");
+    require(rules.maximum_radius, 0.0, kLongest, "maximum radius");
+    require(rules.leaflets, 1, 128, "number of leaflets");
+    require(rules.blade_width, 1e-3, 10.0, "blade width");
+    require(rules.petiole, 0.0, kLongest, "petiole");
+    require(rules.leaf_size, 1e-4, kLongest, "leaf size");
+    require(rules.size_variation, 0.0, 1.0, "size variation");
+    require(rules.angle, 0.0, 180.0, "angle");
+    require(rules.closing, 0.0, 1.0, "closing");
+    require(rules.droop, -180.0, 180.0, "droop");
+    require(rules.angle_variation, 0.0, 180.0, "angle variation");
+    require(rules.phototropism, 0.0, 1.0, "phototropism");
+    require(rules.curl, -180.0, 180.0, "curl");
+    require(rules.standing, 0.0, 1.0, "share of standing leaves");
+    require(rules.follow_density, 0.0, 1.0, "share of the scan's density");
+    require(rules.follow_color, 0.0, 1.0, "share of the scan's colour");
+    for (const std::vector<float>* table : {&rules.by_height, &rules.by_radius, &rules.by_order})
+        for (const float value : *table)
+            require(value, 0.0, 1.0, "density");
+    if (rules.sprig && rules.sprig->wood.size() < 2) throw Error("The leaf rule's sprig has no wood.");
+}
+
+int leaves_per_node(const LeafRules& rules) {
+    switch (rules.arrangement) {
+        case LeafArrangement::kOpposite:
+        case LeafArrangement::kDecussate:
+            return 2;
+        case LeafArrangement::kWhorled:
+        case LeafArrangement::kFascicled:
+            return rules.whorl;
+        case LeafArrangement::kAlternate:
+        case LeafArrangement::kSpiral:
+            break;
+    }
+    return 1;
 }
 
 }  // namespace treerec

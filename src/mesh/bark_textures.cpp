@@ -31,6 +31,10 @@ BarkColours colours_of(const std::string& preset) {
     if (preset == "maple") return {{0.16, 0.14, 0.12}, {0.46, 0.42, 0.37}, {0.60, 0.56, 0.50}};
     if (preset == "cherry") return {{0.14, 0.08, 0.06}, {0.38, 0.25, 0.20}, {0.52, 0.37, 0.30}};
     if (preset == "pine") return {{0.16, 0.09, 0.06}, {0.50, 0.33, 0.23}, {0.66, 0.47, 0.35}};
+    if (preset == "willow") return {{0.15, 0.13, 0.10}, {0.45, 0.40, 0.32}, {0.60, 0.55, 0.45}};
+    if (preset == "apple") return {{0.17, 0.14, 0.12}, {0.44, 0.39, 0.35}, {0.57, 0.53, 0.48}};
+    if (preset == "spruce") return {{0.15, 0.10, 0.08}, {0.43, 0.31, 0.25}, {0.56, 0.45, 0.38}};
+    if (preset == "palm") return {{0.20, 0.16, 0.12}, {0.50, 0.43, 0.34}, {0.63, 0.56, 0.46}};
     return {{0.14, 0.11, 0.085}, {0.42, 0.35, 0.285}, {0.57, 0.49, 0.405}};
 }
 
@@ -69,6 +73,64 @@ BarkPoint fissured(DVec2 p, const BarkColours& colours, uint64_t seed) {
     return point;
 }
 
+// Scales that overlap like shingles, nx of them around and ny up: each stands out at its lower edge and runs
+// under the one above it. deep: how far the gaps between them go in, 0..1.
+BarkPoint scaly(DVec2 p, int nx, int ny, double deep, const BarkColours& colours, uint64_t seed) {
+    const DVec2 warped =
+        p + DVec2(0.045 * fractal(p, 6, 5, 5, seed + 10) + 0.010 * fractal(p, 26, 22, 3, seed + 15),
+                  0.050 * fractal(p, 5, 6, 5, seed + 20));
+    const Cell scale = cells(warped, nx, ny, seed + 30);
+    const Cell flake =
+        cells(warped + DVec2(0.012 * fractal(p, 22, 22, 3, seed + 40)), 2 * nx + 1, 3 * ny, seed + 50);
+    // Gaps come and go, so that scales hang together in groups.
+    const double presence = smoothstep(-0.25, 0.30, fractal(p, 7, 7, 4, seed + 60));
+    const double width = 0.05 + 0.13 * presence;
+    const double gap = 1.0 - deep * mix(0.25, 1.0, presence) * (1.0 - smoothstep(0.0, width, scale.border));
+    const double edge =
+        1.0 - 0.35 * (1.0 - smoothstep(0.0, 0.10, flake.border)) * mix(0.3, 1.0, 1.0 - flake.across);
+    const double curl =
+        smoothstep(0.05, 0.45, scale.border) * (1.0 - 0.4 * smoothstep(0.3, 0.6, scale.border));
+    const double fibre = fractal(warped, 30, 9, 4, seed + 70), grain = fractal(p, 80, 60, 3, seed + 80);
+    BarkPoint point;
+    point.height = clamp01(gap * edge * (0.50 + 0.16 * curl + 0.24 * (scale.number - 0.4) + 0.16 * fibre) +
+                           0.12 * grain);
+    const double body = smoothstep(0.02, 0.52, point.height), crest = smoothstep(0.52, 0.90, point.height);
+    DVec3 colour = glm::mix(colours.crack, colours.plate, body);
+    colour = glm::mix(colour, colours.crest, 0.8 * crest);
+    const double lichen = smoothstep(0.05, 0.45, fractal(p, 3, 4, 5, seed + 90)) * body;
+    colour = glm::mix(colour, DVec3(0.45, 0.46, 0.40), 0.30 * lichen);
+    const double tone = 1.0 + 0.16 * (scale.number - 0.5) + 0.10 * (flake.number - 0.5) + 0.35 * grain +
+                        0.30 * fibre + 0.25 * fractal(p, 3, 2, 4, seed + 100);
+    point.colour = colour * tone;
+    point.roughness = clamp01(0.92 - 0.12 * crest + 0.08 * grain);
+    return point;
+}
+
+// The rings that fallen fronds leave, with fibres between them.
+BarkPoint ringed(DVec2 p, const BarkColours& colours, uint64_t seed) {
+    constexpr int kRings = 14;
+    const double turn =
+        p.y * kRings + 0.9 * fractal(p, 3, 3, 3, seed + 10) + 0.25 * fractal(p, 12, 6, 3, seed + 20);
+    const double ring = turn - std::floor(turn);
+    // A scar's lip stands out over the ring below it.
+    const double lip = smoothstep(0.0, 0.10, ring) * (1.0 - smoothstep(0.16, 0.55, ring));
+    const double groove = 1.0 - smoothstep(0.0, 0.07, std::min(ring, 1.0 - ring));
+    const double fibre = 1.0 - std::abs(2.0 * fractal(p + DVec2(0.004 * noise(p, 20, 9, seed + 30), 0.0), 70,
+                                                      5, 3, seed + 40));
+    const double crack = smoothstep(0.32, 0.45, fractal(p, 40, 4, 4, seed + 50));
+    const double grain = fractal(p, 60, 60, 3, seed + 60);
+    BarkPoint point;
+    point.height =
+        clamp01(0.40 + 0.26 * lip - 0.34 * groove + 0.16 * (fibre - 0.5) - 0.25 * crack + 0.08 * grain);
+    const double body = smoothstep(0.04, 0.50, point.height), crest = smoothstep(0.50, 0.80, point.height);
+    DVec3 colour = glm::mix(colours.crack, colours.plate, body);
+    colour = glm::mix(colour, colours.crest, 0.75 * crest);
+    colour *= 1.0 + 0.35 * grain + 0.22 * fractal(p, 3, 5, 4, seed + 70) + 0.12 * (fibre - 0.5);
+    point.colour = colour;
+    point.roughness = clamp01(0.92 - 0.10 * crest);
+    return point;
+}
+
 // White, papery bark with dark lenticels lying across and rough black scars.
 BarkPoint birch(DVec2 p, uint64_t seed) {
     const DVec2 warped = p + DVec2(0.02 * fractal(p, 4, 8, 3, seed + 10), 0.012 * fractal(p, 3, 5, 4, seed));
@@ -96,6 +158,14 @@ BarkPoint birch(DVec2 p, uint64_t seed) {
     return point;
 }
 
+BarkPoint bark_at(const std::string& preset, DVec2 p, const BarkColours& colours, uint64_t seed) {
+    if (preset == "birch") return birch(p, seed);
+    if (preset == "palm") return ringed(p, colours, seed);
+    if (preset == "spruce") return scaly(p, 19, 13, 0.75, colours, seed);
+    if (preset == "apple") return scaly(p, 11, 6, 0.65, colours, seed);
+    return fissured(p, colours, seed);
+}
+
 }  // namespace
 
 BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t seed) {
@@ -109,7 +179,7 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++) {
             for (int x = 0; x < size; x++) {
                 const DVec2 p((x + 0.5) / size, (y + 0.5) / size);
-                const BarkPoint point = white ? birch(p, seed) : fissured(p, colours, seed);
+                const BarkPoint point = bark_at(preset, p, colours, seed);
                 height[static_cast<size_t>(y) * size + x] = static_cast<float>(point.height);
                 for (int c = 0; c < 3; c++)
                     textures.albedo.at(x, y)[c] = to_byte(point.colour[c]);

@@ -15,35 +15,11 @@ constexpr float kRoundness = 0.65f;  // how far the normals of baked leaves foll
 
 }  // namespace
 
-Mesh build_leaf_card(int level) {
-    Mesh card;
-    const bool fine = level <= 0;
-    card.positions = {{-0.5f, 0.0f, 0.0f},
-                      {0.5f, 0.0f, 0.0f},
-                      {0.5f, 1.0f, fine ? -0.16f : 0.0f},
-                      {-0.5f, 1.0f, fine ? -0.16f : 0.0f}};
-    card.uvs = {{0.0f, 1.0f}, {1.0f, 1.0f}, {1.0f, 0.0f}, {0.0f, 0.0f}};
-    if (fine) {
-        // The middle stands up, so that the card is folded along and bent across at once.
-        card.positions.push_back({0.0f, 0.5f, 0.07f});
-        card.uvs.push_back({0.5f, 0.5f});
-        card.indices = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
-    } else {
-        card.indices = {0, 1, 2, 0, 2, 3};
-    }
-    for (const Vec3& position : card.positions) {
-        const Vec3 normal = fine ? glm::normalize(Vec3(0.45f * position.x, 0.35f * (position.y - 0.4f), 1.0f))
-                                 : Vec3(0.0f, 0.0f, 1.0f);
-        card.normals.push_back(normal);
-        const Vec3 tangent = glm::normalize(Vec3(1.0f, 0.0f, 0.0f) - normal * normal.x);
-        card.tangents.push_back(Vec4(tangent, 1.0f));
-        card.colors.push_back(Vec4(0.0f, position.y, 0.0f, 1.0f));
-    }
-    return card;
+Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Progress* progress) {
+    return bake_leaves(leaves, build_leaf_card(level), progress);
 }
 
-Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Progress* progress) {
-    const Mesh card = build_leaf_card(level);
+Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, const Progress* progress) {
     const size_t corners = card.positions.size(), card_indices = card.indices.size();
     if (leaves.size() * corners > UINT32_MAX) throw Error("There are too many leaves for one mesh.");
     Mesh mesh;

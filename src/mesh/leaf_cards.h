@@ -9,13 +9,27 @@
 
 namespace treerec {
 
-// The card of size 1: base at the origin, tip at +Y, upper face +Z, slightly folded and curved; uv over the
-// whole leaf texture (v = 1 at the base). level 0: 4 triangles or more; higher levels 2.
-Mesh build_leaf_card(int level = 0);
+// The card of size 1: base at the origin, tip at +Y, upper face +Z. level 0 is the finest; each further one
+// has fewer triangles. What it shows, and of which picture uv are (v = 1 at the base), is the rules' form: a
+// spray is one slightly folded card over the whole spray picture, all others are put together from the
+// picture of one blade, whose stalk (kBladeStalk) serves as petiole, rachis and wood too. Throws Error for a
+// sprig of more than kMostSprigParts pieces.
+Mesh build_leaf_card(const LeafRules& rules, int level = 0);
+Mesh build_leaf_card(int level = 0);  // of a spray
+
+inline constexpr float kBladeStalk = 0.1f;        // the share of the blade's picture below the blade
+inline constexpr float kBladeStalkWidth = 0.04f;  // of the picture
+inline constexpr size_t kMostSprigParts = 4096;
+
+// Whether the rules' card shows the picture of one blade rather than that of a spray.
+bool uses_blade_picture(const LeafRules& rules);
 
 // Every leaf as geometry, with rounded-canopy normals and wind channels in colors; colors.g runs from 0 at
 // the card's base to 1 at its tip. tangents and custom0 stay empty: this is for files. Throws Error for too
 // many leaves, or Cancelled.
+Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card,
+                 const Progress* progress = nullptr);
+// With the cards of sprays.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const Progress* progress = nullptr);
 
 // Which leaves a level of detail keeps, and how much larger it draws them (fewer, larger, the same area).

@@ -4,6 +4,8 @@
 #include "error.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"
+#include "mesh/leaf_cards.h"
+#include "mesh/leaf_shapes.h"
 #include "mesh/texture_noise.h"
 #include "mesh/textures.h"
 
@@ -14,153 +16,6 @@ namespace {
 using namespace texture;
 
 // Coordinates of the spray: x from -0.5 to 0.5, y from 0 at the lower edge to 1.
-
-enum class Margin { kSmooth, kSerrate, kLobed };
-
-struct Shape {
-    double width;    // full width over length of one lobe
-    double widest;   // where along the lobe it is widest, 0..1
-    double taper;    // > 1 draws the tip out
-    Margin margin;   //
-    int teeth;       // along one side
-    double depth;    // of the teeth, over the width
-    int veins;       // pairs of side veins
-    bool palmate;    // five lobes from one point
-    double petiole;  // over the leaf's length
-};
-
-struct Spray {
-    Shape shape;
-    int pairs;           // leaves beside the twig: 2 per pair
-    bool opposite;       // else alternate
-    double leaf_length;  // of the blade
-    double spread;       // radians between the twig and its lowest leaves
-    DVec3 dark, light;   // blade colours, sRGB
-    DVec3 vein, twig;
-};
-
-Spray spray_of(const std::string& preset) {
-    const DVec3 twig(0.33, 0.25, 0.17);
-    if (preset == "maple")
-        return {{0.50, 0.46, 1.75, Margin::kSerrate, 4, 0.24, 5, true, 0.34},
-                2,
-                true,
-                0.36,
-                1.10,
-                {0.17, 0.33, 0.09},
-                {0.38, 0.55, 0.17},
-                {0.60, 0.68, 0.36},
-                twig};
-    if (preset == "cherry")
-        return {{0.46, 0.47, 1.75, Margin::kSerrate, 22, 0.035, 8, false, 0.20},
-                4,
-                false,
-                0.37,
-                1.18,
-                {0.14, 0.31, 0.09},
-                {0.33, 0.52, 0.16},
-                {0.52, 0.63, 0.32},
-                {0.36, 0.22, 0.17}};
-    if (preset == "oak")
-        return {{0.60, 0.60, 0.85, Margin::kLobed, 4, 0.34, 5, false, 0.06},
-                3,
-                false,
-                0.43,
-                1.10,
-                {0.16, 0.28, 0.08},
-                {0.35, 0.47, 0.15},
-                {0.56, 0.60, 0.31},
-                twig};
-    if (preset == "birch")
-        return {{0.74, 0.30, 1.85, Margin::kSerrate, 14, 0.075, 6, false, 0.30},
-                4,
-                false,
-                0.31,
-                1.12,
-                {0.20, 0.37, 0.10},
-                {0.45, 0.60, 0.20},
-                {0.64, 0.71, 0.40},
-                {0.29, 0.20, 0.16}};
-    return {{0.52, 0.42, 1.65, Margin::kSmooth, 0, 0.0, 7, false, 0.16},
-            4,
-            false,
-            0.36,
-            1.15,
-            {0.16, 0.34, 0.09},
-            {0.36, 0.55, 0.18},
-            {0.55, 0.66, 0.34},
-            twig};
-}
-
-// Half the width of a lobe at `s` (0 base .. 1 tip), over its length.
-double half_width(const Shape& shape, double s) {
-    if (s <= 0.0 || s >= 1.0) return 0.0;
-    // A bell that rises to 1 at `widest`: s^a (1-s)^b scaled.
-    const double b = shape.taper;
-    const double a = b * shape.widest / (1.0 - shape.widest);
-    const double bell = std::pow(s / shape.widest, a) * std::pow((1.0 - s) / (1.0 - shape.widest), b);
-    double width = 0.5 * shape.width * std::pow(bell, 0.62);
-    if (shape.margin == Margin::kSerrate) {
-        // Saw teeth that point to the tip.
-        const double tooth = s * shape.teeth - std::floor(s * shape.teeth);
-        width *= 1.0 - shape.depth * (1.0 - tooth) * smoothstep(0.0, 0.12, 1.0 - s);
-    } else if (shape.margin == Margin::kLobed) {
-        const double wave = 0.5 + 0.5 * std::cos(2.0 * kPi * (s * shape.teeth - 0.62));
-        width *= 1.0 - shape.depth * (1.0 - std::pow(wave, 0.7)) * smoothstep(0.08, 0.22, s) *
-                           smoothstep(0.0, 0.18, 1.0 - s);
-    }
-    return width;
-}
-
-// What a blade shows at a point: how far inside it is (negative: outside; in lengths), vein strength, relief.
-struct BladePoint {
-    double inside = -1.0;
-    double vein = 0.0;
-    double relief = 0.0;
-};
-
-// One lobe: `s` along its midrib, `t` across, both over its length.
-BladePoint lobe_at(const Shape& shape, double s, double t) {
-    BladePoint point;
-    const double width = half_width(shape, s);
-    const double across = std::abs(t);
-    const double beyond = std::max({0.0, -s, s - 1.0});
-    point.inside = beyond > 0.0 ? -std::sqrt(across * across + beyond * beyond) : width - across;
-    if (point.inside < -0.05) return point;
-    const double reach = width > 1e-6 ? clamp01(across / width) : 1.0;
-    const double midrib = smoothstep(0.016 * (1.15 - s), 0.006 * (1.15 - s), across);
-    // Side veins leave the midrib at an angle and bend towards the tip.
-    const double q =
-        (s - 0.55 * across - 0.55 * across * reach) * (shape.veins + 1.0) + (t > 0.0 ? 0.35 : 0.0);
-    const double phase = q - std::floor(q) - 0.5;
-    const double side = smoothstep(0.11, 0.03, std::abs(phase)) * (1.0 - 0.75 * reach);
-    point.vein = std::max(midrib, 0.62 * side);
-    const double quilt = 0.5 - 0.5 * std::cos(2.0 * kPi * (phase + 0.5));
-    point.relief = 0.020 * std::sqrt(quilt) * (1.0 - 0.5 * reach) + 0.30 * across - 0.012 * midrib;
-    return point;
-}
-
-BladePoint blade_at(const Shape& shape, double s, double t) {
-    if (!shape.palmate) return lobe_at(shape, s, t);
-    static constexpr double kAngles[5] = {0.0, 0.74, -0.74, 1.52, -1.52};
-    static constexpr double kLengths[5] = {1.0, 0.86, 0.86, 0.54, 0.54};
-    BladePoint best;
-    const double s0 = s - 0.06;
-    for (int i = 0; i < 5; i++) {
-        const double c = std::cos(kAngles[i]), n = std::sin(kAngles[i]);
-        const double along = (s0 * c + t * n) / kLengths[i];
-        const double across = (t * c - s0 * n) / kLengths[i];
-        // Palmate lobes share a broad base: widen each towards it.
-        BladePoint point = lobe_at(shape, along, across);
-        point.inside *= kLengths[i];
-        if (point.inside > best.inside) {
-            best = point;
-        }
-    }
-    const double heart = 0.21 - std::sqrt((s0 - 0.16) * (s0 - 0.16) + t * t);
-    best.inside = std::max(best.inside, heart);
-    return best;
-}
 
 struct Leaf {
     DVec2 base;       // of the blade
@@ -289,7 +144,8 @@ void draw_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, const 
     }
 }
 
-void draw_needles(std::vector<Sample>& canvas, int size, uint64_t seed, double sway, double top) {
+void draw_tuft(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway,
+               double top) {
     Random random(seed, 5);
     const int bundles = 64;
     for (int i = 0; i < bundles; i++) {
@@ -303,12 +159,145 @@ void draw_needles(std::vector<Sample>& canvas, int size, uint64_t seed, double s
             const DVec2 middle = on + direction * (0.5 * length);
             const DVec2 tip = middle + glm::normalize(direction + DVec2(0.0, 0.25)) * (0.5 * length);
             const double light = random.uniform(0.75, 1.2);
-            const DVec3 colour =
-                glm::mix(DVec3(0.12, 0.25, 0.11), DVec3(0.27, 0.42, 0.20), random.uniform()) * light;
+            const DVec3 colour = glm::mix(spray.dark, spray.light, random.uniform()) * light;
             draw_stalk(canvas, size, on, middle, 0.0048, 0.0052, colour);
             draw_stalk(canvas, size, middle, tip, 0.0052, 0.0014, colour);
         }
     }
+}
+
+// Short needles to both sides of a twig from a to b.
+void draw_needled_twig(std::vector<Sample>& canvas, int size, const Spray& spray, DVec2 a, DVec2 b,
+                       Random& random) {
+    const DVec2 along = glm::normalize(b - a), across(along.y, -along.x);
+    const double length = glm::distance(a, b);
+    const int count = std::max(6, static_cast<int>(length * 190.0));
+    draw_stalk(canvas, size, a, b, 0.0065, 0.0030, spray.twig);
+    for (int i = 0; i < count; i++) {
+        const double f = (i + 0.5) / count;
+        // Those on top of the twig come last and look shorter.
+        const double side = i % 3 == 2 ? random.uniform(-0.4, 0.4) : i % 3 == 1 ? 1.0 : -1.0;
+        const double needle = spray.leaf_length * random.uniform(0.8, 1.1) * (1.0 - 0.3 * f);
+        const DVec2 direction = glm::normalize(along * random.uniform(0.55, 0.95) + across * side);
+        const DVec2 from = glm::mix(a, b, f);
+        const DVec3 colour = glm::mix(spray.dark, spray.light, random.uniform()) * (0.8 + 0.35 * f);
+        draw_stalk(canvas, size, from, from + direction * (0.6 * needle), 0.0040, 0.0042, colour);
+        draw_stalk(canvas, size, from + direction * (0.6 * needle), from + direction * needle, 0.0042, 0.0012,
+                   colour * 1.1);
+    }
+}
+
+// A flat branchlet of needled twigs.
+void draw_flat_twigs(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway) {
+    Random random(seed, 5);
+    constexpr double kTop = 0.88;
+    constexpr int kPieces = 6;
+    const int count = 2 * spray.pairs;
+    for (int i = 0; i < count; i++) {
+        const double f = mix(0.10, 0.86, (i + 0.5) / count);
+        const double side = i % 2 ? 1.0 : -1.0;
+        const double turn = side * spray.spread * random.uniform(0.9, 1.1) * (1.0 - 0.2 * f);
+        const double reach = (0.40 * (1.0 - f) + 0.10) * random.uniform(0.9, 1.1);
+        const DVec2 on = twig_at(f, sway, kTop);
+        const DVec2 bent(std::sin(0.75 * turn), std::cos(0.75 * turn));
+        const DVec2 middle = on + DVec2(std::sin(turn), std::cos(turn)) * (0.55 * reach);
+        draw_needled_twig(canvas, size, spray, middle, middle + bent * (0.45 * reach), random);
+        draw_needled_twig(canvas, size, spray, on, middle, random);
+    }
+    for (int i = kPieces - 1; i >= 0; i--)
+        draw_needled_twig(canvas, size, spray, twig_at(static_cast<double>(i) / kPieces, sway, kTop),
+                          twig_at(static_cast<double>(i + 1) / kPieces, sway, kTop), random);
+}
+
+// A feather of leaflets along a stout rachis.
+void draw_frond(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway) {
+    Random random(seed, 5);
+    constexpr double kTop = 0.86;
+    constexpr int kPieces = 24;
+    int16_t index = 0;
+    for (int i = 0; i <= 2 * spray.pairs; i++) {
+        const double f = mix(0.13, 1.0, static_cast<double>(i) / (2 * spray.pairs));
+        const double side = i == 2 * spray.pairs ? 0.0 : i % 2 ? 1.0 : -1.0;
+        Leaf leaf;
+        // Longest a little below the middle, short and upright at the tip.
+        leaf.length = spray.leaf_length * std::pow(std::sin(kPi * mix(0.24, 0.97, f)), 0.8) *
+                      random.uniform(0.90, 1.04);
+        leaf.length = std::max(leaf.length, 0.09);
+        const double turn = side * mix(spray.spread, 0.30, f * f * f) * random.uniform(0.95, 1.05);
+        leaf.direction = {std::sin(turn), std::cos(turn)};
+        leaf.base = twig_at(f, sway, kTop);
+        const double room =
+            std::min((0.96 - leaf.base.y) / std::max(leaf.direction.y, 0.2),
+                     (0.485 - std::abs(leaf.base.x)) / std::max(std::abs(leaf.direction.x), 1e-6));
+        leaf.length = std::min(leaf.length, room);
+        leaf.bend = side * random.uniform(0.02, 0.06);
+        leaf.brightness = random.uniform(0.8, 1.12);
+        leaf.hue = random.uniform(-0.6, 1.0);
+        draw_leaf(canvas, size, spray, leaf, index++, seed);
+    }
+    for (int i = 0; i < kPieces; i++) {
+        const double f0 = static_cast<double>(i) / kPieces, f1 = static_cast<double>(i + 1) / kPieces;
+        draw_stalk(canvas, size, twig_at(f0, sway, kTop), twig_at(f1, sway, kTop), mix(0.013, 0.003, f0),
+                   mix(0.013, 0.003, f1), spray.twig);
+    }
+}
+
+void draw_leaves(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway,
+                 double top) {
+    const std::vector<Leaf> leaves = arrange(spray, seed, sway, top);
+    for (const Leaf& leaf : leaves) {
+        const DVec2 foot = leaf.base - leaf.direction * (spray.shape.petiole * leaf.length);
+        draw_stalk(canvas, size, foot, leaf.base + leaf.direction * (0.08 * leaf.length), 0.0042, 0.0032,
+                   glm::mix(spray.twig, spray.vein, 0.6));
+        draw_leaf(canvas, size, spray, leaf, static_cast<int16_t>(&leaf - leaves.data()), seed);
+    }
+}
+
+void draw_spray(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed) {
+    Random random(seed, 3);
+    const double sway = random.uniform(-0.03, 0.03);
+    if (spray.habit == Habit::kFlatTwigs) return draw_flat_twigs(canvas, size, spray, seed, sway);
+    if (spray.habit == Habit::kFrond) return draw_frond(canvas, size, spray, seed, sway);
+    const bool tuft = spray.habit == Habit::kTuft;
+    const double top = tuft ? 0.74 : 0.97 - spray.leaf_length * (1.08 + spray.shape.petiole);
+    constexpr int kTwigPieces = 16;
+    for (int i = 0; i < kTwigPieces; i++) {
+        const double f0 = static_cast<double>(i) / kTwigPieces, f1 = static_cast<double>(i + 1) / kTwigPieces;
+        draw_stalk(canvas, size, twig_at(f0, sway, top), twig_at(f1, sway, top), mix(0.009, 0.004, f0),
+                   mix(0.009, 0.004, f1), spray.twig);
+    }
+    if (tuft)
+        draw_tuft(canvas, size, spray, seed, sway, top);
+    else
+        draw_leaves(canvas, size, spray, seed, sway, top);
+}
+
+// One blade that fills the picture above its stalk, whatever its own width.
+void draw_blade(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed) {
+    constexpr double kMargin = 0.03;
+    const BladeBox box = box_of(spray.shape);
+    const DVec3 stalk = glm::mix(spray.twig, spray.vein, 0.6);
+    draw_stalk(canvas, size, {0.0, 0.0}, {0.0, kBladeStalk + 0.05}, 0.5 * kBladeStalkWidth * 1.2,
+               0.5 * kBladeStalkWidth * 1.2, stalk);
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < size; x++) {
+            const DVec2 p((x + 0.5) / size - 0.5, 1.0 - (y + 0.5) / size);
+            const double up = (p.y - kBladeStalk) / (1.0 - kMargin - kBladeStalk);
+            const double s = mix(box.s_low, box.s_high, up);
+            const double t = mix(box.t_low, box.t_high, p.x / (1.0 - 2.0 * kMargin) + 0.5);
+            const BladePoint blade = blade_at(spray.shape, s, t);
+            if (blade.inside <= 0.0) continue;
+            Sample& sample = canvas[static_cast<size_t>(y) * size + x];
+            const double mottle = fractal({p.x + 0.5, p.y}, 14, 14, 3, seed);
+            const double light = 0.5 + 0.3 * smoothstep(0.0, 0.10, blade.inside) + 0.5 * mottle +
+                                 (t > 0.0 ? 0.08 : -0.05) + 0.1 * s;
+            DVec3 colour =
+                glm::mix(glm::mix(spray.dark, spray.light, clamp01(light)), spray.vein, 0.55 * blade.vein);
+            colour *= 0.80 + 0.20 * smoothstep(0.0, 0.016, blade.inside);
+            sample = {static_cast<float>(colour.r),     static_cast<float>(colour.g),
+                      static_cast<float>(colour.b),     1.0f,
+                      static_cast<float>(blade.relief), 1};
+        }
 }
 
 // Averages 2 x 2 samples, weighting colour by alpha.
@@ -357,35 +346,9 @@ void spread_colour(std::vector<Sample>& canvas, int size) {
     }
 }
 
-}  // namespace
-
-LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t seed) {
-    leaf_preset(preset);  // throws for an unknown name
-    if (size < 16 || size > 4096) throw Error("A texture's size must be between 16 and 4096 pixels.");
+// Shrinks the canvas, drawn at twice the size, to the pictures.
+LeafTextures textures_of(const std::vector<Sample>& canvas, int size) {
     const int fine = 2 * size;
-    std::vector<Sample> canvas(static_cast<size_t>(fine) * fine);
-    Random random(seed, 3);
-    const double sway = random.uniform(-0.03, 0.03);
-    const Spray spray = spray_of(preset);
-    const bool needles = preset == "pine";
-    const double top = needles ? 0.74 : 0.97 - spray.leaf_length * (1.08 + spray.shape.petiole);
-    constexpr int kTwigPieces = 16;
-    for (int i = 0; i < kTwigPieces; i++) {
-        const double f0 = static_cast<double>(i) / kTwigPieces, f1 = static_cast<double>(i + 1) / kTwigPieces;
-        draw_stalk(canvas, fine, twig_at(f0, sway, top), twig_at(f1, sway, top), mix(0.009, 0.004, f0),
-                   mix(0.009, 0.004, f1), spray.twig);
-    }
-    if (needles) {
-        draw_needles(canvas, fine, seed, sway, top);
-    } else {
-        const std::vector<Leaf> leaves = arrange(spray, seed, sway, top);
-        for (const Leaf& leaf : leaves) {
-            const DVec2 foot = leaf.base - leaf.direction * (spray.shape.petiole * leaf.length);
-            draw_stalk(canvas, fine, foot, leaf.base + leaf.direction * (0.08 * leaf.length), 0.0042, 0.0032,
-                       glm::mix(spray.twig, spray.vein, 0.6));
-            draw_leaf(canvas, fine, spray, leaf, static_cast<int16_t>(&leaf - leaves.data()), seed);
-        }
-    }
     LeafTextures textures{Image(size, size, 4), Image(size, size, 3)};
     // Slopes only within one leaf: where leaves overlap there is a gap, not a cliff.
     for (int y = 0; y < size; y++) {
@@ -423,6 +386,27 @@ LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t se
         }
     }
     return textures;
+}
+
+void check_arguments(const std::string& preset, int size) {
+    leaf_preset(preset);  // throws for an unknown name
+    if (size < 16 || size > 4096) throw Error("A texture's size must be between 16 and 4096 pixels.");
+}
+
+}  // namespace
+
+LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t seed) {
+    check_arguments(preset, size);
+    std::vector<Sample> canvas(static_cast<size_t>(4) * size * size);
+    draw_spray(canvas, 2 * size, spray_of(preset), seed);
+    return textures_of(canvas, size);
+}
+
+LeafTextures make_blade_textures(const std::string& preset, int size, uint64_t seed) {
+    check_arguments(preset, size);
+    std::vector<Sample> canvas(static_cast<size_t>(4) * size * size);
+    draw_blade(canvas, 2 * size, spray_of(preset), seed);
+    return textures_of(canvas, size);
 }
 
 }  // namespace treerec

@@ -21,10 +21,13 @@ struct LeafTextures {
     Image normal;  // RGB, tangent space, green up
 };
 
-// preset: a leaf preset's name (foliage/leaves.h); "birch" has a bark of its own, the rest share one kind in
-// their own colours. size: pixels along an edge, 16..4096. The same arguments give the same bytes. Throw
-// Error for an unknown preset or another size.
+// preset: a leaf preset's name (foliage/leaf_rules.h). size: pixels along an edge, 16..4096. The same
+// arguments give the same bytes. Throw Error for an unknown preset or another size.
 BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t seed);
 LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t seed);
+
+// One leaf, or one leaflet of a compound leaf, that fills the picture above its stalk (kBladeStalk in
+// mesh/leaf_cards.h) whatever its width: LeafRules::blade_width gives it its shape back.
+LeafTextures make_blade_textures(const std::string& preset, int size, uint64_t seed);
 
 }  // namespace treerec

@@ -61,12 +61,13 @@ const std::vector<LeafPlacement>& TreeExporter::placed() {
 }
 
 const Mesh& TreeExporter::leaf_cards() {
-    if (!leaf_cards_) leaf_cards_ = bake_leaves(placed(), card_level(), progress_);
+    if (!leaf_cards_)
+        leaf_cards_ = bake_leaves(placed(), build_leaf_card(options_.leaves, card_level()), progress_);
     return *leaf_cards_;
 }
 
 size_t TreeExporter::triangles() {
-    return bark().triangle_count() + leaves() * build_leaf_card(card_level()).triangle_count();
+    return bark().triangle_count() + leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
 }
 
 int TreeExporter::card_level() {
@@ -95,7 +96,8 @@ void TreeExporter::write(const std::string& path) {
         case Format::kObj:
             break;
     }
-    if (pictures_.empty()) pictures_ = make_pictures(options_.textures);
+    if (pictures_.empty())
+        pictures_ = pictures_of_leaves(make_pictures(options_.textures), uses_blade_picture(options_.leaves));
     const Measurements measured = measure(tree_);
     ModelFile model;
     model.bark = &bark();
