@@ -4,6 +4,7 @@
 
 #include <godot_cpp/core/class_db.hpp>
 
+#include "leaf_rule.h"
 #include "tree_edit.h"
 #include "tree_reconstruction.h"
 
@@ -34,6 +35,7 @@ static void load_class_reference() {
 void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
     switch (p_level) {
         case MODULE_INITIALIZATION_LEVEL_SCENE:
+            GDREGISTER_CLASS(LeafRule)
             GDREGISTER_CLASS(TreeEdit)
             GDREGISTER_CLASS(TreeReconstruction)
 #ifdef TREEREC_EDITOR

@@ -31,6 +31,15 @@ std::shared_ptr<const Tree> TreeReconstruction::get_tree() const {
     return tree_;
 }
 
+int64_t TreeReconstruction::get_skeleton_revision() const {
+    const std::lock_guard lock(mutex_);
+    if (revision_ == 0 || revised_.lock() != tree_) {
+        revised_ = tree_;
+        revision_++;
+    }
+    return revision_;
+}
+
 void TreeReconstruction::set_skeleton(const Dictionary& p_skeleton) {
     Tree tree;
     Dictionary newer;
@@ -277,7 +286,7 @@ Ref<MultiMesh> TreeReconstruction::build_leaves(int p_lod) const {
     const PackedFloat32Array buffer = build_leaf_buffer(p_lod);
     Ref<ArrayMesh> card;
     card.instantiate();
-    const Array arrays = build_leaf_card_arrays(p_lod);
+    const Array arrays = build_leaf_form_arrays(p_lod);
     if (!arrays.is_empty()) {
         card->add_surface_from_arrays(Mesh::PRIMITIVE_TRIANGLES, arrays);
     }

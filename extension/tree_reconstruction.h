@@ -15,6 +15,7 @@
 #include "edit/script.h"
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
+#include "leaf_rule.h"
 #include "tree/tree.h"
 
 class TreeEdit;
@@ -52,6 +53,8 @@ class TreeReconstruction : public godot::Resource {
     bool are_leaves_enabled() const;
     void set_foliage_followed(bool p_followed);
     bool is_foliage_followed() const;
+    void set_leaf_rule(const godot::Ref<LeafRule>& p_rule);
+    godot::Ref<LeafRule> get_leaf_rule() const;
     void set_leaf_arrangement(LeafArrangement p_arrangement);
     LeafArrangement get_leaf_arrangement() const;
     void set_leaf_value(int p_index, double p_value);
@@ -82,6 +85,9 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedFloat32Array get_radii() const;
     godot::PackedInt32Array get_parents() const;
     godot::AABB get_aabb() const;
+    int64_t get_skeleton_revision() const;
+    godot::String get_leaf_look() const;
+    bool are_leaves_single() const;
     bool has_foliage() const;
     godot::PackedVector3Array get_foliage_positions() const;
     godot::PackedColorArray get_foliage_colors() const;
@@ -93,6 +99,7 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
     godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;
     godot::Array build_skeleton_lines() const;
+    godot::Array build_leaf_form_arrays(int p_lod) const;
     static godot::Array build_leaf_card_arrays(int p_lod);
     static godot::PackedStringArray get_leaf_preset_names();
 
@@ -144,8 +151,12 @@ class TreeReconstruction : public godot::Resource {
     mutable std::mutex mutex_;
     std::shared_ptr<const treerec::Tree> tree_ = std::make_shared<treerec::Tree>();
     std::shared_ptr<const treerec::Foliage> foliage_ = std::make_shared<treerec::Foliage>();
-    treerec::LeafRules leaf_rules_;
+    treerec::LeafRules leaf_rules_;  // where there is no leaf_rule_
+    bool foliage_followed_ = true;
+    godot::Ref<LeafRule> leaf_rule_;
     int64_t seed_ = 1;
+    mutable std::weak_ptr<const treerec::Tree> revised_;  // the tree of revision_
+    mutable int64_t revision_ = 0;
 
     treerec::EditLog edit_log_;
     godot::String leaf_preset_ = "generic";

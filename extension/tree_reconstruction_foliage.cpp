@@ -1,10 +1,11 @@
-// What TreeReconstruction keeps of the leaves that the scan saw.
+// What TreeReconstruction keeps of the leaves that the scan saw, and its leaf rule.
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <utility>
 
 #include "convert.h"
 #include "error.h"
+#include "mesh/leaf_cards.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -56,13 +57,14 @@ Dictionary TreeReconstruction::get_foliage() const {
 void TreeReconstruction::set_foliage_followed(bool p_followed) {
     {
         const std::lock_guard lock(mutex_);
-        leaf_rules_.follow_foliage = p_followed;
+        foliage_followed_ = p_followed;
     }
     emit_changed();
 }
 
 bool TreeReconstruction::is_foliage_followed() const {
-    return get_leaf_rules().follow_foliage;
+    const std::lock_guard lock(mutex_);
+    return foliage_followed_;
 }
 
 bool TreeReconstruction::has_foliage() const {
@@ -93,4 +95,63 @@ PackedColorArray TreeReconstruction::get_foliage_colors() const {
                          float(cell.color[2]) / 255.0f);
     }
     return colors;
+}
+
+treerec::LeafRules TreeReconstruction::get_leaf_rules() const {
+    Ref<LeafRule> rule;
+    treerec::LeafRules rules;
+    {
+        const std::lock_guard lock(mutex_);
+        rule = leaf_rule_;
+        rules = leaf_rules_;
+        if (!foliage_followed_) {
+            rules.follow_density = 0.0;
+            rules.follow_color = 0.0;
+        }
+    }
+    return rule.is_valid() ? rule->get_rules() : rules;
+}
+
+void TreeReconstruction::set_leaf_rule(const Ref<LeafRule>& p_rule) {
+    const Ref<LeafRule> before = get_leaf_rule();
+    if (before == p_rule) {
+        return;
+    }
+    const Callable heard(this, "emit_changed");
+    if (before.is_valid()) {
+        before->disconnect("changed", heard);
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        leaf_rule_ = p_rule;
+    }
+    if (p_rule.is_valid()) {
+        p_rule->connect("changed", heard);
+    }
+    notify_property_list_changed();
+    emit_changed();
+}
+
+Ref<LeafRule> TreeReconstruction::get_leaf_rule() const {
+    const std::lock_guard lock(mutex_);
+    return leaf_rule_;
+}
+
+String TreeReconstruction::get_leaf_look() const {
+    const Ref<LeafRule> rule = get_leaf_rule();
+    if (rule.is_valid()) {
+        return rule->get_look();
+    }
+    return leaf_preset_ == String("none") ? String("generic") : leaf_preset_;
+}
+
+bool TreeReconstruction::are_leaves_single() const {
+    return treerec::uses_blade_picture(get_leaf_rules());
+}
+
+Array TreeReconstruction::build_leaf_form_arrays(int p_lod) const {
+    ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
+                        vformat("There is no level of detail %d; 0 is the finest.", p_lod));
+    return guarded(Array(),
+                   [&] { return to_surface_arrays(treerec::build_leaf_card(get_leaf_rules(), p_lod)); });
 }

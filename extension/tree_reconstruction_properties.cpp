@@ -32,11 +32,6 @@ const TreeReconstruction::LeafValue TreeReconstruction::kLeafValues[] = {
 
 constexpr int kMostLeaves = 2000000;
 
-treerec::LeafRules TreeReconstruction::get_leaf_rules() const {
-    const std::lock_guard lock(mutex_);
-    return leaf_rules_;
-}
-
 void TreeReconstruction::set_seed(int64_t p_seed) {
     {
         const std::lock_guard lock(mutex_);
@@ -51,9 +46,8 @@ int64_t TreeReconstruction::get_seed() const {
 }
 
 void TreeReconstruction::set_leaf_preset(const String& p_name) {
-    const treerec::LeafRules current = get_leaf_rules();
     bool known = true;
-    const treerec::LeafRules rules = guarded(current, [&] {
+    const treerec::LeafRules rules = guarded(treerec::LeafRules(), [&] {
         known = false;
         const treerec::LeafRules preset = treerec::leaf_preset(to_std(p_name));
         known = true;
@@ -65,10 +59,7 @@ void TreeReconstruction::set_leaf_preset(const String& p_name) {
     leaf_preset_ = p_name;
     {
         const std::lock_guard lock(mutex_);
-        // Whether the scan's foliage is followed is no matter of the kind of tree.
-        const bool follow = leaf_rules_.follow_foliage;
         leaf_rules_ = rules;
-        leaf_rules_.follow_foliage = follow;
     }
     notify_property_list_changed();
     emit_changed();
@@ -87,20 +78,24 @@ void TreeReconstruction::set_leaves_enabled(bool p_enabled) {
 }
 
 bool TreeReconstruction::are_leaves_enabled() const {
-    return get_leaf_rules().enabled;
+    const std::lock_guard lock(mutex_);
+    return leaf_rules_.enabled;
 }
 
 void TreeReconstruction::set_leaf_arrangement(LeafArrangement p_arrangement) {
     ERR_FAIL_INDEX_MSG(int(p_arrangement), 2, "Leaves stand alternate (0) or opposite (1).");
     {
         const std::lock_guard lock(mutex_);
-        leaf_rules_.arrangement = treerec::LeafArrangement(p_arrangement);
+        leaf_rules_.arrangement = p_arrangement == LEAF_ARRANGEMENT_OPPOSITE
+                                      ? treerec::LeafArrangement::kDecussate
+                                      : treerec::LeafArrangement::kSpiral;
     }
     emit_changed();
 }
 
 TreeReconstruction::LeafArrangement TreeReconstruction::get_leaf_arrangement() const {
-    return LeafArrangement(get_leaf_rules().arrangement);
+    const std::lock_guard lock(mutex_);
+    return treerec::leaves_per_node(leaf_rules_) > 1 ? LEAF_ARRANGEMENT_OPPOSITE : LEAF_ARRANGEMENT_ALTERNATE;
 }
 
 void TreeReconstruction::set_leaf_value(int p_index, double p_value) {
@@ -129,13 +124,21 @@ void TreeReconstruction::set_maximum_leaves(int p_count) {
 }
 
 int TreeReconstruction::get_maximum_leaves() const {
-    return get_leaf_rules().maximum_leaves;
+    const std::lock_guard lock(mutex_);
+    return leaf_rules_.maximum_leaves;
 }
 
 void TreeReconstruction::_validate_property(PropertyInfo& p_property) const {
     if (p_property.name == StringName("leaf_preset")) {
         p_property.hint = PROPERTY_HINT_ENUM;
         p_property.hint_string = String(",").join(get_leaf_preset_names());
+    }
+    // A rule stands in for all of these.
+    const String name = p_property.name;
+    if (get_leaf_rule().is_valid() &&
+        (name == "maximum_leaves" || name == "leaves_enabled" || name == "foliage_followed" ||
+         (name.begins_with("leaf_") && name != "leaf_rule"))) {
+        p_property.usage = PROPERTY_USAGE_STORAGE;
     }
 }
 
@@ -169,6 +172,8 @@ void TreeReconstruction::_bind_properties() {
     ClassDB::bind_method(D_METHOD("get_leaf_preset"), &TreeReconstruction::get_leaf_preset);
     ClassDB::bind_method(D_METHOD("set_leaves_enabled", "enabled"), &TreeReconstruction::set_leaves_enabled);
     ClassDB::bind_method(D_METHOD("are_leaves_enabled"), &TreeReconstruction::are_leaves_enabled);
+    ClassDB::bind_method(D_METHOD("set_leaf_rule", "rule"), &TreeReconstruction::set_leaf_rule);
+    ClassDB::bind_method(D_METHOD("get_leaf_rule"), &TreeReconstruction::get_leaf_rule);
     ClassDB::bind_method(D_METHOD("set_leaf_arrangement", "arrangement"),
                          &TreeReconstruction::set_leaf_arrangement);
     ClassDB::bind_method(D_METHOD("get_leaf_arrangement"), &TreeReconstruction::get_leaf_arrangement);
@@ -190,6 +195,8 @@ void TreeReconstruction::_bind_properties() {
     ADD_PROPERTY(PropertyInfo(Variant::INT, "seed"), "set_seed", "get_seed");
     // Without a prefix, so that all of them stand in the group.
     ADD_GROUP("Leaves", "");
+    ADD_PROPERTY(PropertyInfo(Variant::OBJECT, "leaf_rule", PROPERTY_HINT_RESOURCE_TYPE, "LeafRule"),
+                 "set_leaf_rule", "get_leaf_rule");
     // The preset comes first: it sets all that follow, which a file then sets again.
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "leaf_preset"), "set_leaf_preset", "get_leaf_preset");
     ADD_PROPERTY(PropertyInfo(Variant::BOOL, "leaves_enabled"), "set_leaves_enabled", "are_leaves_enabled");
@@ -234,6 +241,9 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_radii"), &TreeReconstruction::get_radii);
     ClassDB::bind_method(D_METHOD("get_parents"), &TreeReconstruction::get_parents);
     ClassDB::bind_method(D_METHOD("get_aabb"), &TreeReconstruction::get_aabb);
+    ClassDB::bind_method(D_METHOD("get_skeleton_revision"), &TreeReconstruction::get_skeleton_revision);
+    ClassDB::bind_method(D_METHOD("get_leaf_look"), &TreeReconstruction::get_leaf_look);
+    ClassDB::bind_method(D_METHOD("are_leaves_single"), &TreeReconstruction::are_leaves_single);
     ClassDB::bind_method(D_METHOD("has_foliage"), &TreeReconstruction::has_foliage);
     ClassDB::bind_method(D_METHOD("get_foliage_positions"), &TreeReconstruction::get_foliage_positions);
     ClassDB::bind_method(D_METHOD("get_foliage_colors"), &TreeReconstruction::get_foliage_colors);
@@ -246,6 +256,8 @@ void TreeReconstruction::_bind_methods() {
                          DEFVAL(0));
     ClassDB::bind_method(D_METHOD("build_leaves", "lod"), &TreeReconstruction::build_leaves, DEFVAL(0));
     ClassDB::bind_method(D_METHOD("build_skeleton_lines"), &TreeReconstruction::build_skeleton_lines);
+    ClassDB::bind_method(D_METHOD("build_leaf_form_arrays", "lod"),
+                         &TreeReconstruction::build_leaf_form_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("build_leaf_card_arrays", "lod"),
                                 &TreeReconstruction::build_leaf_card_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_leaf_preset_names"),

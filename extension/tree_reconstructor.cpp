@@ -178,7 +178,7 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
         const Listener listener(this);
         listener.check();
         treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
-                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_preset()), &listener,
+                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_look()), &listener,
                              *p_tree->get_leaf_density());
         return OK;
     } catch (const std::exception& error) {

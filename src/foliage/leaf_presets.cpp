@@ -22,7 +22,7 @@ LeafRules willow() {
     LeafRules made = rules(LeafArrangement::kSpiral, 0.055, 0.34, 28.0, 62.0);
     made.twig_length = 0.9;
     made.angle_variation = 14.0;
-    made.blade_width = 0.16;
+    made.blade_width = 0.17;
     made.curl = 26.0;
     return made;
 }
@@ -61,9 +61,10 @@ LeafRules spruce() {
 
 LeafRules palm() {
     // Fronds at the end of the stem alone: young ones upright, old ones hanging.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.014, 2.6, 118.0, 12.0);
-    made.twig_length = 0.55;
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.022, 2.6, 118.0, 12.0);
+    made.twig_length = 0.8;
     made.maximum_radius = 0.5;
+    made.by_order = {1.0f, 0.0f};
     made.closing = 0.85;
     made.size_variation = 0.12;
     made.angle_variation = 10.0;

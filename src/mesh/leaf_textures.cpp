@@ -294,9 +294,12 @@ void draw_blade(std::vector<Sample>& canvas, int size, const Spray& spray, uint6
             DVec3 colour =
                 glm::mix(glm::mix(spray.dark, spray.light, clamp01(light)), spray.vein, 0.55 * blade.vein);
             colour *= 0.80 + 0.20 * smoothstep(0.0, 0.016, blade.inside);
-            sample = {static_cast<float>(colour.r),     static_cast<float>(colour.g),
-                      static_cast<float>(colour.b),     1.0f,
-                      static_cast<float>(blade.relief), 1};
+            sample = {static_cast<float>(colour.r),
+                      static_cast<float>(colour.g),
+                      static_cast<float>(colour.b),
+                      1.0f,
+                      static_cast<float>(blade.relief + 0.006 * mottle),
+                      1};
         }
 }
 

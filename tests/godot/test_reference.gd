@@ -1,7 +1,9 @@
 extends "./suite.gd"
 ## The class reference covers every class and member, in whole sentences.
 
-const CLASSES: PackedStringArray = ["TreeEdit", "TreeReconstruction", "TreeReconstructor"]
+const CLASSES: PackedStringArray = [
+	"LeafRule", "TreeEdit", "TreeReconstruction", "TreeReconstructor"
+]
 const HERE: String = "../../extension/doc_classes/%s.xml"
 
 

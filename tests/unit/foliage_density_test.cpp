@@ -130,7 +130,7 @@ TEST(Leaves, StandWhereTheScanSawThem) {
         // Without it, and where it is not followed, the rules stand alone.
         const std::vector<LeafPlacement> plain = place_leaves(tree, rules, seed);
         LeafRules apart = rules;
-        apart.follow_foliage = false;
+        apart.follow_density = 0.0;
         const std::vector<LeafPlacement> same = place_leaves(tree, apart, seed, foliage);
         ASSERT_EQ(same.size(), plain.size());
         EXPECT_EQ(std::memcmp(same.data(), plain.data(), plain.size() * sizeof(LeafPlacement)), 0);

@@ -83,6 +83,8 @@ var _leaves_node: MultiMeshInstance3D
 var _queued: bool = false
 var _job: BuildJob
 var _height: float = 1.0
+# The reconstruction, its revision and the level that the mesh was built of.
+var _bark_of: Array = []
 
 
 ## Builds the tree again, once, before the next frame is drawn or as soon as a build that is under
@@ -146,6 +148,7 @@ func _start() -> void:
 	if reconstruction == null or reconstruction.get_node_count() == 0:
 		_drop_job()
 		mesh = null
+		_bark_of = []
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
 		rebuilt.emit()
@@ -158,6 +161,9 @@ func _start() -> void:
 	job.source = reconstruction
 	job.lod = lod
 	job.leaves = leaves
+	job.revision = reconstruction.get_skeleton_revision()
+	# A change of the leaves alone keeps the bark.
+	job.with_bark = mesh == null or _bark_of != [reconstruction, job.revision, lod]
 	if not threaded:
 		job.run()
 		_apply(job)
@@ -188,15 +194,8 @@ func _drop_job() -> void:
 
 
 func _apply(job: BuildJob) -> void:
-	var bark: ArrayMesh = ArrayMesh.new()
-	if not job.bark.is_empty():
-		bark.add_surface_from_arrays(
-			Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, TreeReconstruction.MESH_FLAGS
-		)
-	var box: AABB = bark.get_aabb()
-	_height = maxf(box.end.y, 0.1)
-	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
-	mesh = bark
+	if job.with_bark:
+		_apply_bark(job)
 	if job.buffer.is_empty():
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
@@ -209,6 +208,19 @@ func _apply(job: BuildJob) -> void:
 	_update_materials()
 	_update_instances()
 	rebuilt.emit()
+
+
+func _apply_bark(job: BuildJob) -> void:
+	var bark: ArrayMesh = ArrayMesh.new()
+	if not job.bark.is_empty():
+		bark.add_surface_from_arrays(
+			Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, TreeReconstruction.MESH_FLAGS
+		)
+	var box: AABB = bark.get_aabb()
+	_height = maxf(box.end.y, 0.1)
+	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
+	mesh = bark
+	_bark_of = [job.source, job.revision, job.lod]
 
 
 func _leaf_multimesh(job: BuildJob) -> MultiMesh:
@@ -229,13 +241,16 @@ func _update_materials() -> void:
 	if mesh != null and mesh.get_surface_count() > 0:
 		mesh.surface_set_material(0, _material_or_preset(bark_material, "bark"))
 	if _leaves_node != null:
-		_leaves_node.material_override = _material_or_preset(leaf_material, "leaf")
+		var part: String = (
+			"blade" if reconstruction != null and reconstruction.are_leaves_single() else "leaf"
+		)
+		_leaves_node.material_override = _material_or_preset(leaf_material, part)
 
 
 func _material_or_preset(material: Material, part: String) -> Material:
 	if material != null or reconstruction == null:
 		return material
-	var path: String = _PRESETS % [reconstruction.leaf_preset, part]
+	var path: String = _PRESETS % [reconstruction.get_leaf_look(), part]
 	if not ResourceLoader.exists(path):
 		path = _PRESETS % ["generic", part]
 	return load(path) as Material
@@ -252,6 +267,16 @@ func _update_instances() -> void:
 		for property: String in _SHARED:
 			_leaves_node.set(property, get(property))
 		_set_shader_values(_leaves_node.get_instance(), height)
+		_set_season(_leaves_node.get_instance())
+
+
+# What the season makes of the leaves' colour: of those that are early, and late, in it.
+func _set_season(instance: RID) -> void:
+	var tints: PackedColorArray = [Color(1.0, 1.0, 1.0, 0.0), Color(1.0, 1.0, 1.0, 0.0)]
+	if reconstruction != null and reconstruction.leaf_rule != null:
+		tints = reconstruction.leaf_rule.get_season_tints()
+	RenderingServer.instance_geometry_set_shader_parameter(instance, &"season_early", tints[0])
+	RenderingServer.instance_geometry_set_shader_parameter(instance, &"season_late", tints[1])
 
 
 func _set_shader_values(instance: RID, height: float) -> void:
@@ -294,12 +319,15 @@ class BuildJob:
 	var leaves: bool
 	var task: int = -1
 	var stale: bool = false
+	var with_bark: bool = true
+	var revision: int
 	var bark: Array
 	var card: Array
 	var buffer: PackedFloat32Array
 
 	func run() -> void:
-		bark = source.build_mesh_arrays(lod)
+		if with_bark:
+			bark = source.build_mesh_arrays(lod)
 		if leaves:
 			buffer = source.build_leaf_buffer(lod)
-			card = TreeReconstruction.build_leaf_card_arrays(lod)
+			card = source.build_leaf_form_arrays(lod)
