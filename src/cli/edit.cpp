@@ -123,6 +123,8 @@ void run_edit(const std::vector<std::string>& words) {
         for (const EditLog::Entry& entry : result.log.entries())
             log.add(entry);
         progress.clear();
+        for (const std::string& sentence : result.said)
+            if (!quiet) std::printf("%s\n", sentence.c_str());
         for (const LeftOut& one : result.left_out)
             std::fprintf(stderr, "Left out: %sline %zu: %s: %s\n", name.c_str(), one.line,
                          one.command.c_str(), one.reason.c_str());

@@ -64,7 +64,7 @@ struct GraftResult {
     NodeId host = kNoNode;
     std::vector<NodeId> added;  // in the scion's depth-first order, its root left out
     double scale = 1.0;
-    uint64_t seed = 0;  // that was used: with it, the same tree gives the same graft at the first try
+    uint64_t seed = 0;  // by which it varies: options.seed at the first try
     double spin = 0.0;  // degrees by which it was turned about its own direction to avoid collisions
     int tries = 0;
     std::vector<Collision> collisions;  // Collision::grafted is an id of the tree

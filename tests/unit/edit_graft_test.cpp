@@ -166,6 +166,30 @@ TEST(EditGraft, GoesWhereItIsTold) {
     }
 }
 
+TEST(EditGraft, RollsAndMirrors) {
+    Tree tree;
+    tree.add_root({0, 0, 0}, 0.1);
+    const NodeId host = tree.add_child(0, {0, 1, 0}, 0.1);
+    tree.add_child(host, {0, 2, 0}, 0.1);
+    Tree scion;
+    scion.add_root({0, 0, 0}, 0.02);
+    scion.add_child(0, {0.1, 0.2, 0.3}, 0.02);
+    const auto place = [&](double roll, bool mirror) {
+        Tree copy = tree;
+        GraftOptions options;
+        options.aim = GraftAim::kOwn;
+        options.roll = roll;
+        options.mirror = mirror;
+        return copy.node(graft(copy, host, scion, options).added[0]).position - DVec3(0, 1, 0);
+    };
+    // On an upright stem the scion's axes are the tree's.
+    EXPECT_LT(glm::distance(place(0, false), DVec3(0.1, 0.2, 0.3)), 1e-12);
+    EXPECT_LT(glm::distance(place(0, true), DVec3(-0.1, 0.2, 0.3)), 1e-12);
+    EXPECT_LT(glm::distance(place(90, false), DVec3(0.3, 0.2, -0.1)), 1e-12);
+    EXPECT_LT(glm::distance(place(180, true), DVec3(0.1, 0.2, -0.3)), 1e-12);
+    EXPECT_LT(glm::distance(place(-360, false), DVec3(0.1, 0.2, 0.3)), 1e-12);
+}
+
 TEST(EditGraft, LeansIntoTheWidestGap) {
     Tree tree;
     tree.add_root({0, 0, 0}, 0.1);

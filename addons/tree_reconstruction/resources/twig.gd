@@ -1,4 +1,5 @@
 @tool
+@icon("../icons/Twig.svg")
 class_name Twig
 extends Resource
 ## A branch to graft onto trees: its wood as an L-string, with a name and a picture for a list.

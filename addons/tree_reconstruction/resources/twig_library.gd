@@ -1,4 +1,5 @@
 @tool
+@icon("../icons/TwigLibrary.svg")
 class_name TwigLibrary
 extends Resource
 ## A collection of branches to graft.
