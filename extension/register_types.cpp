@@ -4,6 +4,7 @@
 
 #include <godot_cpp/core/class_db.hpp>
 
+#include "l_system.h"
 #include "leaf_rule.h"
 #include "tree_edit.h"
 #include "tree_reconstruction.h"
@@ -38,6 +39,7 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
             GDREGISTER_CLASS(LeafRule)
             GDREGISTER_CLASS(TreeEdit)
             GDREGISTER_CLASS(TreeReconstruction)
+            GDREGISTER_CLASS(LSystem)
 #ifdef TREEREC_EDITOR
             GDREGISTER_CLASS(
                 TreeReconstructor)  // Here, since scripts run by the editor's program use it too.

@@ -107,8 +107,8 @@ std::string_view GrammarText::name() {
 class ExpressionParser {
   public:
     ExpressionParser(GrammarText& text, const std::map<std::string, int, std::less<>>& variables,
-                     const std::map<std::string, double, std::less<>>& constants)
-        : text_(text), variables_(variables), constants_(constants) {}
+                     const std::map<std::string, double, std::less<>>& constants, bool in_brackets)
+        : text_(text), variables_(variables), constants_(constants), brackets_(in_brackets ? 1 : 0) {}
 
     Expression parse() {
         skip();
@@ -247,15 +247,15 @@ class ExpressionParser {
     GrammarText& text_;
     const std::map<std::string, int, std::less<>>& variables_;
     const std::map<std::string, double, std::less<>>& constants_;
+    int brackets_;
     Expression result_;
     int depth_ = 0;
-    int brackets_ = 0;
     int values_ = 0;
 };
 
 Expression Expression::parse(GrammarText& text, const std::map<std::string, int, std::less<>>& variables,
-                             const std::map<std::string, double, std::less<>>& constants) {
-    return ExpressionParser(text, variables, constants).parse();
+                             const std::map<std::string, double, std::less<>>& constants, bool in_brackets) {
+    return ExpressionParser(text, variables, constants, in_brackets).parse();
 }
 
 double Expression::evaluate(const double* variables, Random& random) const {

@@ -43,9 +43,11 @@ class GrammarText {
 // uniform(low, high) and normal(mean, deviation). What is true is 1, what is not 0.
 class Expression {
   public:
-    // variables: names and where evaluate() finds them. Throws Error with line and column.
+    // variables: names and where evaluate() finds them. in_brackets: it may run over the ends of lines.
+    // Throws Error with line and column.
     static Expression parse(GrammarText& text, const std::map<std::string, int, std::less<>>& variables,
-                            const std::map<std::string, double, std::less<>>& constants);
+                            const std::map<std::string, double, std::less<>>& constants,
+                            bool in_brackets = false);
 
     bool empty() const { return code_.empty(); }
     // May return what is not finite.

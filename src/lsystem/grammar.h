@@ -11,7 +11,8 @@
 //
 // A symbol is one character. A rule holds for a symbol with as many parameters as it names. Of the rules that
 // apply, those with a context come first, then the one that was written first; what no rule applies to stays.
-// A statement ends with its line, but not inside brackets; # begins a comment, but for #define and #ignore,
+// A statement ends with its line, but not inside brackets, nor where the next line is indented more deeply; #
+// begins a comment, but for #define and #ignore,
 // which mean what they mean in ABOP's listings.
 #pragma once
 

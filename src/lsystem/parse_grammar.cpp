@@ -52,6 +52,7 @@ class GrammarParser {
 
     void statement() {
         const size_t begin = text_.at;
+        indent_ = indent_at(begin);
         const bool directive = text_.next() == '#';
         if (directive) text_.at++;
         const std::string_view word = text_.name();
@@ -287,7 +288,7 @@ class GrammarParser {
             text_.at++;
             return modules;
         }
-        for (;; text_.skip(!open.empty())) {
+        for (;; skip_within(!open.empty())) {
             const char c = text_.next();
             if (c == '[') {
                 open.push_back(text_.at);
@@ -306,6 +307,23 @@ class GrammarParser {
         return modules;
     }
 
+    // Blanks, and the ends of lines where brackets are open or the next line is indented more deeply than the
+    // statement.
+    void skip_within(bool in_brackets) {
+        text_.skip(in_brackets);
+        while (text_.next() == '\n') {
+            GrammarText ahead = text_;
+            ahead.skip(true);
+            if (ahead.ended() || indent_at(ahead.at) <= indent_) return;
+            text_ = ahead;
+        }
+    }
+
+    size_t indent_at(size_t offset) const {
+        const size_t end = whole_.substr(0, offset).rfind('\n');
+        return end == std::string_view::npos ? offset : offset - end - 1;
+    }
+
     void actuals(GrammarModule& module, const Variables& variables) {
         text_.skip();
         if (text_.next() != '(') return;
@@ -313,7 +331,7 @@ class GrammarParser {
         do {
             text_.at++;
             text_.skip(true);
-            module.parameters.push_back(Expression::parse(text_, variables, constants_));
+            module.parameters.push_back(Expression::parse(text_, variables, constants_, true));
             if (module.parameters.size() > kMostParameters)
                 text_.fail(bracket, "a symbol has at most 16 parameters.");
             text_.skip(true);
@@ -327,6 +345,7 @@ class GrammarParser {
     std::string_view whole_;
     Grammar grammar_;
     bool has_axiom_ = false;
+    size_t indent_ = 0;  // of the statement being read
     std::map<std::string, double, std::less<>> constants_;
 };
 

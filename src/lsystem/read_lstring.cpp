@@ -13,6 +13,7 @@ namespace treerec {
 namespace {
 
 constexpr size_t kDeepest = size_t{1} << 20;  // brackets in brackets
+constexpr double kFarthest = 1e12;            // metres
 constexpr double kThinnest = 1e-5;            // metres; what thinning ends at
 
 bool is_blank(char c) {
@@ -143,7 +144,9 @@ class Reader {
     void add_node(NodeId parent, bool guess) {
         if (parents_.size() >= options_.most_nodes)
             fail(begin_, "the tree gets more than " + std::to_string(options_.most_nodes) + " nodes.");
-        if (!is_finite(state_.turtle.position)) fail(begin_, "the turtle leaves all bounds here.");
+        const DVec3& at = state_.turtle.position;
+        if (!(std::abs(at.x) + std::abs(at.y) + std::abs(at.z) < kFarthest))
+            fail(begin_, "the turtle leaves all bounds here.");
         const NodeId id = static_cast<NodeId>(parents_.size());
         const int32_t level = static_cast<int32_t>(stack_.size());
         if (parent != kNoNode && state_.level == level) continuations_.push_back(id);

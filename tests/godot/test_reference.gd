@@ -2,7 +2,7 @@ extends "./suite.gd"
 ## The class reference covers every class and member, in whole sentences.
 
 const CLASSES: PackedStringArray = [
-	"LeafRule", "TreeEdit", "TreeReconstruction", "TreeReconstructor"
+	"LSystem", "LeafRule", "TreeEdit", "TreeReconstruction", "TreeReconstructor"
 ]
 const HERE: String = "../../extension/doc_classes/%s.xml"
 

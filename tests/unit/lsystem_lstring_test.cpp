@@ -357,8 +357,8 @@ TEST(LString, ErrorsNameThePlace) {
     EXPECT_EQ(sentence_of("!(0)F"), "The L-string, line 1, column 1: a radius must be positive.");
     EXPECT_EQ(sentence_of("F}"), "The L-string, line 1, column 2: this } closes no {.");
     EXPECT_EQ(sentence_of("F{"), "The L-string, line 1, column 2: this { is never closed.");
-    EXPECT_EQ(sentence_of("F(1e308)F(1e308)"),
-              "The L-string, line 1, column 9: the turtle leaves all bounds here.");
+    EXPECT_EQ(sentence_of("F(9e11)F(9e11)"),
+              "The L-string, line 1, column 8: the turtle leaves all bounds here.");
     EXPECT_EQ(sentence_of("F(1e999)"), "The L-string, line 1, column 3: here a number should stand.");
     EXPECT_EQ(sentence_of("@(9)"), "The L-string, line 1, column 1: flags are a number from 0 to 7.");
     EXPECT_EQ(sentence_of(std::string((1 << 20) + 1, '[')),

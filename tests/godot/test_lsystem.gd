@@ -1,0 +1,173 @@
+extends "./suite.gd"
+## LSystem: grammars that grow, strings that are read and written.
+
+const CHANCE: String = """
+	iterations: 2
+	angle: 90
+	step: 0.5
+	axiom: F
+	F -> F[+F]F : 0.5
+	F -> FF : 0.5
+"""
+
+
+func test_presets_grow() -> void:
+	check(LSystem.get_preset_names().size() >= 5, "There are few presets.")
+	for name: String in LSystem.get_preset_names():
+		var system: LSystem = LSystem.new()
+		system.grammar = LSystem.get_preset(name)
+		check_equal(system.get_error_message(), "", name)
+		var made: TreeReconstruction = system.grow()
+		check(made.get_node_count() > 500, "%s has %d nodes." % [name, made.get_node_count()])
+		check(made.get_aabb().size.y > 2.0, "%s is %s tall." % [name, made.get_aabb().size.y])
+		check(made.build_mesh().get_surface_count() > 0, "%s has no bark." % name)
+		check(made.build_leaf_buffer().size() > 0, "%s has no leaves." % name)
+
+
+func test_a_seed_is_a_tree() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = CHANCE
+	system.iterations = 5
+	check_equal(system.generate(7), system.generate(7), "the same seed")
+	check(system.generate(7) != system.generate(8), "Two seeds give one string.")
+	check_equal(system.generate(), system.generate(1), "the grammar's own seed")
+	var made: TreeReconstruction = system.grow(7)
+	check(made.get_node_count() > 30, "It has %d nodes." % made.get_node_count())
+	check_equal(made.seed, 7, "the seed of the leaves")
+
+
+func test_iterations() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = "iterations: 2\naxiom: F\nF -> FF"
+	check_equal(system.generate(), "FFFF", "the grammar's own")
+	system.iterations = 0
+	check_equal(system.generate(), "F", "none")
+	system.iterations = 3
+	check_equal(system.generate(), "FFFFFFFF", "three")
+
+
+func test_strings_come_back() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var text: String = LSystem.write_string(made)
+	var read: TreeReconstruction = LSystem.read_string(text)
+	check_equal(read.get_node_count(), made.get_node_count(), "the nodes")
+	var ids: PackedInt32Array = made.get_node_ids()
+	for node: int in read.get_node_ids():
+		check(
+			read.get_node_position(node).distance_to(made.get_node_position(ids[node])) < 1e-4,
+			"Node %d lies elsewhere." % node
+		)
+		check_near(read.get_node_radius(node), made.get_node_radius(ids[node]), 1e-4, "a radius")
+		check_equal(read.is_trunk(node), made.is_trunk(ids[node]), "on the trunk")
+	var paper: String = LSystem.write_string(made, -1, LSystem.DIALECT_PAPER)
+	check_equal(
+		LSystem.read_string(paper, LSystem.DIALECT_PAPER).get_node_count(),
+		made.get_node_count(),
+		"the paper's dialect"
+	)
+
+
+func test_a_branch_is_relative() -> void:
+	# Of two equal branches on opposite sides, each is straight above its own wood.
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = skeleton(
+		[
+			[-1, 0.0, 0.0, 0.0, 0.1, 0],
+			[0, 1.0, 0.0, 0.0, 0.1, 0],
+			[1, 2.0, 0.0, 0.0, 0.1, 0],
+			[0, -1.0, 0.0, 0.0, 0.1, 0],
+			[3, -2.0, 0.0, 0.0, 0.1, 0]
+		]
+	)
+	check_equal(LSystem.write_string(made, 2), "!(0.1)F(1)", "one side")
+	check_equal(LSystem.write_string(made, 4), "!(0.1)F(1)", "the other side")
+
+
+func test_leaves_become_foliage() -> void:
+	var made: TreeReconstruction = LSystem.read_string("F(2)[+(60)F(1)~(0.1)]F(1)")
+	check(made.has_foliage(), "The leaf is lost.")
+	var where: Vector3 = made.get_node_position(2)
+	for node: int in made.get_leaves():
+		if made.get_node_position(node).x < -0.5:
+			where = made.get_node_position(node)
+	check(made.get_foliage_positions()[0].distance_to(where) < 0.15, "The leaf is elsewhere.")
+
+
+func test_mistakes_are_told() -> void:
+	var system: LSystem = LSystem.new()
+	check(system.get_error_message().contains("no axiom"), "An empty grammar: no message.")
+	system.grammar = "axiom: F\nF -> F[+F"
+	var sentence: String = "The grammar, line 2, column 7: this [ is never closed."
+	check_equal(system.get_error_message(), sentence, "the message")
+	expect_error(sentence)
+	check_equal(system.generate(), "", "a string")
+	check(system.grow() == null, "A tree grew.")
+	expect_error("line 1, column 2")
+	check(LSystem.read_string("F*") == null, "A wrong string was read.")
+	expect_error("There is no grammar 'cactus'")
+	check_equal(LSystem.get_preset("cactus"), "", "no preset")
+	expect_error("There is no tree")
+	check_equal(LSystem.write_string(null), "", "no tree")
+	expect_error("The tree is empty")
+	check_equal(LSystem.write_string(TreeReconstruction.new()), "", "an empty tree")
+	expect_error("no node 99999")
+	check_equal(LSystem.write_string(grown_tree(1), 99999), "", "no node")
+
+
+func test_explosions_are_stopped() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = "iterations: 100\naxiom: F\nF -> FF"
+	system.maximum_symbols = 5000
+	expect_error("grows past 5000 symbols")
+	check_equal(system.generate(), "", "too long a string")
+	system.maximum_symbols = 100000000
+	system.maximum_seconds = 0.01
+	expect_error("The grammar ")
+	check(system.grow() == null, "A tree grew.")
+
+
+func test_saves_and_loads() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = LSystem.get_preset(LSystem.get_preset_names()[0])
+	system.iterations = 4
+	system.maximum_symbols = 7000
+	system.maximum_seconds = 3.5
+	for extension: String in ["tres", "res"]:
+		var path: String = folder.path_join("system." + extension)
+		check_equal(ResourceSaver.save(system, path), OK, "saving " + extension)
+		var read: LSystem = (
+			ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as LSystem
+		)
+		check_equal(read.grammar, system.grammar, "the grammar")
+		check_equal(read.iterations, 4, "the iterations")
+		check_equal(read.maximum_symbols, 7000, "the most symbols")
+		check_equal(read.maximum_seconds, 3.5, "the most seconds")
+
+
+func test_says_when_it_changes() -> void:
+	var system: LSystem = LSystem.new()
+	var count: Array[int] = [0]
+	system.changed.connect(func() -> void: count[0] += 1)
+	system.grammar = CHANCE
+	system.iterations = 3
+	system.maximum_symbols = 10
+	system.maximum_seconds = 1.0
+	check_equal(count[0], 4, "how often it said so")
+
+
+func test_grows_on_a_thread_while_it_changes() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = LSystem.get_preset("monopodial")
+	var wanted: String = system.generate()
+	var thread: Thread = Thread.new()
+	thread.start(
+		func() -> bool:
+			for i: int in 20:
+				var text: String = system.generate()
+				if text != wanted and text != "FF":
+					return false
+			return true
+	)
+	for i: int in 200:
+		system.grammar = "axiom: F\nF -> FF" if i % 2 == 0 else LSystem.get_preset("monopodial")
+	check(thread.wait_to_finish(), "A string of neither grammar came out.")
