@@ -1,6 +1,7 @@
 #include "skeleton/assemble.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace treerec {
@@ -50,6 +51,20 @@ void keep_bends(const std::vector<Station>& line, size_t begin, size_t end, doub
     }
 }
 
+// What lies in a gap is as thick as its ends tell, all along: nodes from behind `from`, which is `last`, to
+// before `to`. Returns the last of them.
+NodeId taper_over_gap(Tree& tree, NodeId last, const Station& from, const Station& to) {
+    if (from.radius - to.radius <= kRelativeTolerance * from.radius) return last;
+    const int steps =
+        static_cast<int>(std::ceil(glm::distance(from.position, to.position) / kLongestSegment));
+    for (int k = 1; k < steps; k++) {
+        const double t = static_cast<double>(k) / steps;
+        last = tree.add_child(last, from.position + t * (to.position - from.position),
+                              from.radius + t * (to.radius - from.radius), kGuessFlag);
+    }
+    return last;
+}
+
 }  // namespace
 
 Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
@@ -96,7 +111,10 @@ Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vec
             const Station& station = line[i];
             uint8_t flags = 0;
             if (station.measured) flags |= kMeasuredRadiusFlag;
-            if (station.bridged) flags |= kGuessFlag;
+            if (station.bridged) {
+                flags |= kGuessFlag;
+                if (i > first) last = taper_over_gap(tree, last, line[i - 1], station);
+            }
             last = last == kNoNode ? tree.add_root(station.position, station.radius, flags)
                                    : tree.add_child(last, station.position, station.radius, flags);
             ids[l][i - first] = last;

@@ -172,6 +172,23 @@ TEST(Skeletonize, BridgesAGapAndSaysSo) {
     EXPECT_LT(distance_to_tree({0, 1.9, 0}, result.tree, cloud), 0.03);
 }
 
+TEST(Skeletonize, TapersOverAGap) {
+    Random random(5);
+    PointCloud cloud;
+    add_cone(cloud, random, {0, 0, 0}, {0, 1.5, 0}, 0.12, 0.11, 0.015, 0.002);
+    add_cone(cloud, random, {0, 2.4, 0}, {0, 4, 0}, 0.07, 0.06, 0.015, 0.002);
+    const SkeletonResult result = skeletonize(cloud, {});
+    expect_sane(result);
+    size_t looked = 0;
+    for (NodeId id : result.tree.depth_first()) {
+        const Node& node = result.tree.node(id);
+        if (!node.is_guess() || node.position.y > 2.2) continue;
+        looked++;
+        EXPECT_NEAR(node.radius, 0.11 - 0.04 * (node.position.y - 1.5) / 0.9, 0.012);
+    }
+    EXPECT_GE(looked, 2u);
+}
+
 // A branch whose foot the scan has missed, and above it a bough that is nearer than the stem it grew from.
 TEST(Skeletonize, BridgesAGapInABranchsOwnDirection) {
     Random random(12);
