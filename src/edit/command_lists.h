@@ -10,5 +10,6 @@ namespace treerec {
 std::vector<EditCommand> prune_commands();
 std::vector<EditCommand> shape_commands();
 std::vector<EditCommand> graft_commands();
+std::vector<EditCommand> lstring_commands();
 
 }  // namespace treerec
