@@ -13,9 +13,12 @@ namespace treerec {
 
 namespace {
 
-constexpr double kMostCells = 1 << 18;
-constexpr double kTaper = 1.6;  // how much thicker a segment may start than it ends
+constexpr double kMostCells = 1 << 17;
+constexpr double kMostCellsEach = 256.0;   // per capsule: stout wood visits them all
+constexpr double kTaper = 1.6;             // how much thicker a segment may start than it ends
+constexpr double kCellsPerCapsule = 64.0;  // at most, on average
 constexpr size_t kRunLength = 64;
+constexpr int kMostPieces = 1 << 10;  // of one segment
 
 using Capsule = StandingWood::Segment;
 
@@ -71,17 +74,25 @@ class CapsuleGrid {
         }
         const DVec3 size = glm::max(box_.size(), DVec3(1e-9));
         const double count = static_cast<double>(capsules.size());
+        const double most = std::min(kMostCells, kMostCellsEach * (count + 1.0));
         cell_ = std::max({length / count, thick / count + clearance,
-                          std::cbrt(size.x * size.y * size.z / kMostCells) * 1.1,
-                          std::max({size.x, size.y, size.z}) / 4096.0});
-        // A flat box can still have too many cells.
+                          std::cbrt(size.x * size.y * size.z / most) * 1.1,
+                          std::max({size.x, size.y, size.z}) / 256.0});
+        // A flat box can still have too many cells, and stout wood can lie in too many of them.
         for (;; cell_ *= 1.5) {
             double cells = 1.0;
             for (int axis = 0; axis < 3; axis++) {
                 count_[axis] = static_cast<int>(size[axis] / cell_) + 1;
                 cells *= count_[axis];
             }
-            if (cells <= kMostCells) break;
+            if (cells > most) continue;
+            double touched = 0.0;
+            for (const Capsule& capsule : capsules) {
+                const double across = 2.0 * (std::max(capsule.ra, capsule.rb) + clearance) / cell_ + 2.0;
+                const double along = glm::distance(capsule.a, capsule.b) / cell_ + 1.0;
+                touched += std::min(cells, along * across * across);
+            }
+            if (!(touched > kCellsPerCapsule * count) || cells <= 1.0) break;
         }
         begin_.assign(static_cast<size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
         for (const Capsule& capsule : capsules)
@@ -124,7 +135,9 @@ class CapsuleGrid {
         }
         if (from > to) return;
         const double length = glm::length(way) * (to - from);
-        const int pieces = static_cast<int>(std::min(length / std::max(cell_, reach), 16384.0)) + 1;
+        // What is no number, of wood of absurd size, counts as most.
+        const double wanted = length / std::max(cell_, reach);
+        const int pieces = wanted < kMostPieces ? static_cast<int>(wanted) + 1 : kMostPieces;
         for (int i = 0; i < pieces; i++) {
             const DVec3 a = capsule.a + way * (from + (to - from) * i / pieces);
             const DVec3 b = capsule.a + way * (from + (to - from) * (i + 1) / pieces);
@@ -141,8 +154,9 @@ class CapsuleGrid {
     }
 
     int index(double at, int axis) const {
-        return static_cast<int>(
-            std::clamp((at - box_.min[axis]) / cell_, 0.0, static_cast<double>(count_[axis] - 1)));
+        const double i = (at - box_.min[axis]) / cell_;
+        if (!(i > 0.0)) return 0;
+        return i < count_[axis] ? static_cast<int>(i) : count_[axis] - 1;
     }
 
     Bounds box_;
@@ -192,7 +206,7 @@ std::vector<Collision> collide(const StandingWood& standing, const std::vector<C
                 const double radii = mine.ra + (mine.rb - mine.ra) * s + other.ra + (other.rb - other.ra) * t;
                 const double reach = radii + options.clearance;
                 const DVec3 gap = p - q;
-                if (glm::dot(gap, gap) >= reach * reach) return;
+                if (!(glm::dot(gap, gap) < reach * reach)) return;
                 const double depth = reach - glm::length(gap);
                 if (depth <= 0.0 || glm::distance(p, options.joint) <= options.joint_reach) return;
                 found.push_back({mine.id, other.id, depth, 0.5 * (p + q)});

@@ -343,6 +343,30 @@ TEST(EditGraft, ATreeOntoItself) {
     EXPECT_EQ(tree.check(), std::nullopt);
 }
 
+TEST(EditGraft, StandsAbsurdSizes) {
+    int grafted = 0;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        Random random(seed);
+        Tree scion;
+        const auto size = [&] { return std::pow(10.0, random.uniform(-200.0, 200.0)); };
+        scion.add_root({0, 0, 0}, size());
+        for (NodeId i = 0; i < 10; i++)
+            scion.add_child(static_cast<NodeId>(random.below(static_cast<uint32_t>(i + 1))),
+                            random.direction() * size(), size());
+        Tree tree = seed % 2 ? test::random_tree(seed, 30) : scion;
+        const Tree before = tree;
+        const GraftOptions options = random_options(random);
+        try {
+            graft(tree, some_node(tree, random), scion, options);
+            ASSERT_EQ(tree.check(), std::nullopt);
+            grafted++;
+        } catch (const Error&) {
+            ASSERT_TRUE(same_bits(tree, before));
+        }
+    }
+    EXPECT_GT(grafted, 25);
+}
+
 TEST(EditGraft, RefusesWhatMakesNoSense) {
     Tree tree = test::random_tree(4, 50);
     const Tree start = tree;
