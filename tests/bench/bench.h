@@ -37,6 +37,9 @@ void bench_synth(const Settings& settings);
 bool guard_accuracy(const Settings& settings);
 void record_accuracy(const Settings& settings);
 
+// Time to write and read L-strings of 10 MB, and to rewrite a grammar.
+void bench_strings(const Settings& settings);
+
 // CPU milliseconds of CGAL's Delaunay triangulation of the points: x, y, z of one after the other.
 double delaunay_floor_ms(const std::vector<float>& coordinates);
 

@@ -23,6 +23,7 @@ const char* const kUsage =
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
+    "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
     "         --truth FOLDER (of --scans: its STEM_skeleton_corrected*.csv are compared),\n"
@@ -55,8 +56,9 @@ CommandLine parse(const std::vector<std::string>& words) {
             line.settings.args.assign(words.begin() + static_cast<ptrdiff_t>(i) + 1, words.end());
             break;
         }
-        if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--guard" ||
-            word == "--record" || word == "--beside" || word == "--resize" || word == "--help") {
+        if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
+            word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
+            word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -113,6 +115,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--synth") {
         bench_synth(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--strings") {
+        bench_strings(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--guard" || line.mode == "--record") {
