@@ -27,6 +27,7 @@ constexpr double kLeastPlanarity = 0.27;
 constexpr double kRibCells = 3.0;    // wood that far from the stem, above the hub, is a rib of a frond
 constexpr double kSliceCells = 4.0;  // height of the slices in which the stem is walked up
 constexpr double kStemBulge = 1.5;   // times the stem's usual radius: what lies further out is not of it
+constexpr double kReachSlack = 1.1;  // the stem ends a little below or beside the crown's middle
 constexpr double kStemCells = 0.8;   // radius of the stem that is followed through the fronds
 
 struct Crown {
@@ -178,7 +179,7 @@ void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& cr
         limbs.path[v] = !leaf[v] || off < radius;
         if (leaf[v]) reaches.push_back(static_cast<float>(off));
     }
-    limbs.reach = quantile(reaches, 0.99);
+    limbs.reach = kReachSlack * quantile(reaches, 1.0);
 }
 
 }  // namespace

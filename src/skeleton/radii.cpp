@@ -19,6 +19,7 @@ constexpr size_t kLeastMeasured = 8;  // stations that the noise and the slender
 constexpr double kTaper = 1.5;        // thin wood tapers so much faster than what can be measured
 constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured limb is a stump
 constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
+constexpr double kFoot = 6.0;         // radii of the base: how far up its flare may reach
 constexpr int kMedianWindow = 4;      // stations to each side
 
 struct Block {
@@ -98,6 +99,25 @@ double slenderness_of(const std::vector<std::vector<Station>>& axes) {
     return std::clamp(kTaper * *middle, kThinSlenderness, kSlenderness);
 }
 
+// A foot narrows evenly between stations whose radius was measured. values: by station.
+void span_foot(const std::vector<Station>& stations, std::vector<double>& values) {
+    size_t last = stations.size();
+    double way = 0.0;   // from the base,
+    double from = 0.0;  // and there to the last measured station
+    for (size_t i = 0; i < stations.size() && way < kFoot * values[0]; i++) {
+        if (i > 0) way += glm::distance(stations[i].position, stations[i - 1].position);
+        if (!stations[i].measured) continue;
+        double at = from;
+        for (size_t j = last + 1; j < i; j++) {
+            at += glm::distance(stations[j].position, stations[j - 1].position);
+            values[j] =
+                std::max(values[j], values[last] + (values[i] - values[last]) * (at - from) / (way - from));
+        }
+        last = i;
+        from = way;
+    }
+}
+
 }  // namespace
 
 double noise_of(const std::vector<std::vector<Station>>& axes) {
@@ -109,6 +129,14 @@ double noise_of(const std::vector<std::vector<Station>>& axes) {
     const auto middle = scatter.begin() + static_cast<ptrdiff_t>(scatter.size() / 2);
     std::nth_element(scatter.begin(), middle, scatter.end());
     return kMadToSigma * *middle;
+}
+
+void keep_width(std::vector<Station>& stem) {
+    size_t last = stem.size();
+    while (last > 0 && !stem[last - 1].measured)
+        last--;
+    for (size_t i = last; last > 0 && i < stem.size(); i++)
+        stem[i].radius = stem[last - 1].radius;
 }
 
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs) {
@@ -138,6 +166,7 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
             }
             if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);
         }
+        if (limbs[l].parent < 0) span_foot(stations, values);
         const std::vector<double> fitted = falling_fit(values, weights);
         for (size_t i = 0; i < stations.size(); i++) {
             limit = std::max(kThinnest, std::min(limit, fitted[i]));

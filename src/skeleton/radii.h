@@ -20,4 +20,7 @@ double noise_of(const std::vector<std::vector<Station>>& axes);
 // it.
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs);
 
+// A palm's stem is as wide at its top, which fronds hide, as where it was last measured.
+void keep_width(std::vector<Station>& stem);
+
 }  // namespace treerec
