@@ -19,6 +19,8 @@ namespace {
 constexpr int32_t kLongRun = 64;
 // A leaf looks at so many siblings on either side for one that stands for it.
 constexpr int kNeighbours = 8;
+// Square metres, far below what can be seen.
+constexpr double kPerNode = 1e-15;
 
 class Lightener {
   public:
@@ -61,7 +63,7 @@ class Lightener {
             }
             left--;
         }
-        Lightened result = net_.hand_over(tree_);
+        Lightened result = net_.hand_over(tree_, continues_);
         result.tip_distance = tip_distance;
         return result;
     }
@@ -69,14 +71,12 @@ class Lightener {
   private:
     // One thing that can be done: the node goes. The least comes first.
     struct Step {
-        double cost;    // square metres of silhouette
-        int32_t count;  // nodes that the new segment stands for
+        double cost;  // square metres of silhouette
         NodeId id;
         uint32_t version;  // of the node when this was found
 
         bool operator>(const Step& other) const {
-            if (cost != other.cost) return cost > other.cost;
-            return count != other.count ? count > other.count : id > other.id;
+            return cost != other.cost ? cost > other.cost : id > other.id;
         }
     };
     using Steps = std::priority_queue<Step, std::vector<Step>, std::greater<Step>>;
@@ -84,6 +84,7 @@ class Lightener {
     // Of the segment from a node to its parent, and of a leaf.
     struct State {
         RunError run;
+        RunError joined;     // once the node goes; of a node with one child that has a step
         double reach = 0.0;  // of the leaves that this one stands for
         uint32_t version = 0;
     };
@@ -116,7 +117,7 @@ class Lightener {
     }
 
     // What can be done at a node, if anything.
-    std::optional<Step> step_at(NodeId id) const {
+    std::optional<Step> step_at(NodeId id) {
         const Node& node = net_.nodes[id];
         if (node.parent == kNoNode || node.child_count > 1) return std::nullopt;
         if (node.child_count == 0) return leaf_step(id);
@@ -125,7 +126,9 @@ class Lightener {
         const RunError error = joined_error(id);
         if (bounded_ && error.deviation > options_.deviation) return std::nullopt;
         const double spent = state_[id].run.area + state_[node.first_child].run.area;
-        return Step{std::max(error.area - spent, 0.0), error.count, id, state_[id].version};
+        state_[id].joined = error;
+        // Of equals the one with the fewest nodes in its run, so that runs of a straight chain grow evenly.
+        return Step{std::max(error.area - spent, 0.0) + kPerNode * error.count, id, state_[id].version};
     }
 
     std::optional<Step> leaf_step(NodeId id) const {
@@ -136,7 +139,7 @@ class Lightener {
         // What is not hidden by the wood beside it: the two part as they go up.
         const double length = glm::distance(node.position, place(node.parent));
         const double cost = length * std::min(2.0 * node.radius, 0.5 * stand.distance);
-        return Step{std::max(cost - state_[id].run.area, 0.0), 0, id, state_[id].version};
+        return Step{std::max(cost - state_[id].run.area, 0.0), id, state_[id].version};
     }
 
     Stand stand_for(NodeId id) const {
@@ -182,7 +185,7 @@ class Lightener {
     }
 
     void drop_node(NodeId id) {
-        const RunError error = joined_error(id);
+        const RunError error = state_[id].joined;
         const NodeId parent = net_.nodes[id].parent, child = net_.nodes[id].first_child;
         // The longer part says whether the whole is a guess.
         const bool lower_is_longer =

@@ -59,7 +59,7 @@ class Merger {
             next.erase(std::unique(next.begin(), next.end()), next.end());
             forks = std::move(next);
         }
-        Lightened result = net_.hand_over(tree_);
+        Lightened result = net_.hand_over(tree_, continuing_nodes(tree_));
         for (double reach : reach_)
             result.tip_distance = std::max(result.tip_distance, reach);
         return result;

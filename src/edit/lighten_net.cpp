@@ -45,10 +45,9 @@ double LooseTree::turn_cosine(NodeId id) const {
     return lengths > 0.0 ? std::min(glm::dot(u, v) / lengths, 1.0) : 1.0;
 }
 
-Lightened LooseTree::hand_over(Tree& tree) const {
+Lightened LooseTree::hand_over(Tree& tree, const std::vector<uint8_t>& continues) const {
     Lightened result;
     result.before = tree.size();
-    const std::vector<uint8_t> continues = continuing_nodes(tree);
     std::vector<Node> original;
     original.reserve(nodes.size());
     for (NodeId id = 0; id < tree.id_end(); id++)

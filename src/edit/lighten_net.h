@@ -27,7 +27,8 @@ struct LooseTree {
     double turn_cosine(NodeId id) const;
 
     // Does the same to `tree`, from which this was made, and tells of it; tip_distance is left at 0.
-    Lightened hand_over(Tree& tree) const;
+    // continues: continuing_nodes() of the tree.
+    Lightened hand_over(Tree& tree, const std::vector<uint8_t>& continues) const;
 };
 
 // How far the bark of the wood below `child` moves if its parent becomes `parent`, a node further down: over

@@ -14,6 +14,11 @@ namespace treerec {
 Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up);
 Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up);
 Tree parse_qsm_csv(std::string_view bytes, const std::string& path, UpAxis up);
+Tree parse_swc(std::string_view bytes, const std::string& path, UpAxis up);
 Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis up);
+
+// Whether a file's beginning is SWC: rows of an id, a type, three coordinates, a radius and a parent, of
+// which one is -1. whole_file: the last line is not cut off.
+bool looks_like_swc(std::string_view bytes, bool whole_file);
 
 }  // namespace treerec

@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
 
 #include "error.h"
+#include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "ply_header.h"
+#include "tree/trunk.h"
 
 namespace treerec {
 
@@ -62,23 +65,28 @@ class ValueReader {
     size_t at_ = 0;
 };
 
-// Calls row(values) for each item of the element; values: one per property, 0 for lists.
+// Calls row(values, pair) for each item of the element; values: one per property, of lists the length; pair:
+// the two values of the last list that has two.
 template <typename Row>
 void read_element(ValueReader& reader, const PlyElement& element, Row row) {
     if (element.properties.empty()) return;
     std::vector<double> values(element.properties.size());
+    std::pair<double, double> pair{-1.0, -1.0};
     for (size_t i = 0; i < element.count; i++) {
         for (size_t p = 0; p < values.size(); p++) {
             const PlyProperty& property = element.properties[p];
             if (property.is_list) {
                 const double length = reader.next(property.length_type);
-                for (double k = 0; k < length; k++)
-                    reader.next(property.type);
+                values[p] = length;
+                for (double k = 0; k < length; k++) {
+                    const double value = reader.next(property.type);
+                    if (length == 2.0) (k == 0.0 ? pair.first : pair.second) = value;
+                }
             } else {
                 values[p] = reader.next(property.type);
             }
         }
-        row(values);
+        row(values, pair);
     }
 }
 
@@ -116,11 +124,13 @@ Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis 
     if (!is_ply(bytes)) throw Error("'" + path + "' is no skeleton PLY: it does not start with 'ply'.");
     const PlyHeader header = read_ply_header(bytes, path);
     FileStamp stamp{up, 1.0};
+    bool is_ours = false;
     for (const std::string& comment : header.comments)
-        read_stamp(comment, stamp, path);
+        is_ours = read_stamp(comment, stamp, path) || is_ours;
     SkeletonTable table;
-    bool has_vertices = false;
-    bool has_edges = false;
+    std::vector<std::pair<NodeId, NodeId>> edges;
+    bool has_vertices = false, has_edges = false, has_flags = false;
+    bool is_directed = true;
     ValueReader reader(bytes.substr(header.end), header, path);
     for (const PlyElement& element : header.elements) {
         if (element.name == "vertex") {
@@ -129,7 +139,8 @@ Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis 
             if (x < 0 || y < 0 || z < 0 || radius < 0)
                 throw Error("'" + path + "' is no skeleton PLY: its vertices lack x, y, z or radius.");
             has_vertices = true;
-            read_element(reader, element, [&](const std::vector<double>& values) {
+            has_flags = flags >= 0;
+            read_element(reader, element, [&](const std::vector<double>& values, const auto&) {
                 table.positions.emplace_back(values[x], values[y], values[z]);
                 table.radii.push_back(values[radius]);
                 const double bits = flags >= 0 ? values[flags] : 0.0;
@@ -138,25 +149,50 @@ Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis 
             table.parents.assign(table.positions.size(), kNoNode);
         } else if (element.name == "edge" && has_vertices) {
             const int from = element.find("vertex1"), to = element.find("vertex2");
-            if (from < 0 || to < 0)
-                throw Error("'" + path + "' is no skeleton PLY: its edges lack vertex1 or vertex2.");
+            int list = -1;
+            for (size_t p = 0; p < element.properties.size(); p++)
+                if (element.properties[p].is_list) list = static_cast<int>(p);
+            if ((from < 0 || to < 0) && list < 0)
+                throw Error(
+                    "'" + path +
+                    "' is no skeleton PLY: its edges lack vertex1 and vertex2, or a list of the two.");
+            const bool named = from >= 0 && to >= 0;
             has_edges = true;
+            is_directed = named;
             const double limit = static_cast<double>(table.positions.size());
-            read_element(reader, element, [&](const std::vector<double>& values) {
-                if (!(values[from] >= 0.0 && values[from] < limit && values[to] >= 0.0 && values[to] < limit))
+            read_element(reader, element, [&](const std::vector<double>& values, const auto& pair) {
+                if (!named && values[list] != 2.0)
+                    throw Error("'" + path + "' is damaged: an edge does not join two vertices.");
+                const double a = named ? values[from] : pair.first, b = named ? values[to] : pair.second;
+                if (!(a >= 0.0 && a < limit && b >= 0.0 && b < limit))
                     throw Error("'" + path + "' is damaged: an edge names a vertex that is not there.");
-                NodeId& parent = table.parents[static_cast<size_t>(values[to])];
-                if (parent != kNoNode) throw Error("'" + path + "' holds no tree: a vertex has two parents.");
-                parent = static_cast<NodeId>(values[from]);
+                edges.emplace_back(static_cast<NodeId>(a), static_cast<NodeId>(b));
             });
         } else {
-            read_element(reader, element, [](const std::vector<double>&) {});
+            read_element(reader, element, [](const std::vector<double>&, const auto&) {});
         }
     }
     if (table.positions.empty()) throw Error("'" + path + "' holds no skeleton: it has no vertices.");
     if (!has_edges && table.positions.size() > 1)
         throw Error("'" + path + "' is a point cloud, not a skeleton: it has no edges.");
-    return tree_of(table, stamp, path);
+    // Each vertex below one other and one below none: the edges lead from parents to children. Those of other
+    // programs need not.
+    std::vector<uint8_t> parents(table.positions.size(), 0);
+    for (const auto& [from, to] : edges) {
+        if (parents[to] && is_ours) throw Error("'" + path + "' holds no tree: a vertex has two parents.");
+        is_directed = is_directed && !parents[to];
+        parents[to] = 1;
+        table.parents[to] = from;
+    }
+    is_directed = is_directed && edges.size() + 1 == table.positions.size();
+    if (is_ours || is_directed) {
+        Tree tree = tree_of(table, stamp, path);
+        if (!has_flags) mark_trunk(tree);
+        return tree;
+    }
+    Tree tree = tree_of(tree_of_graph(table, edges, stamp.up, path), stamp, path);
+    if (!has_flags) mark_trunk(tree);
+    return tree;
 }
 
 }  // namespace treerec

@@ -7,9 +7,11 @@
 
 #include "error.h"
 #include "exchange/lstring_file.h"
+#include "exchange/qsm_columns.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "file_bytes.h"
+#include "tree/trunk.h"
 
 namespace treerec {
 
@@ -144,7 +146,9 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up) 
     }
     if (!header) throw Error("'" + path + "' is no tree file: it names no fields x,y,z,radius,parent_id.");
     if (largest.positions.empty()) throw Error("'" + path + "' holds no tree.");
-    return tree_of(largest, stamp, path);
+    Tree tree = tree_of(largest, stamp, path);
+    if (header->branch.flags < 0) mark_trunk(tree);
+    return tree;
 }
 
 Tree read_node_csv(const std::string& path, UpAxis up) {
@@ -193,22 +197,30 @@ Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) 
         const auto parent = row_of.find(parent_ids[i]);
         table.parents[i] = parent == row_of.end() ? kNoNode : parent->second;
     }
-    return tree_of(table, {up, 1.0}, path);
+    Tree tree = tree_of(table, {up, 1.0}, path);
+    if (columns.flags < 0) mark_trunk(tree);
+    return tree;
 }
 
 namespace {
 
-enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kLString };
+constexpr size_t kSniffed = 4096;
 
-// From the file's first 4 kB.
-SkeletonFormat sniff(const std::string& path) {
+enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kSwc, kLString };
+
+// The file's first 4 kB.
+std::string first_bytes(const std::string& path) {
     std::error_code failure;
     if (!std::filesystem::exists(path_of(path), failure)) throw Error("There is no file '" + path + "'.");
     std::ifstream in(path_of(path), std::ios::binary);
-    std::string bytes(4096, '\0');
-    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0)
-        return SkeletonFormat::kNone;
+    std::string bytes(kSniffed, '\0');
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0) return {};
     bytes.resize(static_cast<size_t>(in.gcount()));
+    return bytes;
+}
+
+SkeletonFormat sniff(const std::string& path) {
+    const std::string bytes = first_bytes(path);
     if (is_lstring_file(bytes)) return SkeletonFormat::kLString;
     std::string_view rest = bytes;
     if (rest.starts_with("ply")) {
@@ -223,16 +235,32 @@ SkeletonFormat sniff(const std::string& path) {
     }
     while (const std::optional<std::string_view> line = next_line(rest)) {
         if (line->empty() || line->front() == '#') continue;
+        if (find_qsm_columns(*line)) return SkeletonFormat::kQsmCsv;
         const std::vector<std::string> fields = split_fields(*line);
-        if (find_field(fields, {"start_x"}) >= 0 && find_field(fields, {"axis_x"}) >= 0)
-            return SkeletonFormat::kQsmCsv;
         const Columns columns(fields);
-        if (!columns.has_node() || columns.parent < 0) return SkeletonFormat::kNone;
+        if (!columns.has_node() || columns.parent < 0) break;
         // A node table names its parent column plainly or has ids; a tree file has neither.
         return columns.id >= 0 || find_field(fields, {"parent"}) >= 0 ? SkeletonFormat::kNodeCsv
                                                                       : SkeletonFormat::kTreefile;
     }
-    return SkeletonFormat::kNone;
+    return looks_like_swc(bytes, bytes.size() < kSniffed) ? SkeletonFormat::kSwc : SkeletonFormat::kNone;
+}
+
+// What it is that is no skeleton, where that can be told; else what would be one.
+std::string other_kind(const std::string& path) {
+    const std::string bytes = first_bytes(path);
+    std::string_view rest = bytes;
+    const std::string_view first = next_line(rest).value_or("");
+    if (first.starts_with("MATLAB"))
+        return "is a MATLAB file; have TreeQSM write its cylinders as text (save_model_text).";
+    if (first.find("parent\tdiameter") != std::string_view::npos)
+        return "is TreeQSM's table of branches; the skeleton is in the one of cylinders (cylinder_...txt).";
+    if (first.starts_with("ply"))
+        return bytes.find("element edge") != std::string::npos
+                   ? "has edges but no radii, so that it is no skeleton that can be read."
+                   : "is a PLY file without edges: a point cloud or a mesh, but no skeleton.";
+    return "is no skeleton that can be read: a tree file (.txt), a skeleton PLY, a table of nodes or of "
+           "cylinders (.csv), SWC, an L-string.";
 }
 
 }  // namespace
@@ -253,12 +281,12 @@ Tree read_skeleton(const std::string& path, UpAxis up) {
             return read_qsm_csv(path, up);
         case SkeletonFormat::kLString:
             return read_lstring_file(path).tree;
+        case SkeletonFormat::kSwc:
+            return read_swc(path, up);
         case SkeletonFormat::kNone:
             break;
     }
-    throw Error("'" + path +
-                "' is no skeleton that can be read: a tree file (.txt), a skeleton PLY, a table of nodes or "
-                "of cylinders (.csv).");
+    throw Error("'" + path + "' " + other_kind(path));
 }
 
 }  // namespace treerec

@@ -1,4 +1,5 @@
-// Skeleton files, in the scan's own coordinates, axes and units: treefile, QSM csv, skeleton PLY, node csv.
+// Skeleton files, in the scan's own coordinates, axes and units: treefile, QSM csv, skeleton PLY, node csv,
+// SWC.
 //
 // Positions and radii are written as the shortest decimal (or the double itself) that reads back the same, at
 // UTM coordinates too. Files that we wrote name their up axis and unit and read back into the same place;
@@ -24,12 +25,16 @@ Tree read_treefile(const std::string& path, UpAxis up = UpAxis::kZ);
 // One cylinder per segment, parents first, with TreeQSM's columns: radius, length, start_x.., axis_x..,
 // parent_1based (0: none), branch (from 1), order (trunk 0), and measured (1: the radius was fitted).
 void write_qsm_csv(const std::string& path, const Tree& tree);
-// Reads these columns in any order, with or without order and measured. Each cylinder ends in a node and
-// hangs on its parent's end, so that a gap between the two is bridged.
+// Reads these columns in any order, with or without order and measured, and the tables of TreeQSM (the text
+// of its cylinders, or a csv of them), SimpleForest, aRchi, Treegraph and rTwig by their own names
+// (qsm_columns.h). Each cylinder ends in a node and hangs on its parent's end, so that a gap between the two
+// is bridged; further cylinders without a parent hang on the root.
 Tree read_qsm_csv(const std::string& path, UpAxis up = UpAxis::kZ);
 
 // Vertices (x y z radius: double, flags: uchar), edges (vertex1 the parent, vertex2 the child: int); binary
-// little endian. Read in any of PLY's three encodings, with more properties or elements.
+// little endian. Read in any of PLY's three encodings, with more properties or elements. Edges of other
+// programs may be lists of two vertices, lead either way, and join at vertices that lie at one place, as
+// AdTree and Easy3D write them: see skeleton_graph.h for what becomes the tree.
 void write_skeleton_ply(const std::string& path, const Tree& tree);
 Tree read_skeleton_ply(const std::string& path, UpAxis up = UpAxis::kZ);
 
@@ -37,10 +42,14 @@ Tree read_skeleton_ply(const std::string& path, UpAxis up = UpAxis::kZ);
 // form in which hand-corrected skeletons are exchanged. A parent that is no node marks the root.
 Tree read_node_csv(const std::string& path, UpAxis up = UpAxis::kZ);
 
+// Lines of id, type, x, y, z, radius and parent (-1: none), as skeletons of neurons and of some plants are
+// kept; a unit is a metre. Of several trees the largest.
+Tree read_swc(const std::string& path, UpAxis up = UpAxis::kZ);
+
 // Whether the file's first lines say that it is one of the skeleton files read here (and not a point cloud).
 // Throws Error only if there is no such file.
 bool is_skeleton_file(const std::string& path);
-// Any of them, told apart by their contents.
+// Any of them, told apart by their contents. Where the file does not say which nodes are trunk, it is found.
 Tree read_skeleton(const std::string& path, UpAxis up = UpAxis::kZ);
 
 }  // namespace treerec
