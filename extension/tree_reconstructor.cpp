@@ -152,12 +152,13 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path
     }
 }
 
-Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path) {
+Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path, const String& p_up_axis) {
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
     Ref<TreeReconstruction> made;
     try {
-        treerec::Tree tree = treerec::read_skeleton(file_path(p_path));
+        treerec::Tree tree =
+            treerec::read_skeleton(file_path(p_path), treerec::parse_up_axis(to_std(p_up_axis)));
         made.instantiate();
         made->set_tree(std::move(tree));
         Dictionary provenance;
@@ -254,7 +255,8 @@ Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
 void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("reconstruct_file", "path", "options"),
                          &TreeReconstructor::reconstruct_file, DEFVAL(Dictionary()));
-    ClassDB::bind_method(D_METHOD("import_skeleton", "path"), &TreeReconstructor::import_skeleton);
+    ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis"), &TreeReconstructor::import_skeleton,
+                         DEFVAL("z"));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path"), &TreeReconstructor::export_file);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);

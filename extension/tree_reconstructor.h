@@ -20,7 +20,8 @@ class TreeReconstructor : public godot::RefCounted {
   public:
     godot::Ref<TreeReconstruction> reconstruct_file(const godot::String& p_path,
                                                     const godot::Dictionary& p_options);
-    godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path);
+    godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,
+                                                   const godot::String& p_up_axis);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_option_list();
 

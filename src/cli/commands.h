@@ -29,6 +29,9 @@ void run_score(const std::vector<std::string>& words);
 const Command& edit_command();
 void run_edit(const std::vector<std::string>& words);
 
+const Command& lighten_command();
+void run_lighten(const std::vector<std::string>& words);
+
 const Command& synth_command();
 void run_synth(const std::vector<std::string>& words);
 

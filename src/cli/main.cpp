@@ -21,6 +21,7 @@ std::vector<Entry> entries() {
     return {{reconstruct_command(), run_reconstruct},
             {info_command(), run_info},
             {edit_command(), run_edit},
+            {lighten_command(), run_lighten},
             {score_command(), run_score},
             {synth_command(), run_synth},
             {lstring_command(), run_lstring},

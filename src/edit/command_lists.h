@@ -11,5 +11,6 @@ std::vector<EditCommand> prune_commands();
 std::vector<EditCommand> shape_commands();
 std::vector<EditCommand> graft_commands();
 std::vector<EditCommand> lstring_commands();
+std::vector<EditCommand> lighten_commands();
 
 }  // namespace treerec

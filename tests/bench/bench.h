@@ -31,6 +31,9 @@ void bench_beside(const std::vector<std::string>& scans, const Settings& setting
 // One line per real scan; with recall, precision and length where there is a corrected skeleton,
 // and with another program's tree of the same scan below.
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings);
+// Lighter trees beside the paper's: size and outline, of scans or skeletons; of grown trees where none is
+// named.
+void bench_lighter(const std::vector<std::string>& files);
 // Precision, recall, radius and DBH errors on grown trees.
 void bench_synth(const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.

@@ -22,6 +22,7 @@ const char* const kUsage =
     "       bench --scans [SCAN…|FOLDER]       one line per scan: time, memory, measurements, fit\n"
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
+    "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and papers/002's\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
@@ -58,7 +59,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         }
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
-            word == "--help") {
+            word == "--lighter" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -125,6 +126,10 @@ int run(CommandLine line) {
         if (line.settings.record.empty()) throw Error("Name the recorded table with --table.");
         if (line.mode == "--guard") return guard_accuracy(line.settings) ? EXIT_SUCCESS : EXIT_FAILURE;
         record_accuracy(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--lighter") {
+        bench_lighter(files_of(line.scans));
         return EXIT_SUCCESS;
     }
     if (line.scans.empty() && line.mode == "--scans")

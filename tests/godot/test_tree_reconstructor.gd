@@ -192,6 +192,47 @@ func test_exports_and_reads_back() -> void:
 	check_sentence(reconstructor.get_error_message(), "the message for a missing file")
 
 
+func test_reads_skeletons_of_other_programs() -> void:
+	var twig: Array[Vector3] = [
+		Vector3(0, 0, 0), Vector3(0, 0, 1), Vector3(0.5, 0, 2), Vector3(-0.5, 0, 2)
+	]
+	var below: Array[int] = [-1, 0, 1, 1]
+	var swc: String = "# by hand\n"
+	var forest: String = (
+		"ID, parentID, startX, startY, startZ, endX, endY, endZ, radius, " + "branchOrder\n"
+	)
+	var graph: String = (
+		"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+		+ "property float z\nproperty float radius\nelement edge 3\nproperty list uint32 int vertex_indices\nend_header\n"
+	)
+	var edges: String = ""
+	for i: int in twig.size():
+		var at: Vector3 = twig[i]
+		swc += "%d 0 %f %f %f 0.1 %d\n" % [i + 1, at.x, at.y, at.z, below[i] + 1 if i > 0 else -1]
+		graph += "%f %f %f 0.1\n" % [at.x, at.y, at.z]
+		if i > 0:
+			var from: Vector3 = twig[below[i]]
+			edges += "2 %d %d\n" % [i, below[i]]
+			forest += (
+				"%d,%d,%f,%f,%f,%f,%f,%f,0.1,0\n"
+				% [i - 1, below[i] - 1, from.x, from.y, from.z, at.x, at.y, at.z]
+			)
+	var files: Dictionary[String, String] = {"a.swc": swc, "b.csv": forest, "c.ply": graph + edges}
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	for file: String in files:
+		FileAccess.open(folder.path_join(file), FileAccess.WRITE).store_string(files[file])
+		var read: TreeReconstruction = reconstructor.import_skeleton(folder.path_join(file))
+		check(read != null, "%s: %s" % [file, reconstructor.get_error_message()])
+		if read != null:
+			check_equal(read.get_node_count(), 4, "the nodes of " + file)
+			check_equal(read.get_leaves().size(), 2, "the tips of " + file)
+			check(absf(read.get_aabb().end.y - 2.0) < 0.2, "%s lies down." % file)
+		read = reconstructor.import_skeleton(folder.path_join(file), "x")
+		check(read != null and read.get_aabb().size.y < 1.5, "%s does not lie down." % file)
+		check(reconstructor.import_skeleton(folder.path_join(file), "up") == null, "No such axis.")
+		check_sentence(reconstructor.get_error_message(), "the message for a wrong axis")
+
+
 func test_options_are_described() -> void:
 	var options: Array[Dictionary] = TreeReconstructor.get_option_list()
 	check(options.size() > 8, "There are %d options." % options.size())
