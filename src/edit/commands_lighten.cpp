@@ -70,7 +70,7 @@ std::vector<EditCommand> lighten_commands() {
                            "degrees; a node goes where the wood turns by less")
               .slider(0.0, 90.0),
           length_parameter("distance", standard.distance, 0.0, 1e6,
-                           "metres; a tip goes that has a sibling tip so near")
+                           "metres; a twig goes that ends so near the wood beside it")
               .slider(0.0, 1.0),
           length_parameter("deviation", standard.deviation, 0.0, 1e6, "metres that the bark may move")
               .slider(0.0, 0.2),

@@ -85,11 +85,11 @@ class Lightener {
     struct State {
         RunError run;
         RunError joined;     // once the node goes; of a node with one child that has a step
-        double reach = 0.0;  // of the leaves that this one stands for
+        double reach = 0.0;  // of the tips that this wood stands for
         uint32_t version = 0;
     };
 
-    // The leaf or the wood beside a leaf that stands for it once it has gone.
+    // The wood beside a leaf that stands for it once it has gone.
     struct Stand {
         NodeId sibling = kNoNode;
         double distance = std::numeric_limits<double>::infinity();  // of the leaf's tip from it
@@ -145,15 +145,9 @@ class Lightener {
     Stand stand_for(NodeId id) const {
         Stand best;
         const auto look = [&](NodeId sibling) {
-            double distance = 0.0;
-            if (bounded_) {
-                if (!is_leaf(sibling)) return;
-                distance = glm::distance(place(id), place(sibling));
-                if (!(distance < options_.distance)) return;
-                if (state_[id].reach + distance > options_.distance) return;
-            } else {
-                distance = distance_to_segment(place(id), place(net_.nodes[id].parent), place(sibling));
-            }
+            const double distance =
+                distance_to_segment(place(id), place(net_.nodes[id].parent), place(sibling));
+            if (bounded_ && state_[id].reach + distance > options_.distance) return;
             if (distance < best.distance || (distance == best.distance && sibling < best.sibling))
                 best = {sibling, distance};
         };
@@ -196,6 +190,7 @@ class Lightener {
         }
         net_.drop(id);
         state_[child].run = error;
+        state_[child].reach = std::max(state_[child].reach, state_[id].reach);
         if (net_.nodes[parent].child_count == 1) find_again(parent);
         find_again(child);
         if (is_leaf(child)) find_beside(child);
@@ -206,8 +201,7 @@ class Lightener {
         const Stand stand = stand_for(id);
         const NodeId parent = net_.nodes[id].parent;
         const double reach = state_[id].reach + stand.distance;
-        if (is_leaf(stand.sibling))
-            state_[stand.sibling].reach = std::max(state_[stand.sibling].reach, reach);
+        state_[stand.sibling].reach = std::max(state_[stand.sibling].reach, reach);
         net_.drop(id);
         if (is_leaf(stand.sibling)) find_again(stand.sibling);
         if (net_.nodes[parent].child_count == 1) find_again(parent);

@@ -20,8 +20,8 @@ struct Lightened {
     // Metres that the bark moved where nodes of wood that stays went: the largest distance of such a node
     // from the new axis plus the difference of the radii there.
     double deviation = 0.0;
-    // Metres from a tip that is gone to the one that stands for it, at most. Twigs that lighten() takes away
-    // to reach a number of nodes count with the distance from the nearest wood beside them.
+    // Metres from a tip that is gone to what stands for it, at most: the merged tip, or with lighten() the
+    // wood beside it (before that moved, too).
     double tip_distance = 0.0;
 };
 
@@ -43,16 +43,16 @@ Lightened merge_branches(Tree& tree, double angle, double distance, const Progre
 // A level of detail. With `nodes` at 0: what the three bounds allow. Else as many nodes go as that asks,
 // whatever the bounds.
 struct LightenOptions {
-    double angle = 30.0;      // degrees: a node goes where the wood turns by less
-    double distance = 0.05;   // metres: a leaf goes that has a sibling leaf so near, for all it stands for
-    double deviation = 0.02;  // metres: the bark does not move farther
+    double angle = 60.0;      // degrees: a node goes where the wood turns by less
+    double distance = 0.1;    // metres: a leaf goes that ends so near other wood on its fork
+    double deviation = 0.01;  // metres: the bark does not move farther
     size_t nodes = 0;         // how many to leave, at least 2
 };
 
 // Takes away, the least visible first, nodes of runs and leaves of forks, where least visible is the least
-// area that the silhouette changes by. What stays keeps its place, radius and id; forks stay whole until all
-// but one of their children went. The trunk is never merged into anything; a leaf of it stays. To reach
-// `nodes`, twigs go too that have no leaf beside them; trunks set the lowest number that can be reached.
+// area that the silhouette changes by. What stays keeps its place, radius and id; of leaves side by side the
+// one that is seen most stays, where the paper puts one between them. The trunk is never merged into
+// anything; a leaf of it stays, so that trunks set the lowest number of nodes that can be reached.
 // Deterministic. O(n log n): 100,000 nodes take some tens of milliseconds. Throws Error for options out of
 // range, or Cancelled; the tree is then as it was. A leaf looks at the eight siblings before and after it.
 Lightened lighten(Tree& tree, const LightenOptions& options, const Progress* progress = nullptr);

@@ -203,7 +203,8 @@ func test_reads_skeletons_of_other_programs() -> void:
 	)
 	var graph: String = (
 		"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-		+ "property float z\nproperty float radius\nelement edge 3\nproperty list uint32 int vertex_indices\nend_header\n"
+		+ "property float z\nproperty float radius\nelement edge 3\n"
+		+ "property list uint32 int vertex_indices\nend_header\n"
 	)
 	var edges: String = ""
 	for i: int in twig.size():
