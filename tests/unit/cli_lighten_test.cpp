@@ -20,7 +20,7 @@ TEST_F(CliLighten, WritesFewerNodesAndTellsWhatItCost) {
     const Outcome share = run("lighten a.txt --share 0.25 -o out/b.txt -o out/b.glb --up y");
     ASSERT_EQ(share.code, 0) << share.error;
     EXPECT_EQ(read_treefile(path("out/b.txt")).size(), 500u);
-    EXPECT_GT(fs::file_size(path("out/b.glb")), 10000u);
+    EXPECT_GT(test::fs::file_size(path("out/b.glb")), 10000u);
     EXPECT_NE(share.out.find("2000 nodes before, 500 after"), std::string::npos) << share.out;
     EXPECT_NE(share.out.find("of the outline"), std::string::npos) << share.out;
     ASSERT_EQ(run("lighten a.txt --nodes 30 -o out/c.txt --quiet").code, 0);
