@@ -98,6 +98,10 @@ std::string count_of(size_t count, const char* one, const char* many) {
 
 EditOutcome outcome_of(const std::vector<GraftResult>& results) {
     EditOutcome outcome;
+    if (results.empty()) {
+        outcome.said = "Nothing was grafted: no node was chosen.";
+        return outcome;
+    }
     size_t collisions = 0;
     for (const GraftResult& result : results) {
         outcome.nodes.insert(outcome.nodes.end(), result.added.begin(), result.added.end());

@@ -149,6 +149,8 @@ TEST(EditGraftCommands, ManyAtOnce) {
     const Edit edit = perform(tree, "graft_many nodes=leaves twigs=maple,dead seed=2");
     EXPECT_NE(edit.outcome.said.find("Grafted " + std::to_string(tips) + " branches"), std::string::npos);
     EXPECT_GT(tree.size(), 300 + 100 * tips);
+    EXPECT_EQ(perform(tree, "graft_many nodes=height:500..").outcome.said,
+              "Nothing was grafted: no node was chosen.");
     EXPECT_EQ(tree.check(), std::nullopt);
 }
 
