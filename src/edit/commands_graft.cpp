@@ -125,6 +125,10 @@ EditOutcome run_twig(Tree& tree, const EditArguments& given) {
     options.radius = given.number("radius");
     EditOutcome outcome;
     outcome.nodes = {make_twig(tree, given.node("node"), options)};
+    const size_t collisions = find_collisions(tree, outcome.nodes[0], 0.0, given.progress()).size();
+    if (collisions > 0)
+        outcome.said = "The twig runs into " +
+                       count_of(collisions, "segment of another branch.", "segments of other branches.");
     return outcome;
 }
 

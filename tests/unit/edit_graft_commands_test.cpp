@@ -143,6 +143,18 @@ TEST(EditGraftCommands, ATwigAndAGraftOnIt) {
     EXPECT_EQ(copy.outcome.nodes.size(), branch);
 }
 
+TEST(EditGraftCommands, ATwigTellsWhatItHits) {
+    Tree tree;
+    tree.add_root({0, 0, 0}, 0.05);
+    tree.add_child(0, {0, 1, 0}, 0.05);
+    tree.add_child(1, {0, 2, 0}, 0.05);
+    const NodeId arm = tree.add_child(0, {1, 0.2, 0}, 0.02);
+    tree.add_child(arm, {1, 2, 0}, 0.02);
+    EXPECT_EQ(perform(tree, "twig node=1 direction=1,0.1,0 length=1.2").outcome.said,
+              "The twig runs into 1 segment of another branch.");
+    EXPECT_EQ(perform(tree, "twig node=1 direction=-1,0.1,0 length=1.2").outcome.said, "");
+}
+
 TEST(EditGraftCommands, ManyAtOnce) {
     Tree tree = test::random_tree(5, 300);
     const size_t tips = tree.nodes_of_kind(NodeKind::kLeaf).size();
