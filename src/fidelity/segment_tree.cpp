@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace treerec {
@@ -9,6 +10,7 @@ namespace treerec {
 namespace {
 
 constexpr int32_t kLeafSize = 4;
+constexpr double kSlack = 1e-9;    // metres: what rounding may part in a bound
 constexpr size_t kStackSize = 64;  // median splits of 2^31 segments go 29 deep
 
 double squared(double x) {
@@ -34,7 +36,8 @@ std::vector<WoodSegment> wood_segments(const Tree& tree) {
     for (NodeId id : tree.depth_first()) {
         const Node& node = tree.node(id);
         if (node.parent == kNoNode) continue;
-        segments.push_back({tree.node(node.parent).position, node.position, node.radius, id});
+        const Node& parent = tree.node(node.parent);
+        segments.push_back({parent.position, node.position, node.radius, id, parent.radius});
     }
     return segments;
 }
@@ -44,6 +47,33 @@ double distance_to_segment(const DVec3& p, const DVec3& from, const DVec3& to) {
     const double length2 = glm::dot(along, along);
     const double t = length2 > 0.0 ? std::clamp(glm::dot(p - from, along) / length2, 0.0, 1.0) : 0.0;
     return glm::length(p - from - t * along);
+}
+
+double bark_error(const WoodSegment& segment, const DVec3& p) {
+    return distance_to_segment(p, segment.from, segment.to) - segment.radius;
+}
+
+bool solid_holds(const WoodSegment& segment, const DVec3& p, double tolerance) {
+    const DVec3 d = p - segment.from;
+    const double square = glm::dot(d, d);
+    const double near = segment.from_radius + tolerance, far = segment.radius + tolerance;
+    if (square <= near * near) return true;
+    const DVec3 e = p - segment.to;
+    if (glm::dot(e, e) <= far * far) return true;
+    const DVec3 along = segment.to - segment.from;
+    const double length2 = glm::dot(along, along);
+    if (!(length2 > 0.0)) return false;
+    // In the plane through the axis and p: x along the axis, y away from it.
+    const double length = std::sqrt(length2);
+    const double x = glm::dot(d, along) / length;
+    const double y = std::sqrt(std::max(0.0, square - x * x));
+    const double taper = segment.radius - segment.from_radius;
+    if (x >= 0.0 && x <= length && y <= segment.from_radius + taper * x / length) return true;
+    // The frustum's flat ends lie in the balls: only its side is left.
+    const double t =
+        std::clamp((x * length + (y - segment.from_radius) * taper) / (length2 + taper * taper), 0.0, 1.0);
+    const double dx = x - t * length, dy = y - segment.from_radius - t * taper;
+    return dx * dx + dy * dy <= tolerance * tolerance;
 }
 
 SegmentTree::SegmentTree(std::vector<WoodSegment> segments) : segments_(std::move(segments)) {
@@ -66,6 +96,7 @@ int32_t SegmentTree::build(int32_t begin, int32_t end) {
         middles.add(0.5 * (segment.from + segment.to));
         cell.least_radius = std::min(cell.least_radius, segment.radius);
         cell.largest_radius = std::max(cell.largest_radius, segment.radius);
+        cell.largest_end = std::max({cell.largest_end, segment.radius, segment.from_radius});
     }
     cells_.push_back(cell);
     if (end - begin <= kLeafSize) return index;
@@ -110,19 +141,23 @@ SegmentTree::Hit SegmentTree::nearest_axis(const DVec3& p, int32_t hint) const {
 }
 
 double SegmentTree::surface_distance(const DVec3& p, int32_t& hint) const {
-    double best = std::numeric_limits<double>::max();
-    if (empty()) return best;
-    const auto error_of = [&](int32_t index) {
-        const WoodSegment& segment = segments_[index];
-        return std::abs(distance_to_segment(p, segment.from, segment.to) - segment.radius);
-    };
-    if (hint >= 0) best = error_of(hint);
+    if (empty()) return std::numeric_limits<double>::max();
+    BarkHit best;
+    if (hint >= 0) best = {segments_[hint].child, bark_error(segments_[hint], p), hint};
+    find_bark(p, best);
+    hint = best.segment;
+    return std::abs(best.error);
+}
+
+void SegmentTree::find_bark(const DVec3& p, BarkHit& best) const {
+    if (empty()) return;
+    double least = std::abs(best.error);
     // Whether all wood of the cell has its bark farther from p than the best so far.
     const auto hopeless = [&](const Cell& cell, double nearest) {
-        const double reach = best + cell.largest_radius;
-        if (nearest >= reach * reach) return true;
-        const double inner = cell.least_radius - best;
-        return inner > 0.0 && farthest_squared(cell.box, p) <= inner * inner;
+        const double reach = least + cell.largest_radius + kSlack;
+        if (nearest > reach * reach) return true;
+        const double inner = cell.least_radius - least - kSlack;
+        return inner > 0.0 && farthest_squared(cell.box, p) < inner * inner;
     };
     struct Waiting {
         int32_t cell;
@@ -137,10 +172,11 @@ double SegmentTree::surface_distance(const DVec3& p, int32_t& hint) const {
         if (hopeless(cell, at.nearest)) continue;
         if (cell.right < 0) {
             for (int32_t i = cell.begin; i < cell.end; i++) {
-                const double error = error_of(i);
-                if (error >= best) continue;
-                best = error;
-                hint = i;
+                const double error = bark_error(segments_[i], p);
+                const double size = std::abs(error);
+                if (size > least || (size == least && segments_[i].child >= best.child)) continue;
+                least = size;
+                best = {segments_[i].child, error, i};
             }
             continue;
         }
@@ -150,7 +186,27 @@ double SegmentTree::surface_distance(const DVec3& p, int32_t& hint) const {
         stack[depth++] = left_first ? right : left;
         stack[depth++] = left_first ? left : right;
     }
-    return best;
+}
+
+int32_t SegmentTree::find_solid(const DVec3& p, double tolerance, int32_t hint) const {
+    if (empty()) return -1;
+    if (hint >= 0 && solid_holds(segments_[hint], p, tolerance)) return hint;
+    std::array<int32_t, kStackSize> stack;
+    size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const int32_t at = stack[--depth];
+        const Cell& cell = cells_[at];
+        if (nearest_squared(cell.box, p) > squared(cell.largest_end + tolerance + kSlack)) continue;
+        if (cell.right >= 0) {
+            stack[depth++] = cell.right;
+            stack[depth++] = at + 1;
+            continue;
+        }
+        for (int32_t i = cell.begin; i < cell.end; i++)
+            if (solid_holds(segments_[i], p, tolerance)) return i;
+    }
+    return -1;
 }
 
 }  // namespace treerec

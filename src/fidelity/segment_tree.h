@@ -1,6 +1,7 @@
 // Finds the wood nearest to a point: a bounding-volume hierarchy over a tree's segments.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "geometry/bounds.h"
@@ -8,18 +9,34 @@
 
 namespace treerec {
 
-// A segment of wood as a cylinder, the child's radius on its whole length.
+// A segment of wood as a cylinder, the child's radius on its whole length. `from_radius` is the parent's, for
+// the solid of two balls and a frustum that papers/002 (7.3) makes of it.
 struct WoodSegment {
     DVec3 from;
     DVec3 to;
     double radius = 0.0;
     NodeId child = kNoNode;
+    double from_radius = 0.0;
 };
 
 // All segments, in depth-first order of their child nodes.
 std::vector<WoodSegment> wood_segments(const Tree& tree);
 
 double distance_to_segment(const DVec3& p, const DVec3& from, const DVec3& to);
+
+// Distance to the axis - radius: metres, negative inside the cylinder (with round ends).
+double bark_error(const WoodSegment& segment, const DVec3& p);
+
+// Whether p lies in the ball of either end or in the frustum between them, or at most `tolerance` metres
+// outside of them (papers/002, 7.3).
+bool solid_holds(const WoodSegment& segment, const DVec3& p, double tolerance);
+
+// The bark nearest to a point.
+struct BarkHit {
+    NodeId child = kNoNode;
+    double error = std::numeric_limits<double>::infinity();  // bark_error()
+    int32_t segment = -1;                                    // of the tree that found it
+};
 
 class SegmentTree {
   public:
@@ -39,13 +56,19 @@ class SegmentTree {
     // The smallest |distance to the axis - radius| over all segments. `hint`: likewise, and then the segment
     // that was found.
     double surface_distance(const DVec3& p, int32_t& hint) const;
+    // Replaces `best` where bark is nearer to p than it (the smallest |error|), or as near and of a child
+    // with a smaller id, so that what is found depends on p and the segments alone.
+    void find_bark(const DVec3& p, BarkHit& best) const;
+    // A segment whose solid holds p within the tolerance, or -1. `hint`: one that probably does, or -1.
+    int32_t find_solid(const DVec3& p, double tolerance, int32_t hint = -1) const;
 
   private:
     struct Cell {
         Bounds box;  // of the axes
         double least_radius = 0.0;
         double largest_radius = 0.0;
-        int32_t begin = 0;  // of segments_
+        double largest_end = 0.0;  // likewise, the parents' radii too
+        int32_t begin = 0;         // of segments_
         int32_t end = 0;
         int32_t right = -1;  // second child; the first follows its parent; -1 for a leaf
     };

@@ -1,0 +1,162 @@
+#include "fidelity/photo_fidelity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "error.h"
+#include "file_bytes.h"
+#include "geometry/parallel.h"
+
+#define STBI_NO_STDIO
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_BMP
+#define STBI_ONLY_TGA
+#define STBI_MAX_DIMENSIONS 65536
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#endif
+#include <stb/stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kChunk = 8192;
+constexpr int kBright = 128;
+
+std::string size_text(int width, int height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+}
+
+bool is_file(const std::string& path) {
+    std::error_code failure;
+    return std::filesystem::is_regular_file(path_of(path), failure);
+}
+
+// The mask of a photo in the folder; empty where there is none.
+std::string mask_path(const std::string& folder, const std::string& photo) {
+    const std::filesystem::path base = path_of(folder);
+    const auto in_folder = [&](const std::string& name) { return utf8_of(base / path_of(name)); };
+    if (const std::string path = in_folder(photo + ".png"); is_file(path)) return path;
+    const size_t dot = photo.find_last_of("./");
+    const std::string stem = dot == std::string::npos || photo[dot] == '/' ? photo : photo.substr(0, dot);
+    for (const char* extension : {".png", ".jpg", ".jpeg", ".bmp", ".tga"})
+        if (const std::string path = in_folder(stem + extension); is_file(path)) return path;
+    return {};
+}
+
+Image read_mask(const std::string& path) {
+    const FileBytes bytes = read_file(path);
+    int width = 0, height = 0, channels = 0;
+    constexpr size_t kLargest = size_t{1} << 30;
+    stbi_uc* pixels =
+        bytes.size > kLargest
+            ? nullptr
+            : stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data.get()),
+                                    static_cast<int>(bytes.size), &width, &height, &channels, 1);
+    if (!pixels)
+        throw Error("The mask '" + path + "' is no picture that can be read (PNG, JPEG, BMP or TGA).");
+    Image mask(width, height, 1);
+    for (size_t i = 0; i < mask.pixels.size(); i++)
+        mask.pixels[i] = pixels[i] >= kBright ? 255 : 0;
+    stbi_image_free(pixels);
+    return mask;
+}
+
+}  // namespace
+
+double photo_information(size_t photos) {
+    return 1.0 - std::pow(kInformationRatio, static_cast<double>(photos));
+}
+
+std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model, const Progress* progress) {
+    std::error_code failure;
+    if (!std::filesystem::is_directory(path_of(folder), failure))
+        throw Error("There is no folder '" + folder + "' with the photos' masks.");
+    std::vector<std::string> paths;
+    std::string missing;
+    size_t count = 0;
+    for (const Photo& photo : model.photos) {
+        paths.push_back(mask_path(folder, photo.name));
+        if (!paths.back().empty()) continue;
+        constexpr size_t kNamed = 3;
+        if (count++ < kNamed)
+            missing += (missing.empty() ? "" : ", ") + quote_word(photo.name);
+        else if (count == kNamed + 1)
+            missing += ", ...";
+    }
+    if (count > 0)
+        throw Error(std::to_string(count) + " of " + std::to_string(model.photos.size()) +
+                    " photos have no mask in '" + folder + "': " + missing +
+                    ". A mask is called like its photo, with .png after it, and is white where the tree is.");
+    std::vector<Image> masks(paths.size());
+    parallel_for(paths.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            if (progress) progress->check();
+            masks[i] = read_mask(paths[i]);
+        }
+    });
+    return masks;
+}
+
+PhotoFidelity measure_photos(const PointCloud& cloud, const PhotoModel& model,
+                             const std::vector<Image>& masks, const Progress* progress) {
+    if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to see in the photos.");
+    if (model.photos.empty()) throw Error("There are no photos to compare the cloud with.");
+    if (masks.size() != model.photos.size())
+        throw Error("There are " + std::to_string(model.photos.size()) + " photos, but " +
+                    std::to_string(masks.size()) + " masks: each photo needs one.");
+    PhotoFidelity result;
+    for (size_t i = 0; i < masks.size(); i++) {
+        const Photo& photo = model.photos[i];
+        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+        if (masks[i].width != camera.width || masks[i].height != camera.height || masks[i].channels != 1)
+            throw Error("The mask of " + quote_word(photo.name) + " has " +
+                        size_text(masks[i].width, masks[i].height) + " pixels, but the photo has " +
+                        size_text(camera.width, camera.height) + ": they must be the same.");
+    }
+    for (size_t i = 0; i < masks.size(); i++) {
+        const Photo& photo = model.photos[i];
+        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+        std::vector<size_t> hits((cloud.size() + kChunk - 1) / kChunk, 0);
+        parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
+            if (progress) progress->check();
+            size_t inside = 0;
+            for (size_t k = begin; k < end; k++) {
+                const DVec3 world = cloud.frame.to_scan(DVec3(cloud.positions[k]));
+                const std::optional<DVec2> at = camera.project(photo.to_camera(world));
+                if (!at || !(at->x >= 0.0 && at->y >= 0.0 && at->x < camera.width && at->y < camera.height))
+                    continue;
+                inside += *masks[i].at(static_cast<int>(at->x), static_cast<int>(at->y)) != 0;
+            }
+            hits[begin / kChunk] = inside;
+        });
+        PhotoHits photo_hits{photo.name, 0, 0, 0.0};
+        for (size_t chunk : hits)
+            photo_hits.inside += chunk;
+        photo_hits.outside = cloud.size() - photo_hits.inside;
+        photo_hits.share = static_cast<double>(photo_hits.inside) / static_cast<double>(cloud.size());
+        result.reconstruction += photo_hits.share / static_cast<double>(masks.size());
+        result.photos.push_back(std::move(photo_hits));
+    }
+    result.information = photo_information(masks.size());
+    return result;
+}
+
+PhotoFidelity measure_photos(const PointCloud& cloud, const std::string& model, const std::string& masks,
+                             const Progress* progress) {
+    const PhotoModel photos = read_photo_model(model);
+    return measure_photos(cloud, photos, read_masks(masks, photos, progress), progress);
+}
+
+}  // namespace treerec

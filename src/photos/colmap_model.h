@@ -1,0 +1,56 @@
+// Cameras and photos of a COLMAP model (J. L. Schoenberger, "Output Format", COLMAP's documentation).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/vec.h"
+
+namespace treerec {
+
+// COLMAP's camera models that are known here, by their numbers in its files.
+enum class LensModel {
+    kSimplePinhole = 0,
+    kPinhole = 1,
+    kSimpleRadial = 2,
+    kRadial = 3,
+    kOpenCv = 4,
+    kOpenCvFisheye = 5,
+    kFullOpenCv = 6,
+    kSimpleRadialFisheye = 8,
+    kRadialFisheye = 9,
+};
+
+struct Camera {
+    LensModel model = LensModel::kPinhole;
+    int width = 0;  // pixels
+    int height = 0;
+    std::array<double, 12> parameters{};  // in COLMAP's order
+
+    // Where a point in the camera's coordinates (x right, y down, z ahead) falls, in pixels from the upper
+    // left corner; nothing for one that is not in front of the camera, or so far to the side that the lens's
+    // formula turns back.
+    std::optional<DVec2> project(const DVec3& p) const;
+};
+
+struct Photo {
+    std::string name;                                    // as COLMAP wrote it, with / between folders
+    int camera = 0;                                      // index into PhotoModel::cameras
+    std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // quaternion w x y z, world to camera
+    DVec3 translation{0.0};
+
+    DVec3 to_camera(const DVec3& world) const;
+};
+
+struct PhotoModel {
+    std::vector<Camera> cameras;
+    std::vector<Photo> photos;  // by name
+};
+
+// Reads cameras.bin and images.bin, or else cameras.txt and images.txt, of a folder. Throws Error with a
+// sentence where they are missing, damaged, or name a camera model that is not known here.
+PhotoModel read_photo_model(const std::string& folder);
+
+}  // namespace treerec
