@@ -1,6 +1,7 @@
 #include "fidelity/unexplained.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -36,7 +37,7 @@ bool before(const Vec3& a, const Vec3& b) {
 double found_gap(const std::vector<Vec3>& points) {
     if (points.size() <= static_cast<size_t>(kSpacingNeighbours)) return kMostGap;
     const KdPoints source{points};
-    const KdTree tree(3, source, {32, nanoflann::KDTreeSingleIndexAdaptorFlags::None, 1});
+    const KdTree tree(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(32));
     const size_t step = std::max<size_t>(1, points.size() / kSpacingSamples);
     std::vector<double> distances;
     for (size_t i = 0; i < points.size(); i += step) {
@@ -177,7 +178,7 @@ std::vector<UnexplainedCluster> find_unexplained(const Tree& tree, const PointCl
     for (NodeId id : ids)
         node_points.emplace_back(tree.node(id).position);
     const KdPoints source{node_points};
-    const KdTree nodes(3, source, {16, nanoflann::KDTreeSingleIndexAdaptorFlags::None, 1});
+    const KdTree nodes(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(16));
     parallel_for(clusters.size(), 1, [&](size_t begin, size_t end) {
         for (size_t c = begin; c < end; c++) {
             if (progress) progress->check();
