@@ -116,6 +116,9 @@ Ref<TreeReconstruction> LSystem::grow(int64_t p_seed) const {
             treerec::read_lstring_with_leaves(_rewrite(settings, grammar, p_seed), grammar.turtle),
             provenance);
         made->set_seed(seed);
+        if (!grammar.leaf_preset.empty()) {
+            made->set_leaf_preset(to_godot(grammar.leaf_preset));
+        }
         return made;
     });
 }

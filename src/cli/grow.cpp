@@ -37,6 +37,7 @@ struct Grown {
     LStringTree read;
     std::string string;      // as it was drawn; empty for one that was read from a file
     LStringOptions options;  // by which it was drawn
+    std::string leaf_preset;
 };
 
 Grown grow(const std::string& name, const std::string& text, const Arguments& arguments,
@@ -48,6 +49,7 @@ Grown grow(const std::string& name, const std::string& text, const Arguments& ar
     if (grammatical) {
         grammar = Grammar::parse(text);
         options = grammar.turtle;
+        if (!grammar.leaf_preset.empty()) grown.leaf_preset = grammar.leaf_preset;
     }
     if (arguments.has("--dialect")) options.dialect = dialect_from(arguments);
     options.angle = arguments.number("--angle", options.angle, -360.0, 360.0);
@@ -93,7 +95,7 @@ const Command& grow_command() {
          {"--radius", "M", "metres, where no ! says it"},
          {"--vary-angle", "A", "vary every segment's direction by up to so many degrees (default 0)"},
          {"--vary-length", "F", "vary every segment's length by up to this share (default 0)"},
-         {"--leaves", "NAME", "the leaf preset of models (default generic; none)"},
+         {"--leaves", "NAME", "the leaf preset of models (default: the grammar's, or generic; none)"},
          {"--quiet", "", "print errors only"}},
         "STRING-OR-GRAMMAR: a file, or one of the program's own grammars: " + preset_list() + "."};
     return command;
@@ -109,9 +111,8 @@ void run_grow(const std::vector<std::string>& words) {
     const std::vector<std::string>& outs = arguments.all("-o");
     if (outs.empty()) throw UsageError("Where to? Name at least one file to write with -o.");
     ExportOptions exports;
-    exports.textures = arguments.text("--leaves", "generic");
     try {
-        exports.leaves = leaf_preset(exports.textures);
+        if (arguments.has("--leaves")) leaf_preset(arguments.text("--leaves", ""));
         for (const std::string& out : outs)
             if (!wants_string(out))
                 require_writable_format(out);
@@ -126,6 +127,9 @@ void run_grow(const std::vector<std::string>& words) {
     progress.update(0.0, "Growing");
     const Grown grown = grow(positional[0], source_text(positional[0]), arguments, progress);
     const Tree& tree = grown.read.tree;
+    exports.textures =
+        arguments.text("--leaves", grown.leaf_preset.empty() ? exports.textures : grown.leaf_preset);
+    exports.leaves = leaf_preset(exports.textures);
     exports.seed = grown.options.seed;
     if (!grown.read.leaves.empty()) {
         std::vector<Vec3> places;

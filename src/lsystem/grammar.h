@@ -1,7 +1,8 @@
 // Parametric, stochastic, context-sensitive L-systems (ABOP, 1.3 to 1.10): a text of settings, constants,
 // an axiom and rules, rewritten step by step into an L-string.
 //
-//   angle: 22.5           settings: angle, step, radius, thinning, iterations, seed, leaf, ignore, tropism
+//   angle: 22.5           settings: angle, step, radius, thinning, iterations, seed, leaf, leaf_preset,
+//                         ignore, tropism
 //   r = 0.7               a constant
 //   axiom: A(1, 0.1)
 //   A(l, w) : l > 0.1 -> !(w) F(l) [+A(l*r, w*r)] A(l*0.9, w*0.8)
@@ -60,7 +61,8 @@ struct Grammar {
     std::array<bool, 128> ignored{};
     int iterations = 1;
     uint64_t seed = 1;
-    LStringOptions turtle;  // its angle, step, radius, ... as the grammar sets them
+    std::string leaf_preset;  // the leaf rules that suit the tree, by name; empty: any
+    LStringOptions turtle;    // its angle, step, radius, ... as the grammar sets them
 };
 
 struct RewriteOptions {

@@ -90,11 +90,13 @@ class GrammarParser {
     }
 
     static constexpr const char* kSettingList =
-        "axiom, angle, step, radius, thinning, iterations, seed, leaf, ignore and tropism.";
+        "axiom, angle, step, radius, thinning, iterations, seed, leaf, leaf_preset, ignore and "
+        "tropism.";
 
     static bool is_setting(std::string_view word) {
-        static constexpr std::string_view kNames[] = {"axiom",      "angle", "step", "radius", "thinning",
-                                                      "iterations", "seed",  "leaf", "ignore", "tropism"};
+        static constexpr std::string_view kNames[] = {"axiom",       "angle",      "step",   "radius",
+                                                      "thinning",    "iterations", "seed",   "leaf",
+                                                      "leaf_preset", "ignore",     "tropism"};
         return std::find(std::begin(kNames), std::end(kNames), word) != std::end(kNames);
     }
 
@@ -152,6 +154,10 @@ class GrammarParser {
         } else if (word == "leaf") {
             for (const char symbol : symbols())
                 turtle.leaf_symbols += symbol;
+        } else if (word == "leaf_preset") {
+            text_.skip();
+            grammar_.leaf_preset = text_.name();
+            if (grammar_.leaf_preset.empty()) text_.fail("here the name of a leaf preset should stand.");
         } else if (word == "ignore") {
             for (const char symbol : symbols())
                 grammar_.ignored[static_cast<unsigned char>(symbol)] = true;

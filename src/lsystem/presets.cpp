@@ -52,6 +52,7 @@ F(l) -> F(l*lr)
 )"},
     {"oak", R"(# A broad crown on a short trunk: limbs wind, and fork into a strong and a weak arm.
 iterations: 14
+leaf_preset: oak
 seed: 2
 tropism: 0, 1, 0, 0.06    # towards the light
 axiom: !(0.3) F(0.2) !(0.24) F(0.4) &(2) !(0.22) F(0.6) ^(4) !(0.21) F(0.6) T(6, 0.2)
@@ -66,13 +67,14 @@ L(l, w, k) -> !(max(w*0.5, 0.003)) F(l*0.7)
 )"},
     {"birch", R"(# A slim leader to the top; the lower branches have died.
 iterations: 38
+leaf_preset: birch
 seed: 1
 tropism: 0, 1, 0, 0.035
 axiom: !(0.13) F(0.2) !(0.105) F(0.4) T(28)
 T(n) : n > 0 -> !(0.0035*n + 0.002) &(normal(0, 1.2)) +(normal(0, 1.2)) F(0.36)
     B(n) /(normal(137.5, 20)) T(n-1)
 T(n) -> !(0.003) F(0.25)
-B(n) : n < 23 -> [&(uniform(45, 62)) A(0.35 + 0.11*n, 0.003 + 0.0011*n, 8)]
+B(n) : n < 23 -> [&(uniform(45, 62)) A(0.45 + 0.125*n, 0.003 + 0.0011*n, 8)]
 B(n) -> *
 # A branch: twigs to both sides, shorter towards its tip.
 A(l, w, k) : k > 0 -> !(w) &(normal(2, 4)) +(normal(0, 4)) F(l/9) /(180)
@@ -83,13 +85,14 @@ S(l, w) -> !(w) F(l/3) [+(uniform(25, 40)) !(0.002) F(l/4) F(l/4)]
 )"},
     {"spruce", R"(# A straight leader with a whorl of flat, feathered branches for every year.
 iterations: 30
+leaf_preset: spruce
 seed: 1
 tropism: 0, 1, 0, 0.04
 axiom: !(0.16) F(0.2) !(0.13) F(0.4) T(22)
 T(n) : n > 0 -> !(0.0055*n + 0.003) F(0.2 + 0.014*n) /(uniform(0, 72)) W(n) /(normal(72, 8)) W(n)
     /(normal(72, 8)) W(n) /(normal(72, 8)) W(n) /(normal(72, 8)) W(n) T(n-1)
-T(n) -> !(0.004) F(0.3)
-W(n) -> [&(50 + 2.4*n + normal(0, 4)) $ H(uniform(0.9, 1.1)*(0.2 + 0.105*n), 0.004 + 0.0011*n, 6)]
+T(n) -> !(0.004) F(0.3) !(0.002) F(0.25)
+W(n) -> [&(50 + 2.4*n + normal(0, 4)) $ H(uniform(0.9, 1.1)*(0.06 + 0.112*n), 0.004 + 0.0011*n, 6)]
 H(l, w, k) : k > 0 -> !(w) +(normal(0, 3)) F(l/7) [+(uniform(45, 60)) S(l*0.075*k, w*0.45)]
     [-(uniform(45, 60)) S(l*0.075*k, w*0.45)] H(l, w*0.8, k-1)
 H(l, w, k) -> !(0.002) F(l/7)
@@ -97,6 +100,7 @@ S(l, w) -> !(max(w, 0.002)) F(l/2) !(0.002) F(l/2)
 )"},
     {"willow", R"(# Limbs that rise and spread, and long shoots that hang from them.
 iterations: 24
+leaf_preset: willow
 seed: 3
 tropism: 0, -1, 0, 0.11   # a little at every F: most where there are many, in the shoots
 axiom: !(0.27) F(0.2) !(0.22) F(0.7) &(3) !(0.2) F(0.8) X

@@ -36,6 +36,17 @@ func test_a_seed_is_a_tree() -> void:
 	check_equal(made.seed, 7, "the seed of the leaves")
 
 
+func test_a_grammar_names_its_leaves() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = LSystem.get_preset("willow")
+	check_equal(system.grow().leaf_preset, "willow", "the leaves")
+	system.grammar = LSystem.get_preset("hazel")
+	check_equal(system.grow().leaf_preset, "generic", "no leaves named")
+	expect_error("'cactus' is no leaf preset")
+	system.grammar = "leaf_preset: cactus\naxiom: FF"
+	check_equal(system.grow().leaf_preset, "generic", "a preset that is none")
+
+
 func test_iterations() -> void:
 	var system: LSystem = LSystem.new()
 	system.grammar = "iterations: 2\naxiom: F\nF -> FF"

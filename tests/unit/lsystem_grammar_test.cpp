@@ -260,13 +260,15 @@ TEST(Grammar, Expressions) {
 
 TEST(Grammar, SettingsReachTheTurtle) {
     const Grammar grammar = Grammar::parse(
-        "angle = 30 # degrees\nstep: 0.5\nradius: 0.02\nthinning: 0.8\niterations: 4\nseed: 9\nleaf: L K\n"
+        "angle = 30 # degrees\nstep: 0.5\nradius: 0.02\nthinning: 0.8\niterations: 4\nseed: 9\nleaf: L "
+        "K\nleaf_preset: oak\n"
         "tropism: 0, -1, 0, 0.1\naxiom: F");
     EXPECT_EQ(grammar.turtle.angle, 30.0);
     EXPECT_EQ(grammar.turtle.step, 0.5);
     EXPECT_EQ(grammar.turtle.radius, 0.02);
     EXPECT_EQ(grammar.turtle.thinning, 0.8);
     EXPECT_EQ(grammar.turtle.leaf_symbols, "LK");
+    EXPECT_EQ(grammar.leaf_preset, "oak");
     EXPECT_EQ(grammar.turtle.tropism, DVec3(0, -1, 0));
     EXPECT_EQ(grammar.turtle.elasticity, 0.1);
     EXPECT_EQ(grammar.iterations, 4);
@@ -309,7 +311,7 @@ TEST(Grammar, ErrorsNameThePlace) {
     EXPECT_EQ(
         sentence_of("angel: 30\naxiom: F"),
         "The grammar, line 1, column 1: there is no setting 'angel'; there are axiom, angle, step, radius, "
-        "thinning, iterations, seed, leaf, ignore and tropism.");
+        "thinning, iterations, seed, leaf, leaf_preset, ignore and tropism.");
     EXPECT_EQ(sentence_of("radius: -1\naxiom: F"),
               "The grammar, line 1, column 9: the radius must be positive, in metres.");
     EXPECT_EQ(sentence_of("x = 1/0\naxiom: F"), "The grammar, line 1, column 5: this is no finite number.");
