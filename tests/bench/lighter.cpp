@@ -52,7 +52,7 @@ void print_marks(const std::string& name, const Tree& tree) {
     const Sizes sizes;
     const Mesh mesh = build_branch_tubes(tree);
     const double bytes = sizes.of(tree);
-    size_t tips = tree.nodes_of_kind(NodeKind::kLeaf).size();
+    const size_t tips = tree.nodes_of_kind(NodeKind::kLeaf).size();
     std::printf("%s: %zu nodes, %zu tips, %.1f KB\n", name.c_str(), tree.size(), tips, bytes / 1024.0);
     for (const auto& mark : kMarks) {
         const double most = bytes * mark.after / mark.before;
@@ -99,7 +99,10 @@ void print_marks(const std::string& name, const Tree& tree) {
                 merge_branches(tried, angle, distance);
                 const bool small = sizes.of(tried) <= most;
                 if (small) light = tried;
-                if (step == 0 && small) break;
+                if (step == 0 && small) {
+                    far = 0.0;
+                    break;
+                }
                 if (step == 1 && !small) break;
                 if (step > 1) (small ? far : near) = distance;
             }
