@@ -25,6 +25,7 @@ const char* const kUsage =
     "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and papers/002's\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
+    "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
     "         --truth FOLDER (of --scans: its STEM_skeleton_corrected*.csv are compared),\n"
@@ -59,7 +60,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         }
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
-            word == "--lighter" || word == "--help") {
+            word == "--lighter" || word == "--edits" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -120,6 +121,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--strings") {
         bench_strings(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--edits") {
+        bench_edits(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--guard" || line.mode == "--record") {
