@@ -1,6 +1,7 @@
 // Random commands for tests, from what the commands say about themselves: a new command takes part by itself.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -41,13 +42,17 @@ inline std::string random_nodes(const Tree& tree, const std::vector<NodeId>& ids
 inline std::string random_value(const Parameter& parameter, const Tree& tree, const std::vector<NodeId>& ids,
                                 Random& random) {
     const Bounds bounds = tree.bounds();
+    // From 10 to 10,000, as often below 316 as above.
+    const auto between = [&] {
+        const double from = parameter.from, to = parameter.to, share = random.uniform();
+        return from > 0.0 && to > 20.0 * from ? from * std::pow(to / from, share) : from + (to - from) * share;
+    };
     switch (parameter.type) {
         case ParameterType::kNumber:
         case ParameterType::kLength:
-            return number_text(random.uniform(parameter.from, parameter.to));
+            return number_text(between());
         case ParameterType::kWhole:
-            return std::to_string(static_cast<int64_t>(
-                parameter.from + (parameter.to - parameter.from + 1.0) * random.uniform()));
+            return std::to_string(static_cast<int64_t>(between()));
         case ParameterType::kSwitch:
             return random.below(2) ? "yes" : "no";
         case ParameterType::kWord:
