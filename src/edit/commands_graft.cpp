@@ -195,7 +195,7 @@ std::vector<EditCommand> graft_commands() {
          joined({nodes_parameter("nodes", "", "the nodes that get one"), twigs,
                  nodes_parameter("from", "", "the lowest nodes of branches to copy, instead").optional(),
                  whole_parameter("most", 50000, 1, kLargestId, "nodes that it may add in all")
-                     .slider(1000, 50000)},
+                     .slider(100, 10000)},
                 graft_parameters()),
          run_graft_many},
     };

@@ -45,7 +45,8 @@ inline std::string random_value(const Parameter& parameter, const Tree& tree, co
     // From 10 to 10,000, as often below 316 as above.
     const auto between = [&] {
         const double from = parameter.from, to = parameter.to, share = random.uniform();
-        return from > 0.0 && to > 20.0 * from ? from * std::pow(to / from, share) : from + (to - from) * share;
+        return from > 0.0 && to > 20.0 * from ? from * std::pow(to / from, share)
+                                              : from + (to - from) * share;
     };
     switch (parameter.type) {
         case ParameterType::kNumber:
