@@ -9,6 +9,7 @@
 
 #include "convert.h"
 #include "error.h"
+#include "foliage/foliage_twigs.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 #include "tree/measure.h"
@@ -31,10 +32,15 @@ std::shared_ptr<const Tree> TreeReconstruction::get_tree() const {
     return tree_;
 }
 
-int64_t TreeReconstruction::get_skeleton_revision() const {
+int64_t TreeReconstruction::get_bark_revision() const {
+    const treerec::LeafRules rules = get_leaf_rules();
     const std::lock_guard lock(mutex_);
-    if (revision_ == 0 || revised_.lock() != tree_) {
-        revised_ = tree_;
+    const bool followed = !foliage_->empty() && rules.enabled && rules.follow_density > 0.0;
+    if (revision_ == 0 || revised_tree_.lock() != tree_ || revised_foliage_.lock() != foliage_ ||
+        revised_followed_ != followed) {
+        revised_tree_ = tree_;
+        revised_foliage_ = foliage_;
+        revised_followed_ = followed;
         revision_++;
     }
     return revision_;
@@ -256,7 +262,8 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod) const {
     return guarded(Array(), [&] {
         treerec::TubeOptions options;
         options.level = p_lod;
-        return to_surface_arrays(treerec::build_branch_tubes(*get_tree(), options));
+        return to_surface_arrays(treerec::build_branch_tubes(
+            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), options));
     });
 }
 

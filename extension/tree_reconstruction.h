@@ -85,7 +85,7 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedFloat32Array get_radii() const;
     godot::PackedInt32Array get_parents() const;
     godot::AABB get_aabb() const;
-    int64_t get_skeleton_revision() const;
+    int64_t get_bark_revision() const;
     godot::String get_leaf_look() const;
     bool are_leaves_single() const;
     bool has_foliage() const;
@@ -155,7 +155,10 @@ class TreeReconstruction : public godot::Resource {
     bool foliage_followed_ = true;
     godot::Ref<LeafRule> leaf_rule_;
     int64_t seed_ = 1;
-    mutable std::weak_ptr<const treerec::Tree> revised_;  // the tree of revision_
+    // What the bark of revision_ is built of.
+    mutable std::weak_ptr<const treerec::Tree> revised_tree_;
+    mutable std::weak_ptr<const treerec::Foliage> revised_foliage_;
+    mutable bool revised_followed_ = false;
     mutable int64_t revision_ = 0;
 
     treerec::EditLog edit_log_;

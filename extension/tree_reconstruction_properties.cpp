@@ -241,7 +241,7 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_radii"), &TreeReconstruction::get_radii);
     ClassDB::bind_method(D_METHOD("get_parents"), &TreeReconstruction::get_parents);
     ClassDB::bind_method(D_METHOD("get_aabb"), &TreeReconstruction::get_aabb);
-    ClassDB::bind_method(D_METHOD("get_skeleton_revision"), &TreeReconstruction::get_skeleton_revision);
+    ClassDB::bind_method(D_METHOD("get_bark_revision"), &TreeReconstruction::get_bark_revision);
     ClassDB::bind_method(D_METHOD("get_leaf_look"), &TreeReconstruction::get_leaf_look);
     ClassDB::bind_method(D_METHOD("are_leaves_single"), &TreeReconstruction::are_leaves_single);
     ClassDB::bind_method(D_METHOD("has_foliage"), &TreeReconstruction::has_foliage);

@@ -9,9 +9,9 @@ namespace treerec {
 
 namespace {
 
+constexpr double kFullTreeHeight = 6.0;       // metres; smaller trees have shorter, thinner twigs
 constexpr double kFullSprayHeight = 12.0;     // metres; smaller trees bear smaller sprays
 constexpr double kClusterSteepness = 5.0;     // how fast a fully clustered twig gets bare below its tip
-constexpr double kTipsHold = 0.5;             // power of `standing`: leaves at the tips fall last
 constexpr double kBunchSplay = 16.0;          // degrees between neighbours of a bunch
 constexpr double kJitter = 0.0175;            // radians around the twig per degree of angle_variation
 constexpr double kSunk = 0.9;                 // of the wood's radius: where a petiole leaves the axis
@@ -94,17 +94,13 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     leaf.sway = static_cast<float>(crown.sway(at.position));
     leaf.occlusion = static_cast<float>(0.35 + 0.65 * crown.openness(position));
     leaf.terminal = terminal ? 1.0f : 0.0f;
+    const double hold = number_of(branch_key ^ kFallKey, number);
+    leaf.hold = static_cast<float>(terminal ? std::sqrt(hold) : hold);
     return leaf;
 }
 
 LeafPlacement LeafPlacer::tip_leaf(const Branch& branch, const AxisPoint& end) const {
     return leaf_at(end, end.direction, 0.0, list.nodes[branch.end - 1], 0);
-}
-
-bool LeafPlacer::stands(NodeId tip, uint64_t number, bool terminal) const {
-    if (rules.standing >= 1.0) return true;
-    const double share = terminal ? std::pow(std::max(rules.standing, 0.0), kTipsHold) : rules.standing;
-    return number_of(hash_seed(seed, static_cast<uint64_t>(tip)) ^ kFallKey, number) < share;
 }
 
 double LeafPlacer::density_at(const Branch& branch, const AxisPoint& at) const {
@@ -129,7 +125,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
     if (axis.size() < 2) return;
     const NodeId tip = list.nodes[branch.end - 1];
     const AxisPoint end = axis.back();
-    if (density_at(branch, end) > 0.0 && stands(tip, 0, true)) leaves.push_back(tip_leaf(branch, end));
+    if (density_at(branch, end) > 0.0) leaves.push_back(tip_leaf(branch, end));
     uint64_t number = 1;
     // The tip bears leaves however thick a scan made it.
     const double stoutest = std::max(size.maximum_radius, 1.5 * end.radius);
@@ -160,7 +156,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
             share * density_at(branch, at) * std::exp(-kClusterSteepness * rules.clustering * down);
         for (int k = 0; k < count; k++) {
             const uint64_t own = number++;
-            if (number_of(branch_key ^ kThinKey, own) >= wanted || !stands(tip, own, false)) continue;
+            if (number_of(branch_key ^ kThinKey, own) >= wanted) continue;
             double around = turned, out = angle;
             if (rules.arrangement == LeafArrangement::kFascicled) {
                 // A bunch spreads like a fan, wider than deep.

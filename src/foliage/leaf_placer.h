@@ -12,8 +12,6 @@
 
 namespace treerec {
 
-inline constexpr double kFullTreeHeight = 6.0;  // metres; smaller trees have shorter, thinner twigs
-
 // The rules' lengths in the measure of one tree.
 struct ScaledLeaf {
     double internode, twig_length, maximum_radius, leaf_size;
@@ -40,9 +38,6 @@ struct LeafPlacer {
     // always among them unless it is 0.
     void bear(const Branch& branch, double share, std::vector<AxisPoint>& axis,
               std::vector<LeafPlacement>& leaves) const;
-
-    // Whether a leaf has not fallen yet.
-    bool stands(NodeId tip, uint64_t number, bool terminal) const;
 
   private:
     double density_at(const Branch& branch, const AxisPoint& at) const;

@@ -61,8 +61,8 @@ LeafRules spruce() {
 
 LeafRules palm() {
     // Fronds at the end of the stem alone: young ones upright, old ones hanging.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.022, 2.6, 118.0, 12.0);
-    made.twig_length = 0.8;
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.040, 2.8, 118.0, 12.0);
+    made.twig_length = 1.8;
     made.maximum_radius = 0.5;
     made.by_order = {1.0f, 0.0f};
     made.closing = 0.85;

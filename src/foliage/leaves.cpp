@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "foliage/branch_axis.h"
+#include "foliage/foliage_twigs.h"
 #include "foliage/leaf_placer.h"
 #include "foliage/near_wood.h"
 #include "foliage/snags.h"
@@ -21,8 +22,7 @@ constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that 
 
 // Following a scan's foliage.
 constexpr size_t kCellsPerChunk = 512;
-constexpr double kReach = 1.2;            // metres between a leaf and its branch, on a tree of full height
-constexpr double kLeastReachCells = 4.0;  // or that many cells, if that is more
+constexpr double kHostReach = 2.0;        // of the spacing of foliage_twigs.h: from a leaf to its wood
 constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
 constexpr double kColorHue = 0.7;                          // of a leaf's hue, where the scan has colours
@@ -33,8 +33,8 @@ class Follower {
     Follower(const LeafPlacer& placer, const Foliage& foliage)
         : placer_(placer),
           foliage_(foliage),
-          wood_(placer.tree, placer.list, reach(placer, foliage), placer.size.maximum_radius,
-                2e-5 * placer.crown.coordinate),
+          wood_(placer.tree, placer.list, kHostReach * foliage_twig_spacing(foliage),
+                placer.size.maximum_radius, 2e-5 * placer.crown.coordinate),
           usual_(usual_points(foliage)) {
         const ScaledLeaf& size = placer.size;
         per_cell_ = kSpraysPerVolume * foliage.edge * foliage.edge * foliage.edge /
@@ -66,13 +66,10 @@ class Follower {
             const DVec3 radial = normalized_or(off - axis.direction * glm::dot(off, axis.direction),
                                                any_perpendicular(axis.direction));
             AxisPoint at = axis;
-            // leaf_at() puts the petiole onto the bark: out to p, unless p lies in the wood.
-            if (glm::length(off) > axis.radius) at.position = p - radial * 0.9 * axis.radius;
             at.direction = normalized_or(0.6 * axis.direction + normalized_or(off, radial), axis.direction);
             const NodeId tip = placer_.list.nodes[placer_.list.branches[host->branch].end - 1];
             // Never 0, which is the tip's own leaf.
             const uint64_t number = hash_seed(key, k) | 1;
-            if (!placer_.stands(tip, number, false)) continue;
             leaves.push_back(placer_.leaf_at(at, radial, placer_.rules.angle, tip, number));
             tint(cell, leaves.back());
         }
@@ -84,16 +81,12 @@ class Follower {
         sample_axis(placer_.tree, placer_.list, branch, 2e-5 * placer_.crown.coordinate, axis);
         if (axis.size() < 2) return;
         const FoliageCell* cell = cell_near(axis.back().position);
-        if (!cell || !placer_.stands(placer_.list.nodes[branch.end - 1], 0, true)) return;
+        if (!cell) return;
         leaves.push_back(placer_.tip_leaf(branch, axis.back()));
         tint(*cell, leaves.back());
     }
 
   private:
-    static double reach(const LeafPlacer& placer, const Foliage& foliage) {
-        const double scale = std::min(1.0, std::sqrt(placer.crown.height / kFullTreeHeight));
-        return std::max({kReach * scale, kLeastReachCells * foliage.edge, foliage.reach});
-    }
     static uint64_t key_of(const FoliageCell& cell) {
         return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) | cell.z;
     }
@@ -195,13 +188,15 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     check_leaf_rules(rules);
     std::vector<LeafPlacement> leaves;
     if (!rules.enabled || tree.size() < 2 || rules.maximum_leaves <= 0) return leaves;
-    const LeafPlacer placer(tree, rules, seed);
+    const double follow = foliage.empty() ? 0.0 : rules.follow_density;
+    const Tree grown = follow > 0.0 ? leafy_tree(tree, rules, foliage) : Tree();
+    const Tree& wood = follow > 0.0 ? grown : tree;
+    const LeafPlacer placer(wood, rules, seed);
     const std::vector<Branch>& branches = placer.list.branches;
     using Leaves = std::vector<LeafPlacement>;
-    const double follow = foliage.empty() ? 0.0 : rules.follow_density;
     if (follow < 1.0) {
         const std::vector<uint8_t> snag =
-            find_snags(tree, placer.list, kStoutShare * placer.size.maximum_radius);
+            find_snags(wood, placer.list, kStoutShare * placer.size.maximum_radius);
         gather(branches.size(), kBranchesPerChunk, leaves,
                [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
                    if (!snag[i]) placer.bear(branches[i], 1.0 - follow, axis, out);
@@ -218,6 +213,8 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
                [&](size_t i, std::vector<AxisPoint>&, Leaves& out) { follower.fill(foliage.cells[i], out); });
     }
     limit_count(leaves, static_cast<size_t>(rules.maximum_leaves));
+    // Last, so that the same leaves fall first whatever the limit.
+    std::erase_if(leaves, [&](const LeafPlacement& leaf) { return leaf.hold <= 1.0 - rules.standing; });
     return leaves;
 }
 

@@ -25,6 +25,7 @@ struct LeafPlacement {
     float sway = 0.0f;       // 0..1, the bark's COLOR.r at its place
     float occlusion = 1.0f;  // 1 open to the sky .. 0 deep in the crown
     float terminal = 0.0f;   // 1 at a twig's end, else 0
+    float hold = 1.0f;       // 0..1: it falls when that share of the leaves has fallen
 };
 
 // Leaves on the last `twig_length` of every branch, and one at every tip. An empty tree or a lone root has

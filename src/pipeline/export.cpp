@@ -6,6 +6,7 @@
 #include "exchange/obj.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
+#include "foliage/foliage_twigs.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 #include "tree/measure.h"
@@ -50,7 +51,7 @@ const Mesh& TreeExporter::bark() {
     if (!bark_) {
         TubeOptions tubes;
         tubes.shading = false;
-        bark_ = build_branch_tubes(tree_, tubes, progress_);
+        bark_ = build_branch_tubes(leafy_tree(tree_, options_.leaves, options_.foliage), tubes, progress_);
     }
     return *bark_;
 }
@@ -67,7 +68,8 @@ const Mesh& TreeExporter::leaf_cards() {
 }
 
 size_t TreeExporter::triangles() {
-    return bark().triangle_count() + leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
+    return bark().triangle_count() +
+           leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
 }
 
 int TreeExporter::card_level() {

@@ -14,6 +14,7 @@ signal rebuilt
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.15
+const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 # What the leaves take over from this node.
 const _SHARED: PackedStringArray = [
 	"layers",
@@ -161,7 +162,7 @@ func _start() -> void:
 	job.source = reconstruction
 	job.lod = lod
 	job.leaves = leaves
-	job.revision = reconstruction.get_skeleton_revision()
+	job.revision = reconstruction.get_bark_revision()
 	# A change of the leaves alone keeps the bark.
 	job.with_bark = mesh == null or _bark_of != [reconstruction, job.revision, lod]
 	if not threaded:
@@ -275,8 +276,12 @@ func _set_season(instance: RID) -> void:
 	var tints: PackedColorArray = [Color(1.0, 1.0, 1.0, 0.0), Color(1.0, 1.0, 1.0, 0.0)]
 	if reconstruction != null and reconstruction.leaf_rule != null:
 		tints = reconstruction.leaf_rule.get_season_tints()
-	RenderingServer.instance_geometry_set_shader_parameter(instance, &"season_early", tints[0])
-	RenderingServer.instance_geometry_set_shader_parameter(instance, &"season_late", tints[1])
+	for i: int in 2:
+		# Colors would be converted by some renderers and not by others.
+		var tint: Color = tints[i].srgb_to_linear()
+		RenderingServer.instance_geometry_set_shader_parameter(
+			instance, _SEASON_PARAMETERS[i], Vector4(tint.r, tint.g, tint.b, tint.a)
+		)
 
 
 func _set_shader_values(instance: RID, height: float) -> void:
