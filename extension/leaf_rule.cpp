@@ -8,6 +8,7 @@
 
 #include "convert.h"
 #include "error.h"
+#include "lsystem/lstring.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -16,14 +17,15 @@ namespace {
 
 constexpr int kMostLeaves = 2000000;
 constexpr int kCurveSteps = 33;
+constexpr double kSprigAngle = 45.0;  // degrees, of a turn without a number
 // Where in a year (0 buds .. 1 bare) leaves unfold, begin to fall and have fallen.
 constexpr double kUnfolded = 0.2, kFirstFall = 0.72;
 constexpr double kBudSize = 0.3;     // of a full leaf
 constexpr double kOwnSeason = 0.07;  // how far leaves differ in what season it is for them
 constexpr double kSpring = 0.05, kSummer = 0.3, kLateSummer = 0.5, kAutumn = 0.68;
 
-const Color kSpringColor(0.66f, 0.78f, 0.26f, 0.5f);
-const Color kFallenColor(0.40f, 0.26f, 0.13f, 0.92f);
+const Color kSpringColor(0.55f, 0.66f, 0.30f, 0.4f);
+const Color kFallenColor(0.52f, 0.38f, 0.24f, 0.88f);
 
 // What a kind of tree turns to in autumn; alpha 0 for an evergreen.
 struct AutumnColor {
@@ -31,13 +33,13 @@ struct AutumnColor {
     Color color;
 };
 const AutumnColor kAutumnColors[] = {
-    {"generic", Color(0.80f, 0.55f, 0.12f, 0.9f)},
-    {"maple", Color(0.79f, 0.20f, 0.06f, 0.92f)},
-    {"cherry", Color(0.80f, 0.33f, 0.11f, 0.9f)},
-    {"oak", Color(0.60f, 0.35f, 0.12f, 0.9f)},
-    {"birch", Color(0.88f, 0.68f, 0.10f, 0.92f)},
-    {"willow", Color(0.78f, 0.72f, 0.18f, 0.85f)},
-    {"apple", Color(0.72f, 0.58f, 0.16f, 0.85f)},
+    {"generic", Color(0.74f, 0.54f, 0.20f, 0.82f)},
+    {"maple", Color(0.70f, 0.27f, 0.12f, 0.85f)},
+    {"cherry", Color(0.72f, 0.37f, 0.16f, 0.82f)},
+    {"oak", Color(0.60f, 0.40f, 0.18f, 0.85f)},
+    {"birch", Color(0.80f, 0.65f, 0.20f, 0.85f)},
+    {"willow", Color(0.72f, 0.67f, 0.26f, 0.8f)},
+    {"apple", Color(0.68f, 0.56f, 0.22f, 0.8f)},
     {"pine", Color(0, 0, 0, 0)},
     {"spruce", Color(0, 0, 0, 0)},
     {"palm", Color(0, 0, 0, 0)},
@@ -93,6 +95,22 @@ std::vector<float> table_of(const Ref<Curve>& p_curve) {
         table.push_back(float(std::clamp(std::isfinite(value) ? value : 0.0, 0.0, 1.0)));
     }
     return table;
+}
+
+std::shared_ptr<const treerec::LeafSprig> sprig_of(const std::string& p_string) {
+    treerec::LStringOptions options;
+    options.leaf_symbols = "L";
+    options.angle = kSprigAngle;
+    treerec::LStringTree read = treerec::read_lstring_with_leaves(p_string, options);
+    if (read.tree.size() < 2) {
+        throw treerec::Error("This string draws no twig: it has no F.");
+    }
+    auto sprig = std::make_shared<treerec::LeafSprig>();
+    sprig->wood = std::move(read.tree);
+    for (const treerec::LStringLeaf& leaf : read.leaves) {
+        sprig->leaves.push_back({leaf.position, leaf.heading, leaf.up, leaf.size});
+    }
+    return sprig;
 }
 
 }  // namespace
@@ -230,7 +248,9 @@ void LeafRule::_replace(Ref<T>& p_member, const Ref<T>& p_value) {
 void LeafRule::take_resources() {
     std::shared_ptr<const treerec::LeafSprig> sprig;
     const Ref<TreeReconstruction> tree = sprig_;
-    if (tree.is_valid() && tree->get_tree()->size() > 1) {
+    if (!sprig_string_.is_empty()) {
+        sprig = guarded(sprig, [&] { return sprig_of(to_std(sprig_string_)); });
+    } else if (tree.is_valid() && tree->get_tree()->size() > 1) {
         auto made = std::make_shared<treerec::LeafSprig>();
         made->wood = *tree->get_tree();
         sprig = std::move(made);
@@ -269,6 +289,13 @@ void LeafRule::set_sprig(const Ref<Resource>& p_sprig) {
     ERR_FAIL_COND_MSG(p_sprig.is_valid() && Ref<TreeReconstruction>(p_sprig).is_null(),
                       "A sprig is a TreeReconstruction.");
     _replace(sprig_, p_sprig);
+}
+
+void LeafRule::set_sprig_string(const String& p_string) {
+    if (sprig_string_ != p_string) {
+        sprig_string_ = p_string;
+        take_resources();
+    }
 }
 
 void LeafRule::set_season(double p_season) {
@@ -325,6 +352,7 @@ void LeafRule::_validate_property(PropertyInfo& p_property) const {
     hide_unless("blade_width", form != treerec::LeafForm::kSpray);
     hide_unless("petiole_length", form != treerec::LeafForm::kSpray && form != treerec::LeafForm::kSprig);
     hide_unless("sprig", form == treerec::LeafForm::kSprig);
+    hide_unless("sprig_string", form == treerec::LeafForm::kSprig);
 }
 
 void LeafRule::_bind_methods() {
@@ -353,6 +381,8 @@ void LeafRule::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_density_by_order"), &LeafRule::get_density_by_order);
     ClassDB::bind_method(D_METHOD("set_sprig", "sprig"), &LeafRule::set_sprig);
     ClassDB::bind_method(D_METHOD("get_sprig"), &LeafRule::get_sprig);
+    ClassDB::bind_method(D_METHOD("set_sprig_string", "string"), &LeafRule::set_sprig_string);
+    ClassDB::bind_method(D_METHOD("get_sprig_string"), &LeafRule::get_sprig_string);
     ClassDB::bind_method(D_METHOD("set_season", "season"), &LeafRule::set_season);
     ClassDB::bind_method(D_METHOD("get_season"), &LeafRule::get_season);
     ClassDB::bind_method(D_METHOD("set_evergreen", "evergreen"), &LeafRule::set_evergreen);
@@ -401,6 +431,8 @@ void LeafRule::_bind_methods() {
     add_value("blade_width", "petiole_length");
     ADD_PROPERTY(PropertyInfo(Variant::OBJECT, "sprig", PROPERTY_HINT_RESOURCE_TYPE, "TreeReconstruction"),
                  "set_sprig", "get_sprig");
+    ADD_PROPERTY(PropertyInfo(Variant::STRING, "sprig_string", PROPERTY_HINT_MULTILINE_TEXT),
+                 "set_sprig_string", "get_sprig_string");
     ADD_GROUP("Pose", "");
     add_value("angle", "curl");
     ADD_GROUP("Season", "");

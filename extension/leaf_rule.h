@@ -59,6 +59,8 @@ class LeafRule : public godot::Resource {
     godot::PackedFloat32Array get_density_by_order() const;
     void set_sprig(const godot::Ref<godot::Resource>& p_sprig);
     godot::Ref<godot::Resource> get_sprig() const { return sprig_; }
+    void set_sprig_string(const godot::String& p_string);
+    godot::String get_sprig_string() const { return sprig_string_; }
     void set_season(double p_season);
     double get_season() const { return season_; }
     void set_evergreen(bool p_evergreen);
@@ -101,6 +103,7 @@ class LeafRule : public godot::Resource {
     godot::String look_ = "generic";
     godot::Ref<godot::Curve> by_height_, by_radius_;
     godot::Ref<godot::Resource> sprig_;
+    godot::String sprig_string_;
     godot::Ref<godot::Gradient> season_colors_;
 };
 

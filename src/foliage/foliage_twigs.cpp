@@ -18,7 +18,7 @@ namespace {
 constexpr double kReach = 1.2;            // metres between a leaf and its branch, on a tree of full height
 constexpr double kFullHeight = 6.0;       // metres; smaller trees have shorter twigs
 constexpr double kLeastReachCells = 4.0;  // or that many cells, if that is more
-constexpr double kSpacingCells = 2.5;     // between the ends of twigs
+constexpr double kSpacingCells = 3.0;     // between the ends of twigs
 constexpr double kNear = 0.5;             // of the spacing: foliage that near to wood needs no twig
 constexpr double kStep = 2.2;             // of the spacing: from one end to the next
 constexpr double kSlant = 0.6;            // of a twig's length: how much farther down its host it starts

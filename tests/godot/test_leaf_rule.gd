@@ -138,6 +138,30 @@ func test_forms_are_cards_of_their_own() -> void:
 	check(rule.sprig == null, "A gradient is a sprig.")
 
 
+func test_sprigs_from_strings() -> void:
+	var made: TreeReconstruction = grown_tree(4)
+	var rule: LeafRule = LeafRule.new()
+	made.leaf_rule = rule
+	rule.form = LeafRule.FORM_SPRIG
+	var single: int = made.build_leaf_form_arrays(1)[Mesh.ARRAY_VERTEX].size()
+	rule.sprig_string = "$F[+F][-F]F[+F][-F]F"
+	# Seven pieces of wood and five leaves at the tips, a quad each.
+	check_equal(made.build_leaf_form_arrays(1)[Mesh.ARRAY_VERTEX].size() % 4, 0, "quads")
+	var opposite: int = made.build_leaf_form_arrays(0)[Mesh.ARRAY_VERTEX].size()
+	check(opposite > 5 * single, "%d vertices for a sprig, %d for a leaf." % [opposite, single])
+	rule.sprig_string = "$F[+L][-L]F[+L][-L]FL"
+	check(
+		made.build_leaf_form_arrays(0)[Mesh.ARRAY_VERTEX].size() < opposite,
+		"Leaves of their own have wood."
+	)
+	expect_error("line 1")
+	rule.sprig_string = "F[+F"
+	check_equal(rule.sprig_string, "F[+F", "what the user wrote")
+	check_equal(made.build_leaf_form_arrays(1)[Mesh.ARRAY_VERTEX].size(), single, "one leaf")
+	expect_error("draws no twig")
+	rule.sprig_string = "+-"
+
+
 func test_seasons() -> void:
 	var made: TreeReconstruction = grown_tree(4)
 	var rule: LeafRule = LeafRule.from_preset("maple")
