@@ -12,7 +12,7 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kDeepest = size_t{1} << 20;  // brackets in brackets
+constexpr size_t kDeepest = size_t{1} << 21;  // brackets in brackets; no tree of kLargestId nodes needs more
 constexpr double kFarthest = 1e12;            // metres
 constexpr double kThinnest = 1e-5;            // metres; what thinning ends at
 

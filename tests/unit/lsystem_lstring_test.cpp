@@ -361,8 +361,8 @@ TEST(LString, ErrorsNameThePlace) {
               "The L-string, line 1, column 8: the turtle leaves all bounds here.");
     EXPECT_EQ(sentence_of("F(1e999)"), "The L-string, line 1, column 3: here a number should stand.");
     EXPECT_EQ(sentence_of("@(9)"), "The L-string, line 1, column 1: flags are a number from 0 to 7.");
-    EXPECT_EQ(sentence_of(std::string((1 << 20) + 1, '[')),
-              "The L-string, line 1, column 1048577: too many brackets lie in brackets.");
+    EXPECT_EQ(sentence_of(std::string((1 << 21) + 1, '[')),
+              "The L-string, line 1, column 2097153: too many brackets lie in brackets.");
     LStringOptions few;
     few.most_nodes = 3;
     EXPECT_EQ(read_lstring("FF", few).size(), 3u);
