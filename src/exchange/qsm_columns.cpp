@@ -82,10 +82,8 @@ std::optional<QsmColumns> find_qsm_columns(std::string_view line) {
     columns.axis = find_vector(names, {"axis", "a"});
     columns.end = find_vector(names, {"end", "e"});
     columns.parent = find_field(names, {"parent_1based", "parentid", "parent_id", "p2", "parent"});
-    // TreeQSM numbers its rows, and no column tells it.
-    columns.id = names[static_cast<size_t>(std::max(columns.parent, 0))] == "parent_1based"
-                     ? -1
-                     : find_field(names, {"id", "cyl_id", "p1"});
+    // Our own rows are numbered, whatever else a column may say.
+    columns.id = find_field(names, {"parent_1based"}) >= 0 ? -1 : find_field(names, {"id", "cyl_id", "p1"});
     columns.order = find_field(names, {"order", "branch_order", "branchorder", "branching_order"});
     columns.measured = find_field(names, {"measured"});
     columns.added = find_field(names, {"added"});

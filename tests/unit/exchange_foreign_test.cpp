@@ -224,7 +224,8 @@ TEST(ForeignSkeletons, WrongTablesOfCylindersGetASentence) {
     EXPECT_EQ(parse_qsm_csv(head + "1,0,0,0,0,0,0,1,1,\n\n", "q", UpAxis::kZ).size(), 2u);
     // Two cylinders without a parent hang together.
     EXPECT_EQ(parse_qsm_csv(head + "1,0,0,0,0,0,0,1,1\n2,0,1,0,0,1,0,1,1\n", "q", UpAxis::kZ).size(), 3u);
-    EXPECT_THROW(parse_qsm_csv("", "q", UpAxis::kZ), Error);
+    for (const char* nothing : {"", "\n", " \n1,2\n", ",\n", "\"\"\n"})
+        EXPECT_THROW(parse_qsm_csv(nothing, "q", UpAxis::kZ), Error);
     EXPECT_THROW(
         parse_qsm_csv("radius,parent,start_x,start_y,start_z,axis_x,axis_y,axis_z\n", "q", UpAxis::kZ),
         Error);
