@@ -1,10 +1,15 @@
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
 #include "exchange/tree_files.h"
+#include "fidelity/doubtful.h"
+#include "fidelity/fidelity.h"
 #include "fidelity/score.h"
+#include "fidelity/unexplained.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
@@ -56,26 +61,127 @@ void print_skeleton_score(const SkeletonScore& score, bool as_json) {
                 100.0 * score.radius_error_abs);
 }
 
-void print_scan_score(const ScanScore& score, double noise, bool as_json) {
-    if (as_json) {
-        Json json;
-        json["reference"] = "point cloud";
-        json["points"] = score.points;
-        json["median_mm"] = score.median_mm;
-        json["mean_mm"] = score.mean_mm;
-        json["p95_mm"] = score.p95_mm;
-        json["explained_2cm"] = score.explained_2cm;
-        json["noise_m"] = noise;
-        json["explained_2cm_noise"] = score.explained_2cm_noise;
-        std::printf("%s\n", json.dump(2).c_str());
-        return;
+Json part_json(const FidelityPart& part) {
+    return {
+        {"points", part.points},       {"explained", part.explained},   {"median_mm", 1000.0 * part.median},
+        {"p95_mm", 1000.0 * part.p95}, {"mean_mm", 1000.0 * part.mean}, {"length_m", part.length},
+        {"bark_m2", part.bark},        {"coverage", part.coverage}};
+}
+
+Json point_json(const DVec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+// What `score` tells of a tree and a scan.
+struct ScanReport {
+    ScanScore score;
+    Fidelity fidelity;
+    std::vector<LevelFidelity> levels;
+    std::vector<UnexplainedCluster> unexplained;
+    std::vector<DoubtfulBranch> doubtful;
+    std::optional<PhotoFidelity> photos;
+    double noise = 0.0;
+};
+
+void print_json(const ScanReport& report, const Tree& tree) {
+    Json json;
+    const ScanScore& score = report.score;
+    json["reference"] = "point cloud";
+    json["points"] = score.points;
+    json["median_mm"] = score.median_mm;
+    json["mean_mm"] = score.mean_mm;
+    json["p95_mm"] = score.p95_mm;
+    json["explained_2cm"] = score.explained_2cm;
+    json["noise_m"] = report.noise;
+    json["explained_2cm_noise"] = score.explained_2cm_noise;
+    Json fidelity;
+    fidelity["tolerance_m"] = report.fidelity.tolerance;
+    fidelity["R_s"] = report.fidelity.skeleton;
+    fidelity["R_s_strict"] = report.fidelity.skeleton_strict;
+    if (report.photos) {
+        fidelity["I"] = report.photos->information;
+        fidelity["R_3d"] = report.photos->reconstruction;
+        fidelity["Q"] = modelling_fidelity(*report.photos, report.fidelity);
+        for (const PhotoHits& photo : report.photos->photos)
+            fidelity["photos"].push_back(
+                {{"name", photo.name}, {"inside", photo.inside}, {"outside", photo.outside}});
     }
+    fidelity["all"] = part_json(report.fidelity.all);
+    fidelity["by_order"] = Json::array();
+    for (const FidelityPart& part : report.fidelity.by_order)
+        fidelity["by_order"].push_back(part_json(part));
+    if (!report.levels.empty()) fidelity["levels"] = Json::array();
+    for (const LevelFidelity& level : report.levels) {
+        Json entry{{"nodes", level.nodes}, {"R_s", level.skeleton}};
+        entry.update(part_json(level.all));
+        fidelity["levels"].push_back(entry);
+    }
+    json["fidelity"] = fidelity;
+    json["unexplained"] = Json::array();
+    for (const UnexplainedCluster& cluster : report.unexplained)
+        json["unexplained"].push_back(
+            {{"points", cluster.points.size()},
+             {"size_m", cluster.size},
+             {"centre", point_json(tree.frame().to_scan(cluster.centre))},
+             {"joint", cluster.joint},
+             {"gap_m", cluster.gap},
+             {"direction", point_json(tree.frame().turn_to_scan(cluster.direction))}});
+    json["doubtful"] = Json::array();
+    for (const DoubtfulBranch& branch : report.doubtful)
+        json["doubtful"].push_back({{"node", branch.node},
+                                    {"attach", branch.attach},
+                                    {"reasons", doubt_text(branch.reasons)},
+                                    {"doubt", branch.doubt},
+                                    {"length_m", branch.length},
+                                    {"points", branch.points}});
+    // Names of photos may hold bytes that are no UTF-8.
+    std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+void print_part(const char* name, const FidelityPart& part) {
+    std::printf(
+        "%-12s %9zu points %6.1f %% explained, median %6.1f, 95 %% within %7.1f mm, %5.1f %% of %8.2f m2 "
+        "seen\n",
+        name, part.points, 100.0 * part.explained, 1000.0 * part.median, 1000.0 * part.p95,
+        100.0 * part.coverage, part.bark);
+}
+
+void print_text(const ScanReport& report, const Tree& tree) {
+    const ScanScore& score = report.score;
+    const Fidelity& fidelity = report.fidelity;
     std::printf("%zu points; distance to the bark: median %.1f, mean %.1f, 95 %% within %.1f mm\n",
                 score.points, score.median_mm, score.mean_mm, score.p95_mm);
     std::printf("explained within 2 cm: %.1f %%\n", 100.0 * score.explained_2cm);
-    if (noise > 0.0)
-        std::printf("explained within 2 cm and %g mm of noise: %.1f %%\n", 1000.0 * noise,
+    if (report.noise > 0.0)
+        std::printf("explained within 2 cm and %g mm of noise: %.1f %%\n", 1000.0 * report.noise,
                     100.0 * score.explained_2cm_noise);
+    std::printf("R_s %.3f with a tolerance of %g mm, %.3f without\n", fidelity.skeleton,
+                1000.0 * fidelity.tolerance, fidelity.skeleton_strict);
+    if (report.photos)
+        std::printf("I %.3f (%zu photos), R_3d %.3f, Q = I R_3d R_s = %.3f\n", report.photos->information,
+                    report.photos->photos.size(), report.photos->reconstruction,
+                    modelling_fidelity(*report.photos, fidelity));
+    for (size_t order = 0; order < fidelity.by_order.size(); order++)
+        print_part(order == 0 ? "trunk" : ("order " + std::to_string(order)).c_str(),
+                   fidelity.by_order[order]);
+    print_part("all", fidelity.all);
+    for (const LevelFidelity& level : report.levels)
+        print_part((std::to_string(level.nodes) + " nodes").c_str(), level.all);
+    constexpr size_t kShown = 5;
+    std::printf("%zu clusters of points that no branch explains\n", report.unexplained.size());
+    for (size_t i = 0; i < std::min(kShown, report.unexplained.size()); i++) {
+        const UnexplainedCluster& cluster = report.unexplained[i];
+        const DVec3 centre = tree.frame().to_scan(cluster.centre);
+        std::printf("  %zu points, %.2f m, around %.2f %.2f %.2f, %.2f m from node %d\n",
+                    cluster.points.size(), cluster.size, centre.x, centre.y, centre.z, cluster.gap,
+                    cluster.joint);
+    }
+    std::printf("%zu doubtful branches\n", report.doubtful.size());
+    for (size_t i = 0; i < std::min(kShown, report.doubtful.size()); i++) {
+        const DoubtfulBranch& branch = report.doubtful[i];
+        std::printf("  node %d: %.2f m, %zu points: %s\n", branch.node, branch.length, branch.points,
+                    doubt_text(branch.reasons).c_str());
+    }
 }
 
 Tree read_scaled(const std::string& path, UpAxis up, double metres_per_unit) {
@@ -93,6 +199,10 @@ const Command& score_command() {
         "Compares a skeleton with its scan, or with a reference skeleton.",
         {{"--json", "", "as JSON"},
          {"--noise", "S", "the scan's range noise in metres (default 0)"},
+         {"--tolerance", "M", "metres from the bark within which a point is explained (default 0.02)"},
+         {"--levels", "N", "lightened to a half, a quarter and so on as well (default 1: the tree alone)"},
+         {"--photos", "FOLDER", "a COLMAP model in the scan's coordinates, for I, R_3d and Q; with --masks"},
+         {"--masks", "FOLDER", "white-on-black pictures of the tree's outline in these photos: PHOTO.png"},
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
          {"--columns", "LIST", "names of a text scan's columns, such as x,y,z,r,g,b; - skips one"},
          {"--quiet", "", "no progress"}},
@@ -100,7 +210,10 @@ const Command& score_command() {
         "'reconstruct' writes "
         "them.\n"
         "REFERENCE: a point cloud, or a skeleton in any of these formats, in the same coordinates.\n"
-        "Against a scan: how far the points lie from the nearest bark (each segment a cylinder).\n"
+        "Against a scan: how far the points lie from the nearest bark (each segment a cylinder), as a whole\n"
+        "and by order of branching; R_s, the share of points in the balls and frusta of the skeleton; what "
+        "no\n"
+        "branch explains, and which branches are doubtful.\n"
         "Against a skeleton: the share of the model's wood near the reference's axis (precision), of the\n"
         "reference's near the model's (recall), sampled every millimetre, within shares of the reference's\n"
         "radius and within centimetres."};
@@ -115,6 +228,13 @@ void run_score(const std::vector<std::string>& words) {
     const double noise = arguments.number("--noise", 0.0, 0.0, 10.0);
     const double scale = arguments.number("--scale", 0.0, 1e-9, 1e9);
     const bool as_json = arguments.has("--json");
+    FidelityOptions options;
+    options.tolerance = arguments.number("--tolerance", options.tolerance, 0.0, 10.0);
+    const int levels = static_cast<int>(arguments.whole("--levels", 1, 1, 12));
+    const std::string photos = arguments.text("--photos", ""), masks = arguments.text("--masks", "");
+    if (photos.empty() != masks.empty())
+        throw UsageError(
+            "--photos and --masks belong together: R_3d needs the outline of the tree in each photo.");
     const Tree tree = read_scaled(model, UpAxis::kZ, scale);
     TerminalProgress progress(arguments.has("--quiet") || as_json);
     if (is_skeleton_file(reference)) {
@@ -125,10 +245,20 @@ void run_score(const std::vector<std::string>& words) {
     } else {
         SubProgress reading(&progress, 0.0, 0.3);
         const PointCloud cloud = read_cloud(reference, {columns_from(arguments)}, nullptr, &reading);
-        SubProgress scoring(&progress, 0.3, 1.0);
-        const ScanScore score = score_scan(tree, cloud, noise, &scoring);
+        ScanReport report;
+        report.noise = noise;
+        if (!photos.empty()) report.photos = measure_photos(cloud, photos, masks, &progress);
+        SubProgress scoring(&progress, 0.3, 0.6);
+        report.score = score_scan(tree, cloud, noise, &scoring);
+        report.fidelity = measure_fidelity(tree, cloud, options, &progress);
+        if (levels > 1) report.levels = measure_levels(tree, cloud, levels, options, &progress);
+        report.unexplained = find_unexplained(tree, cloud, report.fidelity, {}, {}, &progress);
+        report.doubtful = find_doubtful(tree, report.fidelity);
         progress.clear();
-        print_scan_score(score, noise, as_json);
+        if (as_json)
+            print_json(report, tree);
+        else
+            print_text(report, tree);
     }
 }
 

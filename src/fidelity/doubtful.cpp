@@ -91,7 +91,8 @@ std::vector<DoubtfulBranch> find_doubtful(const Tree& tree, const Fidelity& fide
         if (doubt.reasons != 0 && doubt.doubt >= kDoubtful) found.push_back(doubt);
     }
     std::sort(found.begin(), found.end(), [](const DoubtfulBranch& a, const DoubtfulBranch& b) {
-        return a.doubt != b.doubt ? a.doubt > b.doubt : a.node < b.node;
+        const double first = a.doubt * a.length, second = b.doubt * b.length;
+        return first != second ? first > second : a.node < b.node;
     });
     return found;
 }

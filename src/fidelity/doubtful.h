@@ -29,9 +29,9 @@ struct DoubtfulBranch {
     double thickness = 1.0;   // its radius where it sets out, as a share of its parent's
 };
 
-// Most doubtful first (then by the node). fidelity: of this tree. The first branch and ends shorter than
-// twice their parent's radius are not judged. Linear. Throws Error where the arguments do not belong
-// together.
+// Most doubtful metres first (doubt times length, then by the node). fidelity: of this tree. The first branch
+// and ends shorter than twice their parent's radius are not judged. Linear. Throws Error where the arguments
+// do not belong together.
 std::vector<DoubtfulBranch> find_doubtful(const Tree& tree, const Fidelity& fidelity);
 
 // "few points, a long bridge"

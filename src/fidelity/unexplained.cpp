@@ -22,6 +22,8 @@ constexpr int kSpacingNeighbours = 5;
 constexpr double kSpacingFactor = 3.0;
 constexpr double kLeastGap = 0.01;  // metres
 constexpr double kMostGap = 0.3;
+// Within so many tolerances, a point is the fringe of wood that is there.
+constexpr double kFringe = 2.0;
 
 uint32_t root_of(std::vector<uint32_t>& up, uint32_t i) {
     while (up[i] != i)
@@ -137,7 +139,7 @@ std::vector<UnexplainedCluster> find_unexplained(const Tree& tree, const PointCl
     std::vector<uint32_t> chosen;
     for (uint32_t i = 0; i < cloud.size(); i++)
         // What lies deep inside the wood is no branch that is missing.
-        if ((wood.empty() || wood[i] != 0) && fidelity.point_error[i] > fidelity.tolerance)
+        if ((wood.empty() || wood[i] != 0) && fidelity.point_error[i] > kFringe * fidelity.tolerance)
             chosen.push_back(i);
     if (chosen.empty()) return {};
 

@@ -11,7 +11,9 @@
 
 namespace treerec {
 
-// A cluster of points that no branch explains. Positions and lengths in the tree's space, metres.
+// A cluster of points that no branch explains: they lie at least twice the tolerance outside of all bark,
+// since what is nearer is mostly the blurred edge of wood that is there. Positions and lengths in the tree's
+// space, metres.
 struct UnexplainedCluster {
     std::vector<uint32_t> points;  // indices into the cloud, ascending
     DVec3 centre{0.0};             // mean of the points
