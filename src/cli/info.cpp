@@ -96,8 +96,11 @@ const Command& info_command() {
         {{"--json", "", "as JSON"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"}},
-        "FILE: a point cloud (as for reconstruct), a tree file (.txt), a skeleton (.ply), a table of nodes "
-        "(.csv)."};
+        "FILE: a point cloud (as for reconstruct), or a skeleton: a tree file, a table of nodes, the "
+        "cylinders of\n"
+        "TreeQSM, SimpleForest, aRchi, Treegraph or rTwig (text, csv), a skeleton PLY (AdTree's too), SWC, "
+        "an "
+        "L-string."};
     return command;
 }
 
