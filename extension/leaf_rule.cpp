@@ -25,7 +25,7 @@ constexpr double kOwnSeason = 0.07;  // how far leaves differ in what season it 
 constexpr double kSpring = 0.05, kSummer = 0.3, kLateSummer = 0.5, kAutumn = 0.68;
 
 const Color kSpringColor(0.55f, 0.66f, 0.30f, 0.4f);
-const Color kFallenColor(0.52f, 0.38f, 0.24f, 0.88f);
+const Color kFallenColor(0.60f, 0.46f, 0.30f, 0.85f);
 
 // What a kind of tree turns to in autumn; alpha 0 for an evergreen.
 struct AutumnColor {

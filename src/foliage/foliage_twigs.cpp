@@ -21,7 +21,10 @@ constexpr double kLeastReachCells = 4.0;  // or that many cells, if that is more
 constexpr double kSpacingCells = 3.0;     // between the ends of twigs
 constexpr double kNear = 0.5;             // of the spacing: foliage that near to wood needs no twig
 constexpr double kStep = 2.2;             // of the spacing: from one end to the next
-constexpr double kSlant = 0.6;            // of a twig's length: how much farther down its host it starts
+constexpr double kSlant = 0.8;            // of a twig's length: how much farther down its host it starts
+constexpr double kAgreement = 0.6;        // cosine between the host and a twig on it
+constexpr double kWinding = 0.7;          // what the way so far counts beside a twig's own length
+constexpr double kStouter = 3.0;          // times the radius of the nearest wood
 constexpr double kThinnest = 0.0015, kThickest = 0.006;  // metres, on a tree of full height
 constexpr double kThinning = 0.8;                        // of the host's radius
 constexpr double kSlender = 0.03;  // metres: thicker wood is a host against its will, see NearWood
@@ -33,8 +36,10 @@ using Place = std::array<int, 3>;
 struct End {
     DVec3 position{0.0};
     double points = 0.0;
-    double distance = 1e300;  // to the wood it would grow from
+    double distance = 0.0;  // to the wood it would grow from
+    double along = 0.0;     // that wood's own way from the tree's
     NodeId host = kNoNode;
+    double cost = 1e300;
     bool reached = false;
 };
 
@@ -52,6 +57,11 @@ std::map<Place, End> gather_ends(const Foliage& foliage, double spacing) {
     return ends;
 }
 
+// A twig grows the sooner the shorter it is, and by a short way rather than by a winding one.
+double cost_of(double distance, double along) {
+    return distance + kWinding * along;
+}
+
 // The branch's node that lies nearest to p.
 NodeId nearest_node(const Tree& tree, const BranchList& list, uint32_t branch, const DVec3& p) {
     NodeId best = kNoNode;
@@ -65,16 +75,17 @@ NodeId nearest_node(const Tree& tree, const BranchList& list, uint32_t branch, c
     return best;
 }
 
-// Twigs leave their host at a slant: from farther down, as long as that is no turn back.
-NodeId slanted(const Tree& tree, NodeId host, double length) {
+// Twigs leave their host at a slant: from the first node on the way down that looks towards `end`, unless it
+// is far or on thick wood.
+NodeId slanted(const Tree& tree, NodeId host, const DVec3& end, double length) {
     double down = 0.0;
-    const NodeId first = host;
-    while (tree.node(host).parent != kNoNode) {
-        const Node& node = tree.node(host);
+    for (NodeId at = host; tree.node(at).parent != kNoNode; at = tree.node(at).parent) {
+        const Node& node = tree.node(at);
         const Node& below = tree.node(node.parent);
+        const DVec3 ahead = normalized_or(node.position - below.position, DVec3(0.0));
+        if (glm::dot(ahead, normalized_or(end - node.position, DVec3(0.0))) > kAgreement) return at;
         down += glm::distance(node.position, below.position);
-        if (down > kSlant * length || below.radius > 3.0 * tree.node(first).radius) break;
-        host = node.parent;
+        if (down > kSlant * length || below.radius > kStouter * tree.node(host).radius) break;
     }
     return host;
 }
@@ -101,12 +112,13 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
                         2e-5 * crown.coordinate);
     std::map<Place, End> ends = gather_ends(foliage, spacing);
 
-    // The nearest first, each from what is nearest to it then (Prim 1957); of two as near, the first place.
+    // The cheapest first, from what is cheapest for it then (between Prim's tree and Dijkstra's); of two as
+    // cheap, the first place.
     struct Growth {
-        double distance;
+        double cost;
         Place place;
         bool operator<(const Growth& other) const {
-            return distance != other.distance ? distance > other.distance : place > other.place;
+            return cost != other.cost ? cost > other.cost : place > other.place;
         }
     };
     std::priority_queue<Growth> next;
@@ -118,21 +130,23 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
         }
         end.distance = glm::distance(host->at.position, end.position);
         end.host = nearest_node(tree, list, host->branch, host->at.position);
-        next.push({end.distance, place});
+        end.cost = cost_of(end.distance, 0.0);
+        next.push({end.cost, place});
     }
     while (!next.empty()) {
         const Growth growth = next.top();
         next.pop();
         End& end = ends.at(growth.place);
-        if (end.reached || growth.distance != end.distance) continue;
+        if (end.reached || growth.cost != end.cost) continue;
         end.reached = true;
         NodeId tip = end.host;
         if (end.distance > kNear * spacing) {
-            const NodeId from = slanted(grown, end.host, end.distance);
+            const NodeId from = slanted(grown, end.host, end.position, end.distance);
             const double radius =
                 std::clamp(kThinning * grown.node(from).radius, kThinnest * scale, kThickest * scale);
             tip = grown.add_child(from, end.position, radius, kGuessFlag);
         }
+        const double along = tip == end.host ? end.along : end.along + end.distance;
         const auto [x, y, z] = growth.place;
         for (int i = x - kNeighbours; i <= x + kNeighbours; i++)
             for (int j = y - kNeighbours; j <= y + kNeighbours; j++)
@@ -141,10 +155,13 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
                     if (found == ends.end() || found->second.reached) continue;
                     End& other = found->second;
                     const double distance = glm::distance(other.position, grown.node(tip).position);
-                    if (distance >= other.distance || distance > kStep * spacing) continue;
+                    const double cost = cost_of(distance, along);
+                    if (cost >= other.cost || distance > kStep * spacing) continue;
                     other.distance = distance;
+                    other.along = along;
                     other.host = tip;
-                    next.push({distance, found->first});
+                    other.cost = cost;
+                    next.push({cost, found->first});
                 }
     }
     return grown;
