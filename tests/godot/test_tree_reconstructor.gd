@@ -221,7 +221,7 @@ func test_reads_skeletons_of_other_programs() -> void:
 	var files: Dictionary[String, String] = {"a.swc": swc, "b.csv": forest, "c.ply": graph + edges}
 	var reconstructor: TreeReconstructor = TreeReconstructor.new()
 	for file: String in files:
-		FileAccess.open(folder.path_join(file), FileAccess.WRITE).store_string(files[file])
+		write_text(file, files[file])
 		var read: TreeReconstruction = reconstructor.import_skeleton(folder.path_join(file))
 		check(read != null, "%s: %s" % [file, reconstructor.get_error_message()])
 		if read != null:
