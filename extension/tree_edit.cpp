@@ -13,6 +13,11 @@ void TreeEdit::set_edit(treerec::TreeDelta p_delta, treerec::EditOutcome p_outco
     entries_ = std::move(p_entries);
 }
 
+std::vector<treerec::EditLog::Entry> TreeEdit::get_log_entries() const {
+    const bool counts = !delta_.empty() || entries_.size() != 1 || !entries_.front().fits();
+    return counts ? entries_ : std::vector<treerec::EditLog::Entry>();
+}
+
 String TreeEdit::get_command() const {
     std::string text;
     for (const treerec::EditLog::Entry& entry : entries_) {
@@ -70,8 +75,10 @@ Ref<TreeEdit> TreeEdit::merged_with(const Ref<TreeEdit>& p_next) const {
         outcome.removed.append(p_next->outcome_.removed);
         outcome.nodes = p_next->outcome_.nodes;
         outcome.said = p_next->outcome_.said;
-        std::vector<treerec::EditLog::Entry> entries = entries_;
-        entries.insert(entries.end(), p_next->entries_.begin(), p_next->entries_.end());
+        std::vector<treerec::EditLog::Entry> entries = get_log_entries();
+        for (const treerec::EditLog::Entry& entry : p_next->get_log_entries()) {
+            entries.push_back(entry);
+        }
         Ref<TreeEdit> both;
         both.instantiate();
         both->set_edit(treerec::TreeDelta::compose(delta_, p_next->delta_), std::move(outcome),

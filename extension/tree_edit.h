@@ -15,11 +15,12 @@ class TreeEdit : public godot::RefCounted {
     GDCLASS(TreeEdit, godot::RefCounted)
 
   public:
-    // For TreeReconstruction. entries: what the log gets.
+    // For TreeReconstruction. entries: what the log gets, unless the edit is one command that changed
+    // nothing: an editor makes no undo step of it, so the log must not wait for its undo.
     void set_edit(treerec::TreeDelta p_delta, treerec::EditOutcome p_outcome,
                   std::vector<treerec::EditLog::Entry> p_entries);
     const treerec::TreeDelta& get_delta() const { return delta_; }
-    const std::vector<treerec::EditLog::Entry>& get_entries() const { return entries_; }
+    std::vector<treerec::EditLog::Entry> get_log_entries() const;
 
     godot::String get_command() const;
     godot::String get_message() const;

@@ -144,6 +144,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_grafting();
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
+    void _log(const godot::Ref<TreeEdit>& p_edit);
     godot::Ref<TreeEdit> _edit_with(const char* p_command, const godot::Variant& p_where,
                                     const godot::Dictionary& p_options);
 

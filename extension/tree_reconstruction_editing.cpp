@@ -26,6 +26,12 @@ std::shared_ptr<const treerec::Tree> TreeReconstruction::_editable_tree() const 
     return tree;
 }
 
+void TreeReconstruction::_log(const Ref<TreeEdit>& p_edit) {
+    for (const EditLog::Entry& entry : p_edit->get_log_entries()) {
+        edit_log_.add(entry);
+    }
+}
+
 Ref<TreeEdit> TreeReconstruction::_edit(const String& p_command) {
     const std::shared_ptr<const treerec::Tree> tree = _editable_tree();
     treerec::Tree result;
@@ -33,7 +39,7 @@ Ref<TreeEdit> TreeReconstruction::_edit(const String& p_command) {
     Ref<TreeEdit> edit;
     edit.instantiate();
     edit->set_edit(std::move(done.delta), std::move(done.outcome), {{done.command, done.frame, ""}});
-    edit_log_.add(edit->get_entries().front());
+    _log(edit);
     set_tree(std::move(result));
     return edit;
 }
@@ -57,9 +63,7 @@ Error TreeReconstruction::apply_edit(const Ref<TreeEdit>& p_edit) {
     return guarded(ERR_INVALID_DATA, [&] {
         treerec::Tree tree = *get_tree();
         p_edit->get_delta().apply(tree);
-        for (const EditLog::Entry& entry : p_edit->get_entries()) {
-            edit_log_.add(entry);
-        }
+        _log(p_edit);
         set_tree(std::move(tree));
         return OK;
     });
@@ -70,7 +74,7 @@ Error TreeReconstruction::revert_edit(const Ref<TreeEdit>& p_edit) {
     return guarded(ERR_INVALID_DATA, [&] {
         treerec::Tree tree = *get_tree();
         p_edit->get_delta().revert(tree);
-        edit_log_.remove_last(p_edit->get_entries().size());
+        edit_log_.remove_last(p_edit->get_log_entries().size());
         set_tree(std::move(tree));
         return OK;
     });
@@ -102,9 +106,7 @@ Dictionary TreeReconstruction::replay(const String& p_log, double p_tolerance) {
         Ref<TreeEdit> edit;
         edit.instantiate();
         edit->set_edit(std::move(replayed.delta), {}, replayed.log.entries());
-        for (const EditLog::Entry& entry : edit->get_entries()) {
-            edit_log_.add(entry);
-        }
+        _log(edit);
         set_tree(std::move(tree));
         result["edit"] = edit;
         result["done"] = int64_t(replayed.done);
@@ -124,9 +126,7 @@ Ref<TreeEdit> TreeReconstruction::run_script(const String& p_script) {
         Ref<TreeEdit> edit;
         edit.instantiate();
         edit->set_edit(std::move(done.delta), std::move(outcome), done.log.entries());
-        for (const EditLog::Entry& entry : edit->get_entries()) {
-            edit_log_.add(entry);
-        }
+        _log(edit);
         set_tree(std::move(tree));
         return edit;
     });

@@ -67,6 +67,8 @@ const Command& edit_command() {
          {"--log", "FILE", "writes what was done, nodes by their places too, to be replayed on another tree"},
          {"--keep-going", "", "leaves out what does not fit the tree, and tells it"},
          {"--tolerance", "M", "how far away a log's nodes are looked for (default: 1 % of the height)"},
+         {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
+         {"--seed", "N", "of the leaves (default 1)"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--commands", "", "lists the commands and what they take"},
          {"--quiet", "", "print errors only"}},
@@ -90,6 +92,14 @@ void run_edit(const std::vector<std::string>& words) {
     const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
     for (const std::string& out : outs)
         require_writable_format(out);
+    ExportOptions exports;
+    exports.textures = arguments.text("--leaves", exports.textures);
+    exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    try {
+        exports.leaves = leaf_preset(exports.textures);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     ScriptOptions options;
@@ -129,7 +139,7 @@ void run_edit(const std::vector<std::string>& words) {
             std::fprintf(stderr, "Left out: %sline %zu: %s: %s\n", name.c_str(), one.line,
                          one.command.c_str(), one.reason.c_str());
     }
-    TreeExporter exporter(tree, {}, &progress);
+    TreeExporter exporter(tree, exports, &progress);
     for (const std::string& out : outs)
         exporter.write(out);
     if (arguments.has("--log")) write_file(arguments.text("--log", ""), log.text());

@@ -62,6 +62,18 @@ func test_edits_merge() -> void:
 	check(two.merged_with(one) == null, "They merged in the wrong order.")
 
 
+func test_what_changes_nothing_is_not_logged() -> void:
+	var made: TreeReconstruction = grown_tree(11)
+	var real: TreeEdit = made.edit("prune_order order=2")
+	var log: String = made.edit_log
+	var empty: TreeEdit = made.edit("prune_order order=2")
+	check(empty.is_empty(), "It changed something.")
+	check_equal(empty.get_command(), "prune_order order=2", "the command")
+	check_equal(made.edit_log, log, "the log")
+	check_equal(made.revert_edit(real), OK, "reverting the one before")
+	check_equal(made.edit_log, "", "the log after undo")
+
+
 func test_works_with_undo_redo() -> void:
 	var made: TreeReconstruction = grown_tree(6)
 	var undo: UndoRedo = UndoRedo.new()

@@ -54,6 +54,7 @@ TEST_F(CliEdit, TellsWhatIsWrongAndWritesNothing) {
         << done.error;
     EXPECT_NE(done.out.find("1 command done, 1 left out"), std::string::npos) << done.out;
     EXPECT_EQ(run("edit tree.txt -o out/tree2.txt").code, 2);
+    EXPECT_EQ(run("edit tree.txt -c prune -o out/tree2.txt --leaves plastic").code, 2);
     EXPECT_EQ(run("edit tree.txt -c prune").code, 2);
     EXPECT_EQ(run("edit -c prune -o out/tree2.txt").code, 2);
     EXPECT_EQ(run("edit tree.txt -c prune -o out/tree.stl").code, 1);
