@@ -67,7 +67,8 @@ std::string_view take_line(std::string_view& text) {
     const size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    while (!line.empty() && line.back() == '\r')
+        line.remove_suffix(1);
     return line;
 }
 
@@ -121,7 +122,7 @@ EditLog EditLog::parse(std::string_view text) {
             reason.clear();
             continue;
         }
-        const size_t first = line.find_first_not_of(" \t");
+        const size_t first = line.find_first_not_of(" \t\r");
         if (first == std::string_view::npos || line[first] == '#') continue;
         if (line.substr(first, 6) != "frame ") {
             log.add({std::string(line), frame, ""});
