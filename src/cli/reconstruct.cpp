@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "pipeline/export.h"
+#include "pipeline/html_report.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
 
@@ -95,6 +97,10 @@ ReconstructOptions options_from(const Arguments& arguments) {
     return options;
 }
 
+bool is_page(const std::string& path) {
+    return extension_of(path) == "html" || extension_of(path) == "htm";
+}
+
 void require_safe_target(const std::string& target, const std::string& scan,
                          const std::vector<std::string>& targets) {
     if (std::count(targets.begin(), targets.end(), target) > 1)
@@ -147,6 +153,7 @@ const Command& reconstruct_command() {
           "cylinders: the scan's own coordinates). More of them: -o A -o B, or -o A B",
           true},
          {"--report", "FILE", "stage times, counts, measurements and warnings as JSON"},
+         {"--html", "FILE", "a page to send to somebody: pictures, fidelity, tables (also -o FILE.html)"},
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
@@ -177,9 +184,13 @@ void run_reconstruct(const std::vector<std::string>& words) {
     if (positional.empty()) throw UsageError("Which scan? Name a point-cloud file.");
     const std::string scan = positional[0];
     std::vector<std::string> outs = arguments.all("-o");
-    if (outs.empty() && (positional.size() > 1 || !arguments.has("--report")))
+    const bool told = arguments.has("--report") || arguments.has("--html");
+    if (outs.empty() && (positional.size() > 1 || !told))
         throw UsageError("Where to? Name at least one file to write with -o.");
     outs.insert(outs.end(), positional.begin() + 1, positional.end());
+    std::vector<std::string> pages = arguments.all("--html");
+    std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
+    std::erase_if(outs, is_page);
     const ReconstructOptions options = options_from(arguments);
     ReportDetails details{scan, options, arguments.text("--leaves", "generic"), options.skeleton.seed, 0, 0};
     ExportOptions exports;
@@ -193,6 +204,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     const std::string report = arguments.text("--report", "");
     std::vector<std::string> targets = outs;
     if (arguments.has("--report")) targets.push_back(report);
+    targets.insert(targets.end(), pages.begin(), pages.end());
     for (const std::string& target : targets)
         require_safe_target(target, scan, targets);
 
@@ -205,7 +217,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     TreeExporter exporter(result.tree, exports, &progress);
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();
-        progress.update(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
+        progress.update(0.9 + 0.05 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
         exporter.write(outs[i]);
     }
     progress.check();
@@ -213,6 +225,12 @@ void run_reconstruct(const std::vector<std::string>& words) {
         details.triangles = exporter.triangles();
         details.leaf_count = exporter.leaves();
         write_file(report, report_json(result, details));
+    }
+    if (!pages.empty()) {
+        SubProgress reporting(&progress, 0.95, 1.0);
+        const std::string html = report_html(result, details, &reporting);
+        for (const std::string& page : pages)
+            write_file(page, html);
     }
     progress.clear();
     for (const std::string& warning : result.warnings)

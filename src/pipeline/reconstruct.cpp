@@ -124,6 +124,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
         for (uint8_t& flag : told.leaf)
             flag = !flag;
         wood.keep_only(told.leaf);
+        result.wood = std::move(told.leaf);
         clock.stop("Foliage", result.leaf_points);
     }
     const PointCloud& judged = wood.empty() ? result.cloud : wood;

@@ -34,8 +34,9 @@ struct Reconstruction {
     Tree tree;         // root at (0,0,0), metres, Y up
     Foliage foliage;   // what the scan saw of leaves, in the tree's frame; empty for a bare tree
     size_t points_read = 0;
-    size_t leaf_points = 0;  // of the cloud
-    double spacing = 0.0;    // metres: what the skeletonizer thinned to
+    size_t leaf_points = 0;     // of the cloud
+    std::vector<uint8_t> wood;  // by point of the cloud, 0 for leaves; empty where all is wood
+    double spacing = 0.0;       // metres: what the skeletonizer thinned to
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;

@@ -1,0 +1,488 @@
+#include "pipeline/html_report.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "exchange/material_textures.h"
+#include "fidelity/doubtful.h"
+#include "fidelity/fidelity.h"
+#include "fidelity/picture.h"
+#include "fidelity/unexplained.h"
+#include "file_bytes.h"
+#include "geometry/random.h"
+#include "mesh/branch_tubes.h"
+#include "pipeline/histogram_svg.h"
+#include "tree/branches.h"
+#include "version.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kMostOrders = 6;  // in tables and histograms: the last holds all higher ones
+constexpr size_t kMostListed = 8;
+constexpr Rgb kBark = {139, 104, 76};
+constexpr Rgb kLeaf = {118, 152, 84};
+constexpr Rgb kUnjudged = {222, 227, 219};
+constexpr double kLeafRadius = 0.012;  // metres
+
+constexpr const char* kStyle = R"css(
+:root{--ink:#26302a;--soft:#6b756d;--line:#dfe4dd;--paper:#fff;--ground:#f3f5f1;--accent:#3d6b46}
+*{box-sizing:border-box}
+body{margin:0;background:var(--ground);color:var(--ink);font:15px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif}
+main{max-width:1120px;margin:0 auto;padding:32px 24px 48px}
+h1{font-size:28px;line-height:1.2;margin:0 0 4px;overflow-wrap:anywhere}
+h2{font-size:18px;margin:0 0 12px}
+p{margin:0 0 12px;max-width:72ch}
+.soft{color:var(--soft)}
+section{background:var(--paper);border:1px solid var(--line);border-radius:10px;padding:20px 22px;margin-top:20px}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(128px,1fr));gap:12px;margin-top:20px}
+.tile{background:var(--paper);border:1px solid var(--line);border-radius:10px;padding:12px 14px}
+.tile b{display:block;font-size:22px;line-height:1.25;font-variant-numeric:tabular-nums}
+.tile span{color:var(--soft);font-size:13px}
+.row{display:flex;flex-wrap:wrap;gap:12px;justify-content:space-evenly;align-items:flex-end}
+figure{margin:0;text-align:center;flex:0 1 auto;min-width:0}
+.two figure{max-width:48%}
+figure img{max-width:100%;height:auto;display:block;margin:0 auto}
+.four figure{flex:1 1 200px;max-width:25%}
+figcaption{color:var(--soft);font-size:13px;margin-top:4px}
+.pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(380px,1fr));gap:20px}
+.scroll{overflow-x:auto}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums;font-size:14px}
+th{font-weight:600;color:var(--soft);font-size:13px}
+th,td{text-align:right;padding:5px 10px;border-bottom:1px solid var(--line);white-space:nowrap}
+th:first-child,td:first-child,.words{text-align:left;padding-left:0}
+.words{white-space:normal}
+tr.sum td{font-weight:600;border-bottom:0}
+.bar{display:inline-block;width:64px;height:8px;border-radius:4px;background:var(--line);margin-left:8px;vertical-align:middle}
+.bar i{display:block;height:8px;border-radius:4px;background:var(--accent)}
+.warn{border-color:#e0b64c;background:#fdf7e3}
+.warn ul{margin:0;padding-left:20px}
+svg{width:100%;height:auto;display:block}
+svg text{font:11px system-ui,sans-serif;fill:var(--soft)}
+svg .grid{stroke:var(--line)}
+.key{display:flex;flex-wrap:wrap;gap:4px 14px;font-size:13px;color:var(--soft);margin-top:8px}
+.key i{display:inline-block;width:11px;height:11px;border-radius:2px;margin-right:5px;vertical-align:-1px}
+.heat{max-width:420px;margin:14px auto 0}
+dl{display:grid;grid-template-columns:max-content 1fr;gap:2px 18px;margin:0;font-size:14px}
+dt{color:var(--soft)}dd{margin:0;overflow-wrap:anywhere}
+@media(max-width:640px){main{padding:20px 12px}.four figure{max-width:48%;flex-basis:140px}.pair{grid-template-columns:1fr}}
+@media print{body{background:#fff}section,.tile{break-inside:avoid}}
+)css";
+
+// For HTML; bytes that are no UTF-8 are replaced.
+std::string words(const std::string& text) {
+    using Json = nlohmann::json;
+    const std::string clean =
+        Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+    std::string out;
+    for (char c : clean) {
+        switch (c) {
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '&':
+                out += "&amp;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += c;
+        }
+    }
+    return out;
+}
+
+std::string base64(const std::vector<uint8_t>& bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve(bytes.size() / 3 * 4 + 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const size_t left = std::min<size_t>(3, bytes.size() - i);
+        uint32_t value = 0;
+        for (size_t k = 0; k < 3; k++)
+            value = value << 8 | (k < left ? bytes[i + k] : 0U);
+        for (size_t k = 0; k < 4; k++)
+            text += k <= left ? kDigits[value >> (18 - 6 * k) & 63U] : '=';
+    }
+    return text;
+}
+
+std::string figure(const Image& image, const std::string& caption) {
+    return "<figure><img width=\"" + std::to_string(image.width) + "\" height=\"" +
+           std::to_string(image.height) + "\" alt=\"" + caption + "\" src=\"data:image/png;base64," +
+           base64(encode_png(image)) + "\"><figcaption>" + caption + "</figcaption></figure>";
+}
+
+std::string percent(double share) {
+    return fixed(100.0 * share, 1) + " %";
+}
+
+std::string millimetres(double metres) {
+    return fixed(1000.0 * metres, 1);
+}
+
+std::string with_bar(double share) {
+    return percent(share) +
+           "<span class=\"bar\"><i style=\"width:" + fixed(100.0 * std::clamp(share, 0.0, 1.0), 1) +
+           "%\"></i></span>";
+}
+
+std::string cells(std::initializer_list<std::string> values, const char* tag = "td") {
+    std::string row;
+    for (const std::string& value : values)
+        row += "<" + std::string(tag) + ">" + value + "</" + tag + ">";
+    return row;
+}
+
+std::string tile(const std::string& value, const std::string& name) {
+    return "<div class=\"tile\"><b>" + value + "</b><span>" + name + "</span></div>";
+}
+
+// What the page is made of.
+struct Page {
+    const Reconstruction& result;
+    const ReportDetails& details;
+    PointCloud wood;  // what the fidelity is of
+    Fidelity fidelity;
+    std::vector<LevelFidelity> levels;
+    std::vector<UnexplainedCluster> unexplained;
+    std::vector<DoubtfulBranch> doubtful;
+    BranchList branches;
+};
+
+// The box of what the pictures show: of the tree, and of the cloud but for its strays.
+Bounds shown(const Page& page) {
+    Bounds box;
+    for (NodeId id : page.result.tree.depth_first())
+        box.add(page.result.tree.node(id).position, page.result.tree.node(id).radius);
+    const Vec3 low(box.min - 0.1 * box.diagonal()), high(box.max + 0.1 * box.diagonal());
+    for (const Vec3& p : page.result.cloud.positions)
+        if (p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y && p.z < high.z)
+            box.add(DVec3(p));
+    return box;
+}
+
+// Of a picture's height: more for slender trees, so that all take about as much room.
+int pixels_for(const Bounds& box) {
+    const DVec3 size = box.size();
+    const double slender = size.y / std::max({size.x, size.z, 1e-3});
+    return static_cast<int>(std::clamp(560.0 * std::sqrt(slender), 380.0, 960.0));
+}
+
+// So wide that neighbours on a surface touch.
+double dot_radius(const Page& page) {
+    const double apart = std::sqrt(std::max(page.fidelity.all.bark, 1e-6) /
+                                   static_cast<double>(std::max<size_t>(page.fidelity.points, 1)));
+    return std::clamp(0.6 * apart, 0.002, 0.05);
+}
+
+// The scan's leaves, in their own colours or in greens that differ a little from place to place.
+struct LeafPoints {
+    std::vector<Vec3> points;
+    std::vector<Rgb> colors;
+};
+
+LeafPoints leaves_of(const Reconstruction& result) {
+    LeafPoints leaves;
+    for (size_t i = 0; i < result.wood.size(); i++) {
+        if (result.wood[i] != 0) continue;
+        const Vec3& p = result.cloud.positions[i];
+        leaves.points.push_back(p);
+        if (result.cloud.has_colors()) {
+            leaves.colors.push_back(result.cloud.colors[i]);
+            continue;
+        }
+        const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
+        const uint64_t hash = hash_seed(x << 32 | y, std::bit_cast<uint32_t>(p.z));
+        const double light = 0.8 + 0.4 * static_cast<double>(hash >> 40) / 0x1p24;
+        Rgb color;
+        for (size_t c = 0; c < 3; c++)
+            color[c] = static_cast<uint8_t>(std::lround(light * kLeaf[c]));
+        leaves.colors.push_back(color);
+    }
+    return leaves;
+}
+
+std::string tree_pictures(const Page& page, const Bounds& box, Progress& progress) {
+    const Mesh bark = build_branch_tubes(page.result.tree, {}, &progress);
+    const LeafPoints leaves = leaves_of(page.result);
+    std::string html = "<section><h2>The tree</h2><div class=\"row two\">";
+    for (const auto& [azimuth, name] : {std::pair(0.0, "Front"), std::pair(0.5 * kPi, "From the right")}) {
+        Picture picture(view_of(box, azimuth, pixels_for(box)));
+        picture.draw(bark, kBark, &progress);
+        picture.draw(leaves.points, leaves.colors, kLeafRadius, &progress);
+        html += figure(picture.finish(),
+                       leaves.points.empty() ? name : std::string(name) + ", with the scan's leaves");
+        progress.check();
+    }
+    return html + "</div></section>";
+}
+
+std::string heat_key(double tolerance) {
+    std::string svg =
+        "<svg class=\"heat\" viewBox=\"0 0 420 40\" role=\"img\" aria-label=\"colours of the heat "
+        "map\"><defs>"
+        "<linearGradient id=\"heat\">";
+    for (int i = 0; i <= 16; i++) {
+        const double at = i / 16.0;
+        const Rgb c = heat_color(tolerance * (at < 0.5 ? 2.0 * at : 1.0 + 4.0 * (at - 0.5)), tolerance);
+        svg += "<stop offset=\"" + fixed(at, 4) + "\" stop-color=\"rgb(" + std::to_string(c[0]) + "," +
+               std::to_string(c[1]) + "," + std::to_string(c[2]) + ")\"/>";
+    }
+    svg +=
+        "</linearGradient></defs><rect x=\"10\" y=\"4\" width=\"400\" height=\"12\" rx=\"3\" "
+        "fill=\"url(#heat)\"/>";
+    const double centimetres = 100.0 * tolerance;
+    const std::pair<double, std::string> marks[] = {{10.0, "on the bark"},
+                                                    {210.0, fixed(centimetres, 1) + " cm (explained)"},
+                                                    {410.0, fixed(3.0 * centimetres, 1) + " cm and more"}};
+    const char* const anchors[] = {"start", "middle", "end"};
+    for (size_t i = 0; i < 3; i++)
+        svg += "<text x=\"" + fixed(marks[i].first, 0) + "\" y=\"32\" text-anchor=\"" + anchors[i] + "\">" +
+               marks[i].second + "</text>";
+    return svg + "</svg>";
+}
+
+std::string heat_pictures(const Page& page, const Bounds& box, Progress& progress) {
+    std::vector<Rgb> colors;
+    for (float error : page.fidelity.point_error)
+        colors.push_back(heat_color(std::abs(static_cast<double>(error)), page.fidelity.tolerance));
+    const LeafPoints leaves = leaves_of(page.result);
+    const std::vector<Rgb> pale(leaves.points.size(), kUnjudged);
+    std::string html =
+        "<section><h2>How far the scan lies from the tree</h2><p>Every point of the scan's wood, coloured by "
+        "its "
+        "distance to the nearest bark. Red points are wood that the tree does not have.";
+    if (!pale.empty()) html += " Leaves are pale; they are not judged.";
+    html += "</p><div class=\"row four\">";
+    const char* const names[] = {"Front", "From the right", "Back", "From the left"};
+    for (int side = 0; side < 4; side++) {
+        const PictureView view = view_of(box, 0.5 * kPi * side, pixels_for(box));
+        Picture picture(view);
+        // Behind all wood, which they would hide.
+        std::vector<Vec3> behind = leaves.points;
+        const Vec3 back(2.0 * box.diagonal() * DVec3(std::sin(view.azimuth), 0.0, std::cos(view.azimuth)));
+        for (Vec3& p : behind)
+            p -= back;
+        picture.draw(behind, pale, kLeafRadius, &progress);
+        picture.draw(page.wood.positions, colors, dot_radius(page), &progress);
+        html += figure(picture.finish(), names[side]);
+        progress.check();
+    }
+    return html + "</div>" + heat_key(page.fidelity.tolerance) + "</section>";
+}
+
+std::string part_row(const std::string& name, const FidelityPart& part, bool sum = false) {
+    const bool some = part.points > 0;
+    return std::string(sum ? "<tr class=\"sum\">" : "<tr>") +
+           cells({name, fixed(part.length, 1), std::to_string(part.points),
+                  some ? with_bar(part.explained) : "-", some ? millimetres(part.median) : "-",
+                  some ? millimetres(part.p95) : "-", with_bar(part.coverage)}) +
+           "</tr>";
+}
+
+std::string order_name(size_t order) {
+    return order == 0 ? "Trunk" : "Order " + std::to_string(order);
+}
+
+std::string fidelity_tables(const Page& page) {
+    const Fidelity& f = page.fidelity;
+    std::string html =
+        "<section><h2>Fidelity</h2><p>" + percent(f.skeleton) +
+        " of the points lie within the balls and frusta of the skeleton or at most " +
+        fixed(100.0 * f.tolerance, 0) + " cm outside of them (R<sub>s</sub>; " + percent(f.skeleton_strict) +
+        " without that tolerance). Explained is a point so near to the bark; covered is bark with such "
+        "a point on it, by pieces of 5 cm: a sparse scan, or one from one side, covers less.</p>"
+        "<div class=\"scroll\"><table><tr>";
+    html += cells({"", "length, m", "points", "explained", "median, mm", "95 % within, mm", "covered"}, "th");
+    html += "</tr>";
+    for (size_t order = 0; order < f.by_order.size(); order++)
+        html += part_row(order_name(order), f.by_order[order]);
+    html += part_row("All", f.all, true) + "</table></div></section>";
+    if (page.levels.size() < 2) return html;
+    html +=
+        "<section><h2>Lighter versions</h2><p>The same tree lightened to a half, a quarter and so on of its "
+        "nodes.</p><div class=\"scroll\"><table><tr>" +
+        cells({"nodes", "R<sub>s</sub>", "explained", "median, mm", "95 % within, mm"}, "th") + "</tr>";
+    for (const LevelFidelity& level : page.levels)
+        html += "<tr>" +
+                cells({std::to_string(level.nodes), fixed(level.skeleton, 3), with_bar(level.all.explained),
+                       millimetres(level.all.median), millimetres(level.all.p95)}) +
+                "</tr>";
+    return html + "</table></div></section>";
+}
+
+// Metres of wood by radius, and branches by length; both by order.
+std::string histograms(const Page& page) {
+    const Tree& tree = page.result.tree;
+    const std::vector<double> radii = {0.0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 1e9};
+    const std::vector<double> lengths = {0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 1e9};
+    Histogram wood{"radius, cm", "metres of wood", {"0", "0.5", "1", "2", "4", "8", "16", "32", ""}, {}, {}};
+    Histogram count{"length, m", "branches", {"0", "0.1", "0.25", "0.5", "1", "2", "4", "8", ""}, {}, {}};
+    size_t orders = 0;
+    for (const Branch& branch : page.branches.branches)
+        orders = std::max(orders, static_cast<size_t>(branch.order) + 1);
+    const size_t classes = std::min(orders, kMostOrders);
+    for (Histogram* histogram : {&wood, &count}) {
+        histogram->values.assign(classes, std::vector<double>(radii.size() - 1, 0.0));
+        for (size_t c = 0; c < classes; c++)
+            histogram->names.push_back(
+                c + 1 == kMostOrders && orders > kMostOrders ? order_name(c) + " and higher" : order_name(c));
+    }
+    const auto bin_of = [](const std::vector<double>& edges, double value) {
+        const auto above = std::upper_bound(edges.begin(), edges.end() - 1, value);
+        return static_cast<size_t>(above - edges.begin()) - 1;
+    };
+    for (const Branch& branch : page.branches.branches) {
+        const size_t c = std::min(static_cast<size_t>(branch.order), classes - 1);
+        count.values[c][bin_of(lengths, branch.length)] += 1.0;
+        for (NodeId id : page.branches.nodes_of(branch)) {
+            const Node& node = tree.node(id);
+            if (node.parent == kNoNode) continue;
+            wood.values[c][bin_of(radii, node.radius)] +=
+                glm::distance(node.position, tree.node(node.parent).position);
+        }
+    }
+    std::string html =
+        "<section><h2>Radius and length by order</h2><div class=\"pair\"><div><p>Metres of wood by "
+        "its radius</p>" +
+        histogram_svg(wood) + "</div><div><p>Number of branches by their length</p>" + histogram_svg(count) +
+        "</div></div><div class=\"key\">";
+    for (size_t c = 0; c < classes; c++)
+        html += "<span><i style=\"background:" + std::string(class_color(c)) + "\"></i>" + wood.names[c] +
+                "</span>";
+    return html + "</div></section>";
+}
+
+std::string review(const Page& page) {
+    const ScanFrame& frame = page.result.tree.frame();
+    std::string html = "<section><h2>Worth a look</h2>";
+    if (page.unexplained.empty()) {
+        html += "<p>No wood of the scan is missing from the tree.</p>";
+    } else {
+        html +=
+            "<p>" + std::to_string(page.unexplained.size()) +
+            " clusters of points that no branch explains; the largest:</p><div class=\"scroll\"><table><tr>" +
+            cells({"points", "size, m", "centre in the scan", "grows from node", "gap, m"}, "th") + "</tr>";
+        for (size_t i = 0; i < std::min(kMostListed, page.unexplained.size()); i++) {
+            const UnexplainedCluster& cluster = page.unexplained[i];
+            const DVec3 at = frame.to_scan(cluster.centre);
+            html += "<tr>" +
+                    cells({std::to_string(cluster.points.size()), fixed(cluster.size, 2),
+                           fixed(at.x, 2) + ", " + fixed(at.y, 2) + ", " + fixed(at.z, 2),
+                           std::to_string(cluster.joint), fixed(cluster.gap, 2)}) +
+                    "</tr>";
+        }
+        html += "</table></div>";
+    }
+    if (page.doubtful.empty()) return html + "<p>No branch is doubtful.</p></section>";
+    html += "<p style=\"margin-top:14px\">" + std::to_string(page.doubtful.size()) +
+            " branches that the scan hardly supports; the longest:</p><div class=\"scroll\"><table><tr>" +
+            cells({"node", "length, m", "points", "bridged, m", "turns by"}, "th") +
+            "<th class=\"words\">why</th></tr>";
+    for (size_t i = 0; i < std::min(kMostListed, page.doubtful.size()); i++) {
+        const DoubtfulBranch& branch = page.doubtful[i];
+        html += "<tr>" +
+                cells({std::to_string(branch.node), fixed(branch.length, 2), std::to_string(branch.points),
+                       fixed(branch.bridged, 2), fixed(branch.angle, 0) + "&deg;"}) +
+                "<td class=\"words\">" + doubt_text(branch.reasons) + "</td></tr>";
+    }
+    return html + "</table></div></section>";
+}
+
+std::string made_how(const Page& page) {
+    const Reconstruction& r = page.result;
+    std::string removed;
+    for (const CleanStep& step : r.clean.steps)
+        if (step.removed > 0)
+            removed +=
+                (removed.empty() ? "" : ", ") + std::string(step.name) + " " + std::to_string(step.removed);
+    std::string stages;
+    double total = 0.0;
+    for (const StageTime& stage : r.stages) {
+        stages += (stages.empty() ? "" : ", ") + std::string(stage.name) + " " +
+                  fixed(stage.milliseconds / 1000.0, 2) + " s";
+        total += stage.milliseconds / 1000.0;
+    }
+    std::string html = "<section><h2>How it was made</h2><dl>";
+    const auto entry = [&](const char* name, const std::string& value) {
+        html += "<dt>" + std::string(name) + "</dt><dd>" + value + "</dd>";
+    };
+    entry("Scan", words(page.details.scan_path) + " (" + words(r.read.format) + ")");
+    entry("Points", std::to_string(r.points_read) + " read, " + std::to_string(r.cloud.size()) +
+                        " after cleaning, " + std::to_string(r.leaf_points) + " of them leaves");
+    entry("Cleaning removed", removed.empty() ? "nothing" : words(removed));
+    entry("Up",
+          std::string(up_axis_name(r.orient.up)) + (r.orient.up_detected ? " (found out)" : " (as told)"));
+    entry("Scale", fixed(r.orient.metres_per_unit, 4) + " metres per unit" +
+                       (r.orient.scale_guessed ? " (a guess)" : ""));
+    entry("Thinned to", millimetres(r.spacing) + " mm between points");
+    entry("Tree", std::to_string(r.measured.nodes) + " nodes, " +
+                      std::to_string(page.branches.branches.size()) + " branches, " +
+                      percent(r.measured.measured_volume_share) +
+                      " of the wood's volume with a measured radius");
+    entry("Time", stages + "; together " + fixed(total, 1) + " s");
+    entry("Seed", std::to_string(page.details.seed));
+    entry("Program", "treerec " + std::string(kVersion));
+    return html + "</dl></section>";
+}
+
+std::string head(const Page& page) {
+    const Reconstruction& r = page.result;
+    const Measurements& m = r.measured;
+    const std::string name = words(stem_of(page.details.scan_path));
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+        "content=\"width=device-width,initial-scale=1\"><title>" +
+        name + " - reconstructed tree</title><style>" + kStyle + "</style></head><body><main><h1>" + name +
+        "</h1><p class=\"soft\">A tree reconstructed from " + std::to_string(r.points_read) +
+        " scanned points</p><div class=\"tiles\">";
+    html += tile(fixed(m.height, 2) + " m", "height");
+    html += m.dbh > 0.0 ? tile(fixed(100.0 * m.dbh, 1) + " cm", "diameter at breast height")
+                        : tile("-", "diameter at breast height");
+    html += tile(fixed(m.crown_radius, 2) + " m", "crown radius");
+    html += tile(fixed(m.total_length, 0) + " m", "length of all wood");
+    html += tile(fixed(m.volume, 3) + " m&sup3;", "volume of the wood");
+    html += tile(percent(page.fidelity.all.explained), "of the points explained");
+    html += tile(millimetres(page.fidelity.all.median) + " mm", "median distance to the bark");
+    html += "</div>";
+    if (r.warnings.empty()) return html;
+    html += "<section class=\"warn\"><h2>Warnings</h2><ul>";
+    for (const std::string& warning : r.warnings)
+        html += "<li>" + words(warning) + "</li>";
+    return html + "</ul></section>";
+}
+
+}  // namespace
+
+std::string report_html(const Reconstruction& result, const ReportDetails& details, Progress* progress) {
+    SubProgress own(progress, 0.0, 1.0);
+    own.update(0.0, "Reporting");
+    Page page{result, details, {}, {}, {}, {}, {}, list_branches(result.tree)};
+    page.wood.frame = result.cloud.frame;
+    page.wood.positions = result.cloud.positions;
+    // A cloud of leaves alone is judged as a whole, as the reconstruction does.
+    if (result.leaf_points < result.cloud.size() && !result.wood.empty()) page.wood.keep_only(result.wood);
+    page.fidelity = measure_fidelity(result.tree, page.wood, {}, &own);
+    own.update(0.4, "Reporting");
+    page.levels = measure_levels(result.tree, page.wood, 4, {}, &own);
+    page.unexplained = find_unexplained(result.tree, page.wood, page.fidelity, {}, {}, &own);
+    page.doubtful = find_doubtful(result.tree, page.fidelity);
+    own.update(0.7, "Reporting");
+    const Bounds box = shown(page);
+    std::string html = head(page);
+    html += tree_pictures(page, box, own);
+    html += heat_pictures(page, box, own);
+    html += fidelity_tables(page) + histograms(page) + review(page) + made_how(page);
+    own.update(1.0, "Reporting");
+    return html + "</main></body></html>\n";
+}
+
+}  // namespace treerec
