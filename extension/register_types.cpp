@@ -12,6 +12,7 @@
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
 #include "exchange/ready_pictures.h"
+#include "tree_fidelity.h"
 #include "tree_reconstructor.h"
 #endif
 
@@ -41,6 +42,7 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
             GDREGISTER_CLASS(TreeReconstruction)
             GDREGISTER_CLASS(LSystem)
 #ifdef TREEREC_EDITOR
+            GDREGISTER_CLASS(TreeFidelity)
             GDREGISTER_CLASS(
                 TreeReconstructor)  // Here, since scripts run by the editor's program use it too.
             treerec::use_ready_pictures();

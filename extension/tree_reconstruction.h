@@ -92,6 +92,9 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedVector3Array get_foliage_positions() const;
     godot::PackedColorArray get_foliage_colors() const;
     godot::Dictionary measure() const;
+#ifdef TREEREC_EDITOR
+    godot::Dictionary measure_fidelity(const godot::PackedVector3Array& p_points, double p_tolerance) const;
+#endif
 
     // Builders.
     godot::Array build_mesh_arrays(int p_lod) const;

@@ -248,6 +248,10 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_foliage_positions"), &TreeReconstruction::get_foliage_positions);
     ClassDB::bind_method(D_METHOD("get_foliage_colors"), &TreeReconstruction::get_foliage_colors);
     ClassDB::bind_method(D_METHOD("measure"), &TreeReconstruction::measure);
+#ifdef TREEREC_EDITOR
+    ClassDB::bind_method(D_METHOD("measure_fidelity", "points", "tolerance"),
+                         &TreeReconstruction::measure_fidelity, DEFVAL(0.02));
+#endif
 
     ClassDB::bind_method(D_METHOD("build_mesh_arrays", "lod"), &TreeReconstruction::build_mesh_arrays,
                          DEFVAL(0));

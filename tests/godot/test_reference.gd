@@ -2,7 +2,7 @@ extends "./suite.gd"
 ## The class reference covers every class and member, in whole sentences.
 
 const CLASSES: PackedStringArray = [
-	"LSystem", "LeafRule", "TreeEdit", "TreeReconstruction", "TreeReconstructor"
+	"LSystem", "LeafRule", "TreeEdit", "TreeFidelity", "TreeReconstruction", "TreeReconstructor"
 ]
 const HERE: String = "../../extension/doc_classes/%s.xml"
 
