@@ -45,6 +45,14 @@ void write_up(ParsedOptions& r_options, const Variant& p_value) {
     }
 }
 
+Variant read_skeleton(const ParsedOptions& p_options) {
+    return treerec::skeleton_method_name(p_options.pipeline.skeleton.method);
+}
+
+void write_skeleton(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.skeleton.method = treerec::parse_skeleton_method(to_std(p_value));
+}
+
 Variant read_scale(const ParsedOptions& p_options) {
     return p_options.pipeline.orient.metres_per_unit.value_or(0.0);
 }
@@ -200,6 +208,13 @@ const Option kOptions[] = {
      "the number."},
     {"tell_leaves", OPTION_MEMBER(tell_leaves, bool), PROPERTY_HINT_NONE, "",
      "Tells leaves from wood: the skeleton follows the wood, and the leaves become foliage."},
+    {"skeleton", read_skeleton, write_skeleton, PROPERTY_HINT_ENUM, "delaunay,flood",
+     "How the branches are found: delaunay follows the shortest paths through the points, flood goes "
+     "through voxels."},
+    {"voxel", OPTION_MEMBER(skeleton.voxel, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
+     "Edge of the flood's voxels; 0 chooses by the cloud."},
+    {"flood_steps", OPTION_MEMBER(skeleton.keep_steps, bool), PROPERTY_HINT_NONE, "",
+     "Keeps every step of the flood, for get_flood_step()."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Keeps at most one point per cell of this size; 0 chooses by the cloud."},
     {"minimum_branch", OPTION_MEMBER(skeleton.minimum_branch, double), PROPERTY_HINT_RANGE,

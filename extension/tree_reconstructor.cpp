@@ -109,6 +109,7 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
         report_json_.clear();
         cloud_ = treerec::PointCloud();
         raw_ = treerec::Tree();
+        steps_.clear();
     }
     p_listener.check();
     const ParsedOptions options = parse_reconstruct_options(p_options);
@@ -135,6 +136,8 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     report_json_ = report;
     cloud_ = std::move(result.cloud);
     raw_ = std::move(result.raw);
+    steps_ = std::move(result.steps);
+    voxel_ = result.voxel;
     fraction_ = 1.0;
     return made;
 }
@@ -269,6 +272,8 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_cloud_points"), &TreeReconstructor::get_cloud_points);
     ClassDB::bind_method(D_METHOD("get_cloud_colors"), &TreeReconstructor::get_cloud_colors);
     ClassDB::bind_method(D_METHOD("get_raw_skeleton"), &TreeReconstructor::get_raw_skeleton);
+    ClassDB::bind_method(D_METHOD("get_flood_step_count"), &TreeReconstructor::get_flood_step_count);
+    ClassDB::bind_method(D_METHOD("get_flood_step", "index"), &TreeReconstructor::get_flood_step);
     ADD_SIGNAL(MethodInfo("progress_changed", PropertyInfo(Variant::FLOAT, "fraction"),
                           PropertyInfo(Variant::STRING, "stage")));
 }

@@ -34,6 +34,8 @@ class TreeReconstructor : public godot::RefCounted {
     godot::PackedVector3Array get_cloud_points() const;
     godot::PackedColorArray get_cloud_colors() const;
     godot::Ref<TreeReconstruction> get_raw_skeleton() const;
+    int64_t get_flood_step_count() const;
+    godot::Dictionary get_flood_step(int64_t p_index) const;
 
   protected:
     static void _bind_methods();
@@ -58,5 +60,7 @@ class TreeReconstructor : public godot::RefCounted {
     std::string report_json_;
     treerec::PointCloud cloud_;
     treerec::Tree raw_;
+    std::vector<treerec::FloodStep> steps_;
+    double voxel_ = 0.0;
     int64_t last_signal_ms_ = 0;
 };

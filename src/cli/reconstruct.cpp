@@ -83,6 +83,11 @@ ReconstructOptions options_from(const Arguments& arguments) {
     if (arguments.has("--scale") + arguments.has("--height") + arguments.has("--length") > 1)
         throw UsageError("--scale, --height and --length all set the scale; give one of them.");
     options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
+    options.skeleton.method =
+        as_usage([&] { return parse_skeleton_method(arguments.text("--skeleton", "delaunay")); });
+    options.skeleton.voxel = arguments.number("--voxel", 0.0, 1e-9, 1e3);
+    if (arguments.has("--voxel") && options.skeleton.method != SkeletonMethod::kFlood)
+        throw UsageError("--voxel is the size of the flood's voxels; add --skeleton flood.");
     options.skeleton.keep_raw = false;
     options.skeleton.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
     const bool clean = !arguments.has("--no-clean");
@@ -161,6 +166,8 @@ const Command& reconstruct_command() {
          {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
          {"--leaves", "PRESET", leaf_names() + "(default generic)"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
+         {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
+         {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
          {"--no-clean", "", "leave out all cleaning, or one step of it:"},

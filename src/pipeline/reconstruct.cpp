@@ -108,6 +108,10 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     append(result.warnings, skeleton.warnings);
     result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
     result.spacing = skeleton.spacing;
+    result.voxel = skeleton.voxel;
+    result.kind = skeleton.kind;
+    result.kind_told = skeleton.kind_told;
+    result.steps = std::move(skeleton.steps);
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);
     if (result.tree.size() < 2)

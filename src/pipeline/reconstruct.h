@@ -37,6 +37,11 @@ struct Reconstruction {
     size_t leaf_points = 0;     // of the cloud
     std::vector<uint8_t> wood;  // by point of the cloud, 0 for leaves; empty where all is wood
     double spacing = 0.0;       // metres: what the skeletonizer thinned to
+    // Of the voxel flood alone (skeleton/skeleton.h).
+    double voxel = 0.0;  // metres; 0 with the other method
+    CloudKind kind = CloudKind::kSurface;
+    bool kind_told = false;
+    std::vector<FloodStep> steps;  // in the tree's frame
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;

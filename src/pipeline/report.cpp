@@ -51,6 +51,9 @@ Json options_json(const ReportDetails& details) {
     json["known_height_m"] = options.orient.known_height ? Json(*options.orient.known_height) : Json(nullptr);
     json["known_length_m"] =
         options.orient.known_length ? Json(options.orient.known_length->metres) : Json(nullptr);
+    json["skeleton"] = skeleton_method_name(options.skeleton.method);
+    if (options.skeleton.method == SkeletonMethod::kFlood)
+        json["voxel_m"] = options.skeleton.voxel > 0.0 ? Json(options.skeleton.voxel) : Json("auto");
     json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
     json["columns"] = options.read.columns;
     json["leaves"] = details.leaves;
@@ -121,6 +124,12 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["trees"] = trees;
     json["tree_taken"] = trees.empty() ? Json(nullptr) : Json(result.clean.pick.taken + 1);
     json["spacing_m"] = result.spacing;
+    if (result.voxel > 0.0) {
+        json["voxel_m"] = result.voxel;
+        json["points_are"] = !result.kind_told                    ? "surface, probably"
+                             : result.kind == CloudKind::kSurface ? "surface"
+                                                                  : "solid";
+    }
     Json stages = Json::array();
     double total = 0.0;
     for (const StageTime& stage : result.stages) {

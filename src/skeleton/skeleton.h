@@ -1,4 +1,5 @@
-// From a clean cloud to a Tree: the skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2).
+// From a clean cloud to a Tree: the skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2), and the
+// voxel-flood one (papers/002, chapter 5).
 #pragma once
 
 #include <string>
@@ -6,13 +7,24 @@
 
 #include "progress.h"
 #include "scan/point_cloud.h"
+#include "skeleton/flood_steps.h"
 #include "stage_clock.h"
 #include "tree/tree.h"
 
 namespace treerec {
 
+// Shortest paths through the points and slices across them, or a flood through voxels.
+enum class SkeletonMethod : uint8_t { kDelaunay, kFlood };
+
+// "delaunay", "flood". Throws Error for any other word, naming both.
+SkeletonMethod parse_skeleton_method(const std::string& word);
+const char* skeleton_method_name(SkeletonMethod method);
+
 // Lengths in metres; 0 where a length is "automatic" (from the cloud's own spacing and size).
 struct SkeletonOptions {
+    SkeletonMethod method = SkeletonMethod::kDelaunay;
+    double voxel = 0.0;              // edge of the flood's voxels; 0 automatic
+    bool keep_steps = false;         // fill SkeletonResult::steps
     double spacing = 0.0;            // thinning: at most one point per cell of this size; 0 automatic
     double minimum_branch = 0.0;     // shorter end branches are noise; 0 automatic
     double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
@@ -27,12 +39,18 @@ struct SkeletonResult {
     Tree raw;   // the shortest-path tree before pruning and simplification, for pictures; thin constant radii
     Tree tree;  // the skeleton: trunk marked, radii measured or inferred, root at (0,0,0), frame set
     double spacing = 0.0;  // that was used
+    // Of the flood alone; of the steps, positions are those of `tree`.
+    double voxel = 0.0;  // that was used
+    CloudKind kind = CloudKind::kSurface;
+    bool kind_told = false;  // false where no wood is thick enough in voxels to tell: a surface is assumed
+    std::vector<FloodStep> steps;
     std::vector<StageTime> stages;
     std::vector<std::string> warnings;
 };
 
 // cloud: oriented (metres, Y up) and clean. Throws Error if it cannot be a tree (fewer than 10 distinct
-// points, all on a plane or a line, …), Cancelled on request.
+// points, all on a plane or a line, …) or for a voxel larger than the tree or too small to be numbered,
+// Cancelled on request.
 SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options,
                            Progress* progress = nullptr);
 

@@ -5,6 +5,7 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
+#include "skeleton/flood_skeleton.h"
 #include "skeleton/foot.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
@@ -26,8 +27,7 @@ namespace treerec {
 namespace {
 
 constexpr size_t kLeastPoints = 10;
-constexpr double kBranchShare = 0.003;  // of the cloud's diagonal: the shortest branch, automatically
-constexpr double kLeastBranch = 0.05;   // metres, likewise
+constexpr double kVoxelSpacings = 2.0;  // a stated voxel is at least so many spacings wide
 constexpr double kTwigEscape = 0.02;    // metres that a twig must reach out of the bark,
 constexpr double kNoiseEscape = 2.5;    // and times the scan's noise
 constexpr double kWidestRing = 0.05;    // of the tree's extent
@@ -99,6 +99,9 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.0, "Thinning");
     result.spacing = options.spacing > 0.0 ? options.spacing : automatic_spacing(cloud.positions, &progress);
+    const bool floods = options.method == SkeletonMethod::kFlood;
+    if (floods && options.voxel > 0.0 && options.spacing <= 0.0)
+        result.spacing = std::min(result.spacing, options.voxel / kVoxelSpacings);
     const std::vector<Vec3> points = thin_points(cloud.positions, result.spacing, progress);
     if (points.size() < kLeastPoints)
         throw Error(
@@ -111,6 +114,10 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
             "All points lie on a plane or on a line, and a tree needs depth: this looks like a photo or a "
             "section of a scan.");
     clock.stop("Thinning", points.size());
+    if (floods) {
+        flood_skeleton(points, cloud.frame, options, result, clock, listener);
+        return result;
+    }
 
     SubProgress linking(listener, 0.1, 0.55);
     const PointGraph graph = neighbour_graph(points, linking);
@@ -132,7 +139,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     for (const Vec3& p : points)
         extent = std::max(extent, glm::distance(DVec3(p), root.position));
     limb_options.minimum_branch =
-        options.minimum_branch > 0.0 ? options.minimum_branch : std::max(kLeastBranch, kBranchShare * extent);
+        options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
     limb_options.widest_loop = kWidestRing * extent;
     AxisOptions axis_options;
     axis_options.fit_radii = options.fit_radii;

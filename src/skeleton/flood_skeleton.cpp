@@ -1,0 +1,142 @@
+#include "skeleton/flood_skeleton.h"
+
+#include <array>
+#include <string>
+
+#include "skeleton/assemble.h"
+#include "skeleton/bark.h"
+#include "skeleton/flood_limbs.h"
+#include "skeleton/foot.h"
+#include "skeleton/radii.h"
+#include "skeleton/root.h"
+#include "skeleton/tips.h"
+#include "tree/trunk.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kBranchVoxels = 1.5;  // what reaches less far out of the bark is bark
+constexpr double kLeastEscape = 0.02;  // metres,
+constexpr double kNoiseEscape = 2.5;   // and times the scan's noise, likewise
+constexpr int kPasses = 2;             // the flood's nodes lie farther from the axis than slices do
+constexpr double kThinnest = 0.001;    // metres
+constexpr std::array<const char*, 2> kMethods = {"delaunay", "flood"};
+
+// The flood's own tree, before anything is smoothed or left out.
+Tree raw_tree(const std::vector<FloodNode>& nodes) {
+    std::vector<NodeId> parents;
+    std::vector<DVec3> positions;
+    std::vector<double> radii;
+    std::vector<uint8_t> flags;
+    for (const FloodNode& node : nodes) {
+        parents.push_back(node.parent);
+        positions.push_back(node.position);
+        radii.push_back(std::max(kThinnest, node.radius));
+        flags.push_back(node.bridged ? kGuessFlag : 0);
+    }
+    return Tree::from_arrays(parents, positions, radii, flags);
+}
+
+std::vector<uint32_t> vertices_of(const std::vector<PathSeed>& seeds) {
+    std::vector<uint32_t> vertices;
+    for (const PathSeed& seed : seeds)
+        vertices.push_back(seed.vertex);
+    return vertices;
+}
+
+// A solid's points tell its radius, but lie on no surface that could be fitted.
+void trust_radii(std::vector<std::vector<Station>>& axes, double voxel) {
+    for (std::vector<Station>& line : axes)
+        for (Station& station : line)
+            station.measured = station.radius > voxel;
+}
+
+}  // namespace
+
+SkeletonMethod parse_skeleton_method(const std::string& word) {
+    for (size_t m = 0; m < kMethods.size(); m++)
+        if (word == kMethods[m]) return static_cast<SkeletonMethod>(m);
+    throw Error("There is no skeleton method " + quote_word(word) + "; take delaunay or flood.");
+}
+
+const char* skeleton_method_name(SkeletonMethod method) {
+    return kMethods[static_cast<size_t>(method)];
+}
+
+void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
+                    SkeletonResult& result, StageClock& clock, Progress* listener) {
+    SubProgress gridding(listener, 0.1, 0.4);
+    gridding.update(0.0, "Voxels");
+    result.voxel = options.voxel > 0.0 ? options.voxel : automatic_voxel(points, result.spacing, gridding);
+    const FloodGrid grid(points, result.voxel, gridding);
+    gridding.check();
+    const RootGuess root = find_root(grid.means, grid.graph, local_scale(grid.graph, result.voxel));
+    clock.stop("Voxels", grid.size());
+
+    SubProgress flooding(listener, 0.4, 0.8);
+    flooding.update(0.0, "Flooding");
+    FloodOptions flood_options;
+    flood_options.seed = options.seed;
+    flood_options.keep_steps = options.keep_steps;
+    FloodResult flooded =
+        flood(grid, points, root.position, vertices_of(root.seeds), flood_options, flooding);
+    if (options.keep_raw) result.raw = raw_tree(flooded.nodes);
+    result.kind = flooded.kind;
+    result.kind_told = flooded.kind_told;
+    clock.stop("Flooding", flooded.nodes.size());
+
+    SubProgress fitting(listener, 0.8, 0.95);
+    fitting.update(0.0, "Refinement");
+    FloodLimbs made = limbs_of(flooded, grid, points.size());
+    if (options.one_stem) {
+        made.limbs.resize(1);
+        made.axes.resize(1);
+    }
+    double extent = 0.0;
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root.position));
+    const double least_branch =
+        options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
+    const bool solid = flooded.kind == CloudKind::kSolid;
+    if (solid) trust_radii(made.axes, result.voxel);
+    infer_radii(made.axes, made.limbs);
+    if (options.fit_radii && !solid) {
+        PointPlaces& places = made.places;
+        for (int32_t& limb : places.limb)
+            if (limb >= static_cast<int32_t>(made.limbs.size())) limb = -1;
+        for (int pass = 0; pass < kPasses; pass++) {
+            refine_axes(made.axes, made.limbs, places, points, fitting);
+            infer_radii(made.axes, made.limbs);
+        }
+        if (!root.lying) limit_foot(made.axes.front());
+        infer_radii(made.axes, made.limbs);
+    }
+    const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel,
+                                    kNoiseEscape * std::max(noise_of(made.axes), options.noise)});
+    drop_strips(made.limbs, made.axes, escape);
+    drop_short(made, least_branch);
+    draw_back_tips(made.axes, made.limbs, least_branch);
+    clock.stop("Refinement", made.limbs.size());
+
+    fitting.update(1.0, "Simplification");
+    result.tree = assemble_tree(made.axes, made.limbs, options.simplify_distance);
+    mark_trunk(result.tree);
+    result.tree.set_frame(frame);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    result.tree.rebase(base);
+    if (options.keep_raw) {
+        result.raw.set_frame(frame);
+        result.raw.rebase(base);
+    }
+    result.steps = std::move(flooded.steps);
+    for (FloodStep& step : result.steps) {
+        step.position -= base;
+        for (Vec3& voxel : step.voxels)
+            voxel = Vec3(DVec3(voxel) - base);
+    }
+    clock.stop("Simplification", result.tree.size());
+    if (listener) listener->update(1.0, "Skeleton");
+}
+
+}  // namespace treerec

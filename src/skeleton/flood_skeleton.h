@@ -1,0 +1,23 @@
+// The whole voxel-flood skeletonizer, behind skeletonize().
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "skeleton/skeleton.h"
+
+namespace treerec {
+
+// The shortest branch where the user states none, metres. extent: of the tree, from its root.
+inline double automatic_branch(double extent) {
+    constexpr double kLeast = 0.05;
+    constexpr double kShare = 0.003;
+    return std::max(kLeast, kShare * extent);
+}
+
+// points: thinned to result.spacing, in `frame`. Fills all of `result` but the spacing. Throws Error for a
+// voxel that does not suit the tree, Cancelled on request.
+void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
+                    SkeletonResult& result, StageClock& clock, Progress* listener);
+
+}  // namespace treerec

@@ -1,0 +1,52 @@
+// `treerec reconstruct --skeleton flood`, as a user runs it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli_runner.h"
+
+namespace treerec {
+namespace {
+
+using test::Cli;
+
+class CliFlood : public Cli {};
+
+TEST_F(CliFlood, FloodsAndReportsItsVoxels) {
+    ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
+    ASSERT_EQ(run("reconstruct s/scan.ply -o out/a.txt --report out/a.json --skeleton flood --quiet").code,
+              0);
+    const auto found = nlohmann::json::parse(get("out/a.json"));
+    EXPECT_EQ(found["options"]["skeleton"], "flood");
+    EXPECT_EQ(found["options"]["voxel_m"], "auto");
+    EXPECT_GT(found["voxel_m"], 0.0);
+    EXPECT_GT(found["nodes"], 20);
+    ASSERT_EQ(run("reconstruct s/scan.ply -o out/b.txt --report out/b.json --skeleton flood --voxel 0.03 "
+                  "--quiet --threads 1")
+                  .code,
+              0);
+    EXPECT_EQ(nlohmann::json::parse(get("out/b.json"))["voxel_m"], 0.03);
+    ASSERT_EQ(
+        run("reconstruct s/scan.ply -o out/c.txt --skeleton flood --voxel 0.03 --quiet --threads 3").code, 0);
+    EXPECT_EQ(get("out/b.txt"), get("out/c.txt"));
+    ASSERT_EQ(run("reconstruct s/scan.ply -o out/d.txt --report out/d.json --quiet").code, 0);
+    const auto other = nlohmann::json::parse(get("out/d.json"));
+    EXPECT_EQ(other["options"]["skeleton"], "delaunay");
+    EXPECT_FALSE(other.contains("voxel_m"));
+}
+
+TEST_F(CliFlood, RefusesWhatMakesNoSense) {
+    ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton voxels").code, 2);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --voxel 0.03").code, 2);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --voxel 0").code, 2);
+    const auto large = run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --voxel 40");
+    EXPECT_EQ(large.code, 1);
+    EXPECT_NE(large.error.find("too large for a tree of"), std::string::npos) << large.error;
+    const auto small = run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --voxel 0.00000001");
+    EXPECT_NE(small.code, 0);
+}
+
+}  // namespace
+}  // namespace treerec
