@@ -166,7 +166,10 @@ Variant read_leaves(const ParsedOptions& p_options) {
 }
 
 void write_leaves(ParsedOptions& r_options, const Variant& p_value) {
-    treerec::leaf_preset(to_std(p_value));  // Throws for a name that is none.
+    const std::string name = to_std(p_value);
+    if (name != "auto") {
+        treerec::leaf_preset(name);  // Throws for a name that is none.
+    }
     r_options.leaves = p_value;
 }
 
@@ -225,14 +228,15 @@ const Option kOptions[] = {
      "Measures radii where the points allow it; without it all are inferred."},
     {"seed", OPTION_MEMBER(skeleton.seed, int64_t), PROPERTY_HINT_NONE, "",
      "The same scan and seed give the same tree."},
-    {"leaves", read_leaves, write_leaves, PROPERTY_HINT_ENUM, "", "The leaf preset that the tree gets."},
+    {"leaves", read_leaves, write_leaves, PROPERTY_HINT_ENUM, "",
+     "The leaf preset that the tree gets; auto takes palm for a palm, else generic."},
 };
 
 #undef OPTION_MEMBER
 
 ParsedOptions default_options() {
     ParsedOptions options;
-    options.leaves = "generic";
+    options.leaves = "auto";
     return options;
 }
 
@@ -291,9 +295,10 @@ TypedArray<Dictionary> list_reconstruct_options() {
         entry["type"] = int(value.get_type());
         entry["default"] = value;
         entry["hint"] = int(option.hint);
-        entry["hint_string"] = option.read == read_leaves
-                                   ? String(",").join(TreeReconstruction::get_leaf_preset_names())
-                                   : String(option.hint_string);
+        entry["hint_string"] =
+            option.read == read_leaves
+                ? String("auto,") + String(",").join(TreeReconstruction::get_leaf_preset_names())
+                : String(option.hint_string);
         entry["description"] = option.description;
         list.push_back(entry);
     }

@@ -87,10 +87,10 @@ static std::string write_report(const treerec::Reconstruction& p_result, const P
     treerec::ReportDetails details;
     details.scan_path = p_path;
     details.options = p_options.pipeline;
-    details.leaves = to_std(p_options.leaves);
+    details.leaves = treerec::chosen_leaves(to_std(p_options.leaves), p_result);
     details.seed = p_options.pipeline.skeleton.seed;
     treerec::ExportOptions look;
-    look.leaves = treerec::leaf_preset(details.leaves);
+    look.leaves = treerec::suited_leaves(details.leaves, p_result);
     look.seed = details.seed;
     look.foliage = p_result.foliage;
     treerec::TreeExporter counter(p_result.tree, look, &p_progress);
@@ -122,7 +122,9 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     Ref<TreeReconstruction> made;
     made.instantiate();
     made->set_seed(int64_t(options.pipeline.skeleton.seed));
-    made->set_leaf_preset(options.leaves);
+    const std::string leaves = treerec::chosen_leaves(to_std(options.leaves), result);
+    made->set_leaf_preset(to_godot(leaves));
+    made->set("leaf_size", treerec::suited_leaves(leaves, result).leaf_size);
     made->set_tree(std::move(result.tree));
     made->set_leaf_density(std::move(result.foliage));
     Dictionary provenance;

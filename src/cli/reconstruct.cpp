@@ -164,7 +164,7 @@ const Command& reconstruct_command() {
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
          {"--height", "M", "the tree's height in metres: sets the scale of scans that have none"},
          {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
-         {"--leaves", "PRESET", leaf_names() + "(default generic)"},
+         {"--leaves", "PRESET", leaf_names() + "or auto, the default: palm for a palm, else generic"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
@@ -199,10 +199,9 @@ void run_reconstruct(const std::vector<std::string>& words) {
     std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
     std::erase_if(outs, is_page);
     const ReconstructOptions options = options_from(arguments);
-    ReportDetails details{scan, options, arguments.text("--leaves", "generic"), options.skeleton.seed, 0, 0};
+    ReportDetails details{scan, options, arguments.text("--leaves", "auto"), options.skeleton.seed, 0, 0};
     ExportOptions exports;
-    exports.leaves = as_usage([&] { return leaf_preset(details.leaves); });
-    exports.textures = details.leaves;
+    as_usage([&] { return leaf_preset(details.leaves == "auto" ? "generic" : details.leaves); });
     exports.seed = options.skeleton.seed;
     set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
     // Before the long work, not after it.
@@ -220,6 +219,9 @@ void run_reconstruct(const std::vector<std::string>& words) {
     TerminalProgress progress(quiet);
     SubProgress reconstructing(&progress, 0.0, 0.9);
     const Reconstruction result = reconstruct_file(scan, options, &reconstructing);
+    details.leaves = chosen_leaves(details.leaves, result);
+    exports.leaves = suited_leaves(details.leaves, result);
+    exports.textures = details.leaves;
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
     for (size_t i = 0; i < outs.size(); i++) {

@@ -26,6 +26,8 @@ constexpr double kSkeletonEnd = 0.97;
 constexpr double kLeastExplained = 0.25;
 constexpr double kLeastMeasured = 0.01;
 
+constexpr double kFrondShare = 0.85;  // of how far fronds reach: they arch
+
 // With fewer points of wood the tree is made from the leaves' too.
 constexpr size_t kLeastFollowed = 200;
 
@@ -53,6 +55,17 @@ Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf, co
 }
 
 }  // namespace
+
+std::string chosen_leaves(const std::string& asked, const Reconstruction& result) {
+    if (asked != "auto") return asked;
+    return result.palm ? "palm" : "generic";
+}
+
+LeafRules suited_leaves(const std::string& preset, const Reconstruction& result) {
+    LeafRules rules = leaf_preset(preset);
+    if (result.palm && preset == "palm") rules.leaf_size = kFrondShare * result.foliage.reach;
+    return rules;
+}
 
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
                                 Progress* progress) {
@@ -112,6 +125,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     result.kind = skeleton.kind;
     result.kind_told = skeleton.kind_told;
     result.steps = std::move(skeleton.steps);
+    result.palm = told.fronds;
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);
     if (result.tree.size() < 2)

@@ -29,10 +29,11 @@ struct ReconstructOptions {
 };
 
 struct Reconstruction {
-    PointCloud cloud;  // cleaned, in the tree's frame: its points lie on the tree
-    Tree raw;          // before pruning and simplification; same frame
-    Tree tree;         // root at (0,0,0), metres, Y up
-    Foliage foliage;   // what the scan saw of leaves, in the tree's frame; empty for a bare tree
+    PointCloud cloud;   // cleaned, in the tree's frame: its points lie on the tree
+    Tree raw;           // before pruning and simplification; same frame
+    Tree tree;          // root at (0,0,0), metres, Y up
+    Foliage foliage;    // what the scan saw of leaves, in the tree's frame; empty for a bare tree
+    bool palm = false;  // its leaves are fronds
     size_t points_read = 0;
     size_t leaf_points = 0;     // of the cloud
     std::vector<uint8_t> wood;  // by point of the cloud, 0 for leaves; empty where all is wood
@@ -50,6 +51,14 @@ struct Reconstruction {
     std::vector<StageTime> stages;  // "Read", "Orient", "Clean", "Leaves", the skeletonizer's own, "Score"
     std::vector<std::string> warnings;  // of all stages, in order
 };
+
+// The leaf preset that the user asked for, or, for "auto", one that suits what was found: "palm" or
+// "generic".
+std::string chosen_leaves(const std::string& asked, const Reconstruction& result);
+
+// The rules of a preset, with fronds as long as the scan's where the tree is a palm. Throws Error for a name
+// that is none.
+LeafRules suited_leaves(const std::string& preset, const Reconstruction& result);
 
 // Throws Error with a sentence, or Cancelled.
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,

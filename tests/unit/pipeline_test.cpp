@@ -261,6 +261,9 @@ TEST_F(Pipeline, APalmIsOneStem) {
         EXPECT_NEAR(made.measured.total_length, measured.total_length, 0.05 * measured.total_length);
         EXPECT_NEAR(made.measured.dbh, measured.dbh, 0.03 * measured.dbh);
         EXPECT_GT(made.foliage.reach, 1.0);
+        EXPECT_EQ(chosen_leaves("auto", made), "palm");
+        EXPECT_EQ(chosen_leaves("oak", made), "oak");
+        EXPECT_LT(suited_leaves("palm", made).leaf_size, made.foliage.reach);
     }
 }
 
