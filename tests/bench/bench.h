@@ -36,6 +36,8 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
 // Lighter trees beside the paper's: size and outline, of scans or skeletons; of grown trees where none is
 // named.
 void bench_lighter(const std::vector<std::string>& files);
+// How long the fidelity takes to follow edits of the tree of each scan.
+void bench_fidelity(const std::vector<std::string>& scans, const Settings& settings);
 // Precision, recall, radius and DBH errors on grown trees.
 void bench_synth(const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.

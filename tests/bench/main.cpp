@@ -23,6 +23,7 @@ const char* const kUsage =
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
     "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and papers/002's\n"
+    "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
@@ -60,7 +61,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         }
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
-            word == "--lighter" || word == "--edits" || word == "--help") {
+            word == "--lighter" || word == "--fidelity" || word == "--edits" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -144,6 +145,10 @@ int run(CommandLine line) {
     if (scans.empty()) throw Error("Name a scan.");
     if (line.mode == "--resize") {
         write_resized(scans.front(), line.settings.most_points, line.out);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--fidelity") {
+        bench_fidelity(scans, line.settings);
         return EXIT_SUCCESS;
     }
     if (!line.mode.empty() && line.settings.program.empty())
