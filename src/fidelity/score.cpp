@@ -93,20 +93,6 @@ double mean_distance(const std::vector<Sample>& samples) {
     return sum / static_cast<double>(samples.size());
 }
 
-// About so many of the points, whatever their order.
-std::vector<Vec3> sample_of(const std::vector<Vec3>& points, size_t about) {
-    const double share = static_cast<double>(about) / static_cast<double>(points.size());
-    const auto limit = static_cast<uint64_t>(share * 0x1p63) * 2;
-    std::vector<Vec3> chosen;
-    chosen.reserve(about + about / 4);
-    for (const Vec3& p : points) {
-        const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
-        if (hash_seed(x << 32 | y, std::bit_cast<uint32_t>(p.z)) < limit) chosen.push_back(p);
-    }
-    if (chosen.empty()) chosen = points;
-    return chosen;
-}
-
 template <typename Limit>
 double share_within(const std::vector<Sample>& samples, Limit limit) {
     size_t within = 0;
@@ -122,13 +108,27 @@ Agreement agreement(double threshold, double precision, double recall) {
 
 }  // namespace
 
+std::vector<Vec3> sample_points(const std::vector<Vec3>& points, size_t about) {
+    if (points.size() <= about) return points;
+    const double share = static_cast<double>(about) / static_cast<double>(points.size());
+    const auto limit = static_cast<uint64_t>(share * 0x1p63) * 2;
+    std::vector<Vec3> chosen;
+    chosen.reserve(about + about / 4);
+    for (const Vec3& p : points) {
+        const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
+        if (hash_seed(x << 32 | y, std::bit_cast<uint32_t>(p.z)) < limit) chosen.push_back(p);
+    }
+    if (chosen.empty()) chosen = points;
+    return chosen;
+}
+
 ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Progress* progress,
                      size_t about) {
     if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to score against.");
     const SegmentTree wood(segments_in(tree, tree.frame()));
     const bool same_frame = tree.frame() == cloud.frame;
     const bool whole = about == 0 || about >= cloud.size();
-    const std::vector<Vec3> sample = whole ? std::vector<Vec3>() : sample_of(cloud.positions, about);
+    const std::vector<Vec3> sample = whole ? std::vector<Vec3>() : sample_points(cloud.positions, about);
     const std::vector<Vec3>& chosen = whole ? cloud.positions : sample;
     std::vector<double> errors(chosen.size());
     if (progress) progress->update(0.0, "Scoring");

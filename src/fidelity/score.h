@@ -61,6 +61,10 @@ struct SkeletonScore {
     std::vector<RadiusAgreement> radius_by_thickness;
 };
 
+// About so many of the points (some thousand at least), chosen by their places alone; all where there are no
+// more.
+std::vector<Vec3> sample_points(const std::vector<Vec3>& points, size_t about);
+
 // cloud and tree may lie in different frames; the tree's says what a metre is. `noise`: the scan's range
 // noise in metres. about: roughly how many points to look at, chosen by their places alone; 0 is all. Throws
 // Error for a tree without wood or an empty cloud. O(points log segments).

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fidelity/fidelity.h"
+#include "fidelity/score.h"
 #include "version.h"
 
 #if defined(__unix__) || defined(__APPLE__)
@@ -63,6 +65,30 @@ Json options_json(const ReportDetails& details) {
     json["tree_at"] = pick.position ? vector_json(*pick.position) : Json(nullptr);
     json["one_tree"] = !pick.enabled;
     json["clean"] = clean;
+    return json;
+}
+
+Json part_json(const FidelityPart& part) {
+    return {{"points", part.points},       {"explained", part.explained}, {"median_mm", 1000.0 * part.median},
+            {"p95_mm", 1000.0 * part.p95}, {"length_m", part.length},     {"coverage", part.coverage}};
+}
+
+// Of about so many points of the wood as the fit is of in the editor.
+Json fidelity_json(const Reconstruction& result) {
+    constexpr size_t kPoints = 200000;
+    PointCloud wood;
+    wood.frame = result.cloud.frame;
+    wood.positions = result.cloud.positions;
+    if (!result.wood.empty() && result.leaf_points < wood.size()) wood.keep_only(result.wood);
+    wood.positions = sample_points(wood.positions, kPoints);
+    const Fidelity fidelity = measure_fidelity(result.tree, wood);
+    Json json = part_json(fidelity.all);
+    json["tolerance_m"] = fidelity.tolerance;
+    json["R_s"] = fidelity.skeleton;
+    json["R_s_strict"] = fidelity.skeleton_strict;
+    json["orders"] = Json::array();
+    for (const FidelityPart& part : fidelity.by_order)
+        json["orders"].push_back(part_json(part));
     return json;
 }
 
@@ -148,6 +174,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
                    {"mean_mm", result.fit.mean_mm},
                    {"p95_mm", result.fit.p95_mm},
                    {"explained_2cm", result.fit.explained_2cm}};
+    json["fidelity"] = fidelity_json(result);
     json["warnings"] = result.warnings;
     return dump(json);
 }

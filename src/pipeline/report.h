@@ -35,6 +35,8 @@ struct ReportDetails {
 //   measured_share (of the length), measured_volume_share, triangles, leaves
 //   fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark
 //   (fidelity/score.h)
+//   fidelity {points, explained, median_mm, p95_mm, length_m, coverage, tolerance_m, R_s, R_s_strict,
+//   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
 //   warnings [sentence]
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
