@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <set>
 #include <sstream>
+#include <string_view>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -124,9 +124,15 @@ struct Cameras {
     }
 };
 
-void read_binary(const std::string& cameras, const std::string& images, Cameras& into) {
-    const FileBytes camera_bytes = read_file(cameras);
-    Reader in(cameras, camera_bytes.view());
+// What a file holds, and what it is called.
+struct Source {
+    const std::string& path;
+    std::string_view bytes;
+};
+
+void read_binary(const Source& camera_source, const Source& image_source, Cameras& into) {
+    const std::string &cameras = camera_source.path, &images = image_source.path;
+    Reader in(cameras, camera_source.bytes);
     const auto count = in.value<uint64_t>();
     for (uint64_t i = 0; i < count; i++) {
         const auto id = in.value<uint32_t>();
@@ -142,8 +148,7 @@ void read_binary(const std::string& cameras, const std::string& images, Cameras&
         camera.height = static_cast<int>(height);
         into.add(cameras, id, camera);
     }
-    const FileBytes image_bytes = read_file(images);
-    Reader image_in(images, image_bytes.view());
+    Reader image_in(images, image_source.bytes);
     const auto photos = image_in.value<uint64_t>();
     for (uint64_t i = 0; i < photos; i++) {
         Photo photo;
@@ -160,9 +165,8 @@ void read_binary(const std::string& cameras, const std::string& images, Cameras&
 }
 
 // Lines that are no comments.
-std::vector<std::string> lines_of(const std::string& path) {
-    const FileBytes bytes = read_file(path);
-    std::istringstream in{std::string(bytes.view())};
+std::vector<std::string> lines_of(std::string_view bytes) {
+    std::istringstream in{std::string(bytes)};
     std::vector<std::string> lines;
     for (std::string line; std::getline(in, line);) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -173,8 +177,9 @@ std::vector<std::string> lines_of(const std::string& path) {
     return lines;
 }
 
-void read_text(const std::string& cameras, const std::string& images, Cameras& into) {
-    for (const std::string& line : lines_of(cameras)) {
+void read_text(const Source& camera_source, const Source& image_source, Cameras& into) {
+    const std::string &cameras = camera_source.path, &images = image_source.path;
+    for (const std::string& line : lines_of(camera_source.bytes)) {
         if (line.empty()) continue;
         std::istringstream in(line);
         in.imbue(std::locale::classic());
@@ -195,7 +200,7 @@ void read_text(const std::string& cameras, const std::string& images, Cameras& i
         into.add(cameras, id, camera);
     }
     // Two lines each; the second holds the points that the photo saw, and may be empty.
-    const std::vector<std::string> lines = lines_of(images);
+    const std::vector<std::string> lines = lines_of(image_source.bytes);
     for (size_t i = 0; i < lines.size(); i += 2) {
         std::istringstream in(lines[i]);
         in.imbue(std::locale::classic());
@@ -287,20 +292,13 @@ DVec3 Photo::to_camera(const DVec3& world) const {
     return world + rotation[0] * t + glm::cross(u, t) + translation;
 }
 
-PhotoModel read_photo_model(const std::string& folder) {
-    const auto file = [&](const char* name) { return utf8_of(path_of(folder) / name); };
-    const auto there = [&](const char* name) {
-        std::error_code failure;
-        return std::filesystem::is_regular_file(path_of(file(name)), failure);
-    };
+PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, bool text,
+                             const std::string& folder) {
     Cameras into;
-    if (there("cameras.bin") && there("images.bin"))
-        read_binary(file("cameras.bin"), file("images.bin"), into);
-    else if (there("cameras.txt") && there("images.txt"))
-        read_text(file("cameras.txt"), file("images.txt"), into);
-    else
-        throw Error("There is no COLMAP model with cameras in '" + folder +
-                    "': it needs cameras.bin and images.bin, or both as .txt.");
+    const std::string ending = text ? ".txt" : ".bin";
+    const std::string camera_path = utf8_of(path_of(folder) / ("cameras" + ending));
+    const std::string image_path = utf8_of(path_of(folder) / ("images" + ending));
+    (text ? read_text : read_binary)({camera_path, cameras}, {image_path, images}, into);
     PhotoModel& model = into.model;
     if (model.photos.empty()) throw Error("The COLMAP model in '" + folder + "' has no photos.");
     std::sort(model.photos.begin(), model.photos.end(),
@@ -310,6 +308,22 @@ PhotoModel read_photo_model(const std::string& folder) {
             throw Error("The COLMAP model in '" + folder + "' has the photo " +
                         quote_word(model.photos[i].name) + " twice.");
     return model;
+}
+
+PhotoModel read_photo_model(const std::string& folder) {
+    for (const bool text : {false, true}) {
+        const std::string ending = text ? ".txt" : ".bin";
+        const std::filesystem::path cameras = path_of(folder) / ("cameras" + ending);
+        const std::filesystem::path images = path_of(folder) / ("images" + ending);
+        std::error_code failure;
+        if (!std::filesystem::is_regular_file(cameras, failure) ||
+            !std::filesystem::is_regular_file(images, failure))
+            continue;
+        const FileBytes camera_bytes = read_file(utf8_of(cameras)), image_bytes = read_file(utf8_of(images));
+        return parse_photo_model(camera_bytes.view(), image_bytes.view(), text, folder);
+    }
+    throw Error("There is no COLMAP model with cameras in '" + folder +
+                "': it needs cameras.bin and images.bin, or both as .txt.");
 }
 
 }  // namespace treerec

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -52,5 +53,9 @@ struct PhotoModel {
 // Reads cameras.bin and images.bin, or else cameras.txt and images.txt, of a folder. Throws Error with a
 // sentence where they are missing, damaged, or name a camera model that is not known here.
 PhotoModel read_photo_model(const std::string& folder);
+
+// The same from the files' contents. folder: what sentences call it.
+PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, bool text,
+                             const std::string& folder);
 
 }  // namespace treerec
