@@ -10,7 +10,9 @@
 #include "convert.h"
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "file_bytes.h"
 #include "pipeline/export.h"
+#include "pipeline/html_report.h"
 #include "pipeline/report.h"
 #include "reconstruct_options.h"
 
@@ -82,8 +84,9 @@ void TreeReconstructor::_fail(const std::string& p_sentence) {
     error_message_ = p_sentence;
 }
 
-static std::string write_report(const treerec::Reconstruction& p_result, const ParsedOptions& p_options,
-                                const std::string& p_path, const treerec::Progress& p_progress) {
+static treerec::ReportDetails report_details(const treerec::Reconstruction& p_result,
+                                             const ParsedOptions& p_options, const std::string& p_path,
+                                             const treerec::Progress& p_progress) {
     treerec::ReportDetails details;
     details.scan_path = p_path;
     details.options = p_options.pipeline;
@@ -96,7 +99,7 @@ static std::string write_report(const treerec::Reconstruction& p_result, const P
     treerec::TreeExporter counter(p_result.tree, look, &p_progress);
     details.triangles = counter.triangles();
     details.leaf_count = counter.leaves();
-    return treerec::report_json(p_result, details);
+    return details;
 }
 
 Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, const Dictionary& p_options,
@@ -107,8 +110,7 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
         fraction_ = 0.0;
         stage_.clear();
         report_json_.clear();
-        cloud_ = treerec::PointCloud();
-        raw_ = treerec::Tree();
+        result_ = std::make_shared<treerec::Reconstruction>();
         steps_.clear();
     }
     p_listener.check();
@@ -117,7 +119,8 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     treerec::Reconstruction result =
         treerec::reconstruct_file(file_path(p_path), options.pipeline, &reconstructing);
     p_listener.update(kReportBegins, "Reporting");
-    const std::string report = write_report(result, options, to_std(p_path), p_listener);
+    const treerec::ReportDetails details = report_details(result, options, to_std(p_path), p_listener);
+    const std::string report = treerec::report_json(result, details);
 
     Ref<TreeReconstruction> made;
     made.instantiate();
@@ -125,8 +128,8 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     const std::string leaves = treerec::chosen_leaves(to_std(options.leaves), result);
     made->set_leaf_preset(to_godot(leaves));
     made->set("leaf_size", treerec::suited_leaves(leaves, result).leaf_size);
-    made->set_tree(std::move(result.tree));
-    made->set_leaf_density(std::move(result.foliage));
+    made->set_tree(result.tree);
+    made->set_leaf_density(result.foliage);
     Dictionary provenance;
     provenance["source"] = p_path;
     provenance["options"] = p_options.duplicate();
@@ -136,10 +139,10 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
 
     const std::lock_guard lock(mutex_);
     report_json_ = report;
-    cloud_ = std::move(result.cloud);
-    raw_ = std::move(result.raw);
     steps_ = std::move(result.steps);
     voxel_ = result.voxel;
+    result_ = std::make_shared<treerec::Reconstruction>(std::move(result));
+    details_ = std::make_shared<treerec::ReportDetails>(details);
     fraction_ = 1.0;
     return made;
 }
@@ -193,6 +196,32 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
     }
 }
 
+Error TreeReconstructor::save_html_report(const String& p_path) {
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
+    try {
+        Listener listener(this);
+        listener.check();
+        std::shared_ptr<const treerec::Reconstruction> result;
+        std::shared_ptr<const treerec::ReportDetails> details;
+        {
+            const std::lock_guard lock(mutex_);
+            result = result_;
+            details = details_;
+        }
+        if (result->tree.empty()) {
+            throw treerec::Error("There is nothing to report on; call reconstruct_file() first.");
+        }
+        const std::string path = file_path(p_path);
+        treerec::require_writable(path);
+        treerec::write_file(path, treerec::report_html(*result, *details, &listener), &listener);
+        return OK;
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return FAILED;
+    }
+}
+
 TypedArray<Dictionary> TreeReconstructor::get_option_list() {
     return list_reconstruct_options();
 }
@@ -229,11 +258,11 @@ Dictionary TreeReconstructor::get_report() const {
 PackedVector3Array TreeReconstructor::get_cloud_points() const {
     const std::lock_guard lock(mutex_);
     PackedVector3Array points;
-    points.resize(int64_t(cloud_.size()));
+    points.resize(int64_t(result_->cloud.size()));
     static_assert(sizeof(treerec::Vec3) == sizeof(Vector3));
-    if (!cloud_.empty()) {
-        std::memcpy(static_cast<void*>(points.ptrw()), cloud_.positions.data(),
-                    cloud_.size() * sizeof(Vector3));
+    if (!result_->cloud.empty()) {
+        std::memcpy(static_cast<void*>(points.ptrw()), result_->cloud.positions.data(),
+                    result_->cloud.size() * sizeof(Vector3));
     }
     return points;
 }
@@ -241,9 +270,9 @@ PackedVector3Array TreeReconstructor::get_cloud_points() const {
 PackedColorArray TreeReconstructor::get_cloud_colors() const {
     const std::lock_guard lock(mutex_);
     PackedColorArray colors;
-    colors.resize(int64_t(cloud_.colors.size()));
+    colors.resize(int64_t(result_->cloud.colors.size()));
     Color* write = colors.ptrw();
-    for (const treerec::Color8& color : cloud_.colors) {
+    for (const treerec::Color8& color : result_->cloud.colors) {
         *write++ = Color(float(color[0]) / 255.0f, float(color[1]) / 255.0f, float(color[2]) / 255.0f);
     }
     return colors;
@@ -253,7 +282,7 @@ Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
     Ref<TreeReconstruction> skeleton;
     skeleton.instantiate();
     const std::lock_guard lock(mutex_);
-    skeleton->set_tree(raw_);
+    skeleton->set_tree(result_->raw);
     return skeleton;
 }
 
@@ -263,6 +292,7 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis"), &TreeReconstructor::import_skeleton,
                          DEFVAL("z"));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path"), &TreeReconstructor::export_file);
+    ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);
     ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);

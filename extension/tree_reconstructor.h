@@ -6,14 +6,17 @@
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <godot_cpp/variant/typed_array.hpp>
+#include <memory>
 #include <mutex>
 #include <string>
 
 #include "pipeline/reconstruct.h"
+#include "pipeline/report.h"
 #include "tree_reconstruction.h"
 
-// Turns scans into trees, in the editor. reconstruct_file(), import_skeleton() and export_file() may run on
-// any thread, one at a time; the other methods may be called from any other thread meanwhile.
+// Turns scans into trees, in the editor. reconstruct_file(), import_skeleton(), export_file() and
+// save_html_report() may run on any thread, one at a time; the other methods may be called from any other
+// thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -23,6 +26,7 @@ class TreeReconstructor : public godot::RefCounted {
     godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,
                                                    const godot::String& p_up_axis);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path);
+    godot::Error save_html_report(const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_option_list();
 
     void cancel();
@@ -58,8 +62,9 @@ class TreeReconstructor : public godot::RefCounted {
     std::string stage_;
     std::string error_message_;
     std::string report_json_;
-    treerec::PointCloud cloud_;
-    treerec::Tree raw_;
+    // Of the last reconstruct_file() that made a tree; both never null.
+    std::shared_ptr<const treerec::Reconstruction> result_ = std::make_shared<treerec::Reconstruction>();
+    std::shared_ptr<const treerec::ReportDetails> details_ = std::make_shared<treerec::ReportDetails>();
     std::vector<treerec::FloodStep> steps_;
     double voxel_ = 0.0;
     int64_t last_signal_ms_ = 0;

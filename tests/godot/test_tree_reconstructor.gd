@@ -34,6 +34,23 @@ func test_reconstructs_a_scan() -> void:
 	check_equal(made.provenance["source"], path, "the source")
 
 
+func test_saves_a_page_to_send_to_somebody() -> void:
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var page: String = folder.path_join("report.html")
+	check_equal(reconstructor.save_html_report(page), FAILED, "a report on nothing")
+	check(
+		reconstructor.get_error_message().contains("call reconstruct_file() first"), "No sentence."
+	)
+	reconstructor.reconstruct_file(write_scan("scan.xyz"))
+	check_equal(reconstructor.save_html_report(page), OK, "the report")
+	var html: String = FileAccess.get_file_as_string(page)
+	check(html.begins_with("<!DOCTYPE html>") and html.ends_with("</html>\n"), "No page.")
+	check_equal(html.count("data:image/png;base64,"), 6, "the pictures")
+	check_equal(reconstructor.get_progress(), 1.0, "the progress")
+	check(reconstructor.get_cloud_points().size() > 1000, "The cloud is gone.")
+	check_equal(reconstructor.save_html_report("res://none/such/r.html"), FAILED, "in no folder")
+
+
 func test_the_same_seed_gives_the_same_tree() -> void:
 	var path: String = write_scan("scan.xyz")
 	var trees: Array[TreeReconstruction] = []
