@@ -94,6 +94,10 @@ class TreeReconstruction : public godot::Resource {
     godot::Dictionary measure() const;
 #ifdef TREEREC_EDITOR
     godot::Dictionary measure_fidelity(const godot::PackedVector3Array& p_points, double p_tolerance) const;
+    // tree_completion.cpp
+    godot::Ref<TreeEdit> complete_branch(const godot::PackedVector3Array& p_points, int p_id,
+                                         const godot::Vector3& p_direction,
+                                         const godot::Dictionary& p_options);
 #endif
 
     // Builders.

@@ -6,6 +6,7 @@
 
 #include "convert.h"
 #include "error.h"
+#include "tree_edit.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -251,6 +252,8 @@ void TreeReconstruction::_bind_methods() {
 #ifdef TREEREC_EDITOR
     ClassDB::bind_method(D_METHOD("measure_fidelity", "points", "tolerance"),
                          &TreeReconstruction::measure_fidelity, DEFVAL(0.02));
+    ClassDB::bind_method(D_METHOD("complete_branch", "points", "id", "direction", "options"),
+                         &TreeReconstruction::complete_branch, DEFVAL(Dictionary()));
 #endif
 
     ClassDB::bind_method(D_METHOD("build_mesh_arrays", "lod"), &TreeReconstruction::build_mesh_arrays,

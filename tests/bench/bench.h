@@ -38,6 +38,13 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
 void bench_lighter(const std::vector<std::string>& files);
 // How long the fidelity takes to follow edits of the tree of each scan.
 void bench_fidelity(const std::vector<std::string>& scans, const Settings& settings);
+// The corrected skeleton of a scan, in the same coordinates: `folder`/STEM_skeleton_corrected….csv; or none.
+std::string truth_of(const std::string& scan, const std::string& folder);
+// Both skeletonizers on every scan.
+void bench_methods(const std::vector<std::string>& scans, const Settings& settings);
+// How the length error falls while somebody who knows the truth accepts or skips what is proposed as missing,
+// and cuts what is proposed as doubtful.
+void bench_clicks(const std::vector<std::string>& scans, const Settings& settings);
 // Precision, recall, radius and DBH errors on grown trees.
 void bench_synth(const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.

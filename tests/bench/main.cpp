@@ -20,6 +20,8 @@ const char* const kUsage =
     "       bench --scaling [SCAN]             whole runs of 10k to 10M points made from a scan\n"
     "       bench --resize N OUT SCAN          makes such a cloud, to look at or to run --beside on\n"
     "       bench --scans [SCAN…|FOLDER]       one line per scan: time, memory, measurements, fit\n"
+    "       bench --methods [SCAN…|FOLDER]     both skeletonizers on every scan: time, fidelity, nodes\n"
+    "       bench --clicks [SCAN…]             length error as proposals are accepted (needs --truth)\n"
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
     "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and papers/002's\n"
@@ -29,7 +31,7 @@ const char* const kUsage =
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
-    "         --truth FOLDER (of --scans: its STEM_skeleton_corrected*.csv are compared),\n"
+    "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
     "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
 
@@ -61,7 +63,8 @@ CommandLine parse(const std::vector<std::string>& words) {
         }
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
-            word == "--lighter" || word == "--fidelity" || word == "--edits" || word == "--help") {
+            word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
+            word == "--edits" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -138,8 +141,8 @@ int run(CommandLine line) {
         bench_lighter(files_of(line.scans));
         return EXIT_SUCCESS;
     }
-    if (line.scans.empty() && line.mode == "--scans")
-        throw Error("Name scans, or a folder of scans, after --scans.");
+    if (line.scans.empty() && (line.mode == "--scans" || line.mode == "--methods" || line.mode == "--clicks"))
+        throw Error("Name scans, or a folder of scans, after " + line.mode + ".");
     if (line.scans.empty() && !line.sample.empty()) line.scans.push_back(line.sample);
     const std::vector<std::string> scans = files_of(line.scans);
     if (scans.empty()) throw Error("Name a scan.");
@@ -149,6 +152,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--fidelity") {
         bench_fidelity(scans, line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--methods" || line.mode == "--clicks") {
+        line.mode == "--methods" ? bench_methods(scans, line.settings) : bench_clicks(scans, line.settings);
         return EXIT_SUCCESS;
     }
     if (!line.mode.empty() && line.settings.program.empty())

@@ -35,17 +35,6 @@ double short_tips(const Tree& tree) {
     return tips ? static_cast<double>(brief) / static_cast<double>(tips) : 0.0;
 }
 
-// The corrected skeleton of a scan, in the same coordinates: `folder`/STEM_skeleton_corrected….csv; or none.
-std::string truth_of(const std::string& scan, const std::string& folder) {
-    if (folder.empty()) return "";
-    const std::string start = stem_of(scan) + "_skeleton_corrected";
-    for (const auto& entry : std::filesystem::directory_iterator(path_of(folder))) {
-        const std::string path = utf8_of(entry.path());
-        if (extension_of(path) == "csv" && stem_of(path).starts_with(start)) return path;
-    }
-    return "";
-}
-
 std::string last_line(const std::string& text) {
     const size_t end = text.find_last_not_of("\r\n ");
     if (end == std::string::npos) return "";
@@ -74,6 +63,16 @@ void print_fit(const Tree& tree, const Place& place) {
 }
 
 }  // namespace
+
+std::string truth_of(const std::string& scan, const std::string& folder) {
+    if (folder.empty()) return "";
+    const std::string start = stem_of(scan) + "_skeleton_corrected";
+    for (const auto& entry : std::filesystem::directory_iterator(path_of(folder))) {
+        const std::string path = utf8_of(entry.path());
+        if (extension_of(path) == "csv" && stem_of(path).starts_with(start)) return path;
+    }
+    return "";
+}
 
 // Surface figures are of all the scan's points, also of those that cleaning removes.
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings) {
