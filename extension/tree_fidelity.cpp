@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <godot_cpp/classes/array_mesh.hpp>
 #include <godot_cpp/classes/project_settings.hpp>
 #include <godot_cpp/variant/packed_float32_array.hpp>
 #include <godot_cpp/variant/packed_int32_array.hpp>
@@ -12,6 +13,7 @@
 #include "fidelity/doubtful.h"
 #include "fidelity/picture.h"
 #include "fidelity/unexplained.h"
+#include "mesh/branch_tubes.h"
 #include "tree/branches.h"
 
 using namespace godot;
@@ -169,17 +171,34 @@ PackedFloat32Array TreeFidelity::get_node_errors() const {
 PackedColorArray TreeFidelity::get_node_colors() const {
     const std::lock_guard lock(mutex_);
     return guarded(PackedColorArray(), [&] {
-        // Wood that the scan says nothing about.
-        const Color unseen(0.55f, 0.55f, 0.58f);
         const treerec::Fidelity& fidelity = _current();
         PackedColorArray colors;
         for (const treerec::NodeId id : tree_->depth_first()) {
             const double error = fidelity.node_error[size_t(id)];
             colors.push_back(fidelity.node_points[size_t(id)] > 0
                                  ? to_color(treerec::heat_color(error, options_.tolerance))
-                                 : unseen);
+                                 : to_color(treerec::kUnseenWood));
         }
         return colors;
+    });
+}
+
+Array TreeFidelity::build_heat_mesh_arrays(int p_lod) const {
+    ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
+                        vformat("There is no level of detail %d; 0 is the finest.", p_lod));
+    const std::lock_guard lock(mutex_);
+    return guarded(Array(), [&] {
+        const treerec::Fidelity& fidelity = _current();
+        treerec::TubeOptions options;
+        options.level = p_lod;
+        const treerec::Mesh bark = treerec::build_branch_tubes(*tree_, options);
+        PackedColorArray colors;
+        for (const treerec::Rgb& color : treerec::bark_heat(*tree_, fidelity, bark)) {
+            colors.push_back(to_color(color));
+        }
+        Array arrays = to_surface_arrays(bark);
+        arrays[Mesh::ARRAY_COLOR] = colors;
+        return arrays;
     });
 }
 
@@ -295,6 +314,8 @@ void TreeFidelity::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_point_colors"), &TreeFidelity::get_point_colors);
     ClassDB::bind_method(D_METHOD("get_node_errors"), &TreeFidelity::get_node_errors);
     ClassDB::bind_method(D_METHOD("get_node_colors"), &TreeFidelity::get_node_colors);
+    ClassDB::bind_method(D_METHOD("build_heat_mesh_arrays", "lod"), &TreeFidelity::build_heat_mesh_arrays,
+                         DEFVAL(0));
     ClassDB::bind_method(D_METHOD("get_branches"), &TreeFidelity::get_branches);
     ClassDB::bind_method(D_METHOD("get_levels", "count"), &TreeFidelity::get_levels, DEFVAL(4));
     ClassDB::bind_method(D_METHOD("get_unexplained"), &TreeFidelity::get_unexplained);

@@ -28,6 +28,7 @@ class TreeFidelity : public godot::RefCounted {
     godot::PackedColorArray get_point_colors() const;
     godot::PackedFloat32Array get_node_errors() const;
     godot::PackedColorArray get_node_colors() const;
+    godot::Array build_heat_mesh_arrays(int p_lod) const;
     godot::TypedArray<godot::Dictionary> get_branches() const;
     godot::TypedArray<godot::Dictionary> get_levels(int p_count) const;
     godot::TypedArray<godot::Dictionary> get_unexplained() const;

@@ -161,7 +161,9 @@ Fidelity sum_up(const Tree& tree, const MeasuredPoints& measured, const Fidelity
         describe(result.by_order[order], by_order.of(order), options.tolerance);
     if (progress) progress->check();
     describe(result.all, by_order.distances, options.tolerance);
+    if (progress) progress->check();
     add_coverage(tree, list, measured, options, result, progress);
+    if (progress) progress->check();
     add_nodes(tree, bark, result);
 
     result.point_error.resize(bark.size());

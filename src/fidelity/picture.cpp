@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "error.h"
+#include "fidelity/segment_tree.h"
+#include "geometry/parallel.h"
 
 namespace treerec {
 
@@ -167,6 +169,30 @@ Rgb heat_color(double distance, double tolerance) {
     for (size_t c = 0; c < 3; c++)
         color[c] = static_cast<uint8_t>(std::lround((1.0 - t) * kColors[i][c] + t * kColors[i + 1][c]));
     return color;
+}
+
+std::vector<Rgb> bark_heat(const Tree& tree, const Fidelity& fidelity, const Mesh& bark,
+                           const Progress* progress) {
+    if (fidelity.node_points.size() != static_cast<size_t>(tree.id_end()))
+        throw Error("The fidelity was measured with another tree.");
+    const SegmentTree wood(wood_segments(tree));
+    std::vector<Rgb> colors(bark.positions.size(), kUnseenWood);
+    if (wood.empty()) return colors;
+    parallel_for(colors.size(), 1024, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        int32_t hint = -1;
+        for (size_t i = begin; i < end; i++) {
+            const DVec3 p(bark.positions[i]);
+            BarkHit hit;
+            if (hint >= 0) hit = {wood.segment(hint).child, bark_error(wood.segment(hint), p), hint};
+            wood.find_bark(p, hit);
+            hint = hit.segment;
+            const size_t node = static_cast<size_t>(hit.child);
+            if (fidelity.node_points[node] > 0)
+                colors[i] = heat_color(static_cast<double>(fidelity.node_error[node]), fidelity.tolerance);
+        }
+    });
+    return colors;
 }
 
 }  // namespace treerec

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fidelity/fidelity.h"
 #include "geometry/bounds.h"
 #include "geometry/vec.h"
 #include "mesh/image.h"
@@ -62,5 +63,11 @@ class Picture {
 
 // Of a distance to the bark: blue at none, pale at the tolerance, red at three times it and beyond.
 Rgb heat_color(double distance, double tolerance);
+
+// By vertex of the tree's bark (mesh/branch_tubes.h): the colour of the mean distance of the points that lie
+// nearest to the wood there, and grey for wood that no point is nearest to. Linear but for the search.
+std::vector<Rgb> bark_heat(const Tree& tree, const Fidelity& fidelity, const Mesh& bark,
+                           const Progress* progress = nullptr);
+inline constexpr Rgb kUnseenWood = {140, 140, 148};
 
 }  // namespace treerec

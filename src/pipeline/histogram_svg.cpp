@@ -40,6 +40,20 @@ std::string fixed(double value, int digits) {
     return failure == std::errc() ? std::string(buffer, end) : "-";
 }
 
+void trim(Histogram& histogram) {
+    constexpr size_t kLeastBins = 4;
+    size_t bins = histogram.edges.size() - 1;
+    const auto empty = [&](size_t bin) {
+        return std::all_of(histogram.values.begin(), histogram.values.end(),
+                           [bin](const std::vector<double>& values) { return values[bin] == 0.0; });
+    };
+    while (bins > kLeastBins && empty(bins - 1))
+        bins--;
+    histogram.edges.resize(bins + 1);
+    for (std::vector<double>& values : histogram.values)
+        values.resize(bins);
+}
+
 std::string histogram_svg(const Histogram& histogram) {
     const size_t bins = histogram.edges.size() - 1;
     std::vector<double> totals(bins, 0.0);

@@ -18,6 +18,8 @@ struct Histogram {
 
 // The colour of the class (of an order of branching).
 const char* class_color(size_t c);
+// Leaves out the upper bins that hold nothing, but for the first four.
+void trim(Histogram& histogram);
 std::string histogram_svg(const Histogram& histogram);
 
 // A number with so many digits after the point; "-" for one that is not finite.

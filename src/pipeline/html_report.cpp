@@ -53,8 +53,8 @@ figcaption{color:var(--soft);font-size:13px;margin-top:4px}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums;font-size:14px}
 th{font-weight:600;color:var(--soft);font-size:13px}
 th,td{text-align:right;padding:5px 10px;border-bottom:1px solid var(--line);white-space:nowrap}
-th:first-child,td:first-child,.words{text-align:left;padding-left:0}
-.words{white-space:normal}
+th:first-child,td:first-child{text-align:left;padding-left:0}
+.words{text-align:left;white-space:normal;padding-left:28px}
 tr.sum td{font-weight:600;border-bottom:0}
 .bar{display:inline-block;width:64px;height:8px;border-radius:4px;background:var(--line);margin-left:8px;vertical-align:middle}
 .bar i{display:block;height:8px;border-radius:4px;background:var(--accent)}
@@ -264,7 +264,9 @@ std::string heat_pictures(const Page& page, const Bounds& box, Progress& progres
     html += "</p><div class=\"row four\">";
     const char* const names[] = {"Front", "From the right", "Back", "From the left"};
     for (int side = 0; side < 4; side++) {
-        const PictureView view = view_of(box, 0.5 * kPi * side, pixels_for(box));
+        PictureView view = view_of(box, 0.5 * kPi * side, pixels_for(box));
+        // As wide as the widest, so that the page shows all at one scale.
+        view.width = std::max(view.width, view_of(box, 0.5 * kPi * (side + 1), 16).width);
         Picture picture(view);
         // Behind all wood, which they would hide.
         std::vector<Vec3> behind = leaves.points;
@@ -350,6 +352,8 @@ std::string histograms(const Page& page) {
                 glm::distance(node.position, tree.node(node.parent).position);
         }
     }
+    trim(wood);
+    trim(count);
     std::string html =
         "<section><h2>Radius and length by order</h2><div class=\"pair\"><div><p>Metres of wood by "
         "its radius</p>" +
@@ -383,10 +387,11 @@ std::string review(const Page& page) {
         html += "</table></div>";
     }
     if (page.doubtful.empty()) return html + "<p>No branch is doubtful.</p></section>";
-    html += "<p style=\"margin-top:14px\">" + std::to_string(page.doubtful.size()) +
-            " branches that the scan hardly supports; the longest:</p><div class=\"scroll\"><table><tr>" +
-            cells({"node", "length, m", "points", "bridged, m", "turns by"}, "th") +
-            "<th class=\"words\">why</th></tr>";
+    html +=
+        "<p style=\"margin-top:14px\">" + std::to_string(page.doubtful.size()) +
+        " branches that the scan hardly supports; the most doubtful:</p><div class=\"scroll\"><table><tr>" +
+        cells({"node", "length, m", "points", "bridged, m", "turns by"}, "th") +
+        "<th class=\"words\">why</th></tr>";
     for (size_t i = 0; i < std::min(kMostListed, page.doubtful.size()); i++) {
         const DoubtfulBranch& branch = page.doubtful[i];
         html += "<tr>" +
@@ -415,7 +420,9 @@ std::string made_how(const Page& page) {
     const auto entry = [&](const char* name, const std::string& value) {
         html += "<dt>" + std::string(name) + "</dt><dd>" + value + "</dd>";
     };
-    entry("Scan", words(page.details.scan_path) + " (" + words(r.read.format) + ")");
+    // Not the folders: the page goes to others.
+    entry("Scan",
+          words(utf8_of(path_of(page.details.scan_path).filename())) + " (" + words(r.read.format) + ")");
     entry("Points", std::to_string(r.points_read) + " read, " + std::to_string(r.cloud.size()) +
                         " after cleaning, " + std::to_string(r.leaf_points) + " of them leaves");
     entry("Cleaning removed", removed.empty() ? "nothing" : words(removed));

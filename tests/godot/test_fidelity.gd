@@ -48,6 +48,10 @@ func test_it_follows_edits() -> void:
 	check_equal(fidelity.get_node_colors().size(), nodes, "the nodes' colors")
 	check_equal(fidelity.get_node_errors()[0], -1.0, "the root's error")
 	check_equal(fidelity.get_branches().size(), 2, "the branches")
+	var arrays: Array = fidelity.build_heat_mesh_arrays()
+	var heat: PackedColorArray = arrays[Mesh.ARRAY_COLOR]
+	check_equal(heat.size(), arrays[Mesh.ARRAY_VERTEX].size(), "the colors of the bark")
+	check(heat[heat.size() / 2].b > heat[heat.size() / 2].r, "Bark on its points is not blue.")
 	check_equal(fidelity.get_branches()[1]["order"], 1, "the order")
 	var levels: Array[Dictionary] = fidelity.get_levels(2)
 	check_equal(levels[0]["nodes"], nodes, "the nodes of the finest level")
