@@ -139,6 +139,10 @@ void print_json(const ScanReport& report, const Tree& tree) {
 }
 
 void print_part(const char* name, const FidelityPart& part) {
+    if (part.points == 0) {
+        std::printf("%-12s         no points of %8.2f m2\n", name, part.bark);
+        return;
+    }
     std::printf(
         "%-12s %9zu points %6.1f %% explained, median %6.1f, 95 %% within %7.1f mm, %5.1f %% of %8.2f m2 "
         "seen\n",
