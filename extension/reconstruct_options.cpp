@@ -218,6 +218,8 @@ const Option kOptions[] = {
      "Edge of the flood's voxels; 0 chooses by the cloud."},
     {"flood_steps", OPTION_MEMBER(skeleton.keep_steps, bool), PROPERTY_HINT_NONE, "",
      "Keeps every step of the flood, for get_flood_step()."},
+    {"complete", OPTION_MEMBER(complete, bool), PROPERTY_HINT_NONE, "",
+     "Looks again for branches where points are left over that the tree does not explain."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Keeps at most one point per cell of this size; 0 chooses by the cloud."},
     {"minimum_branch", OPTION_MEMBER(skeleton.minimum_branch, double), PROPERTY_HINT_RANGE,

@@ -96,6 +96,7 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_fragments = clean && !arguments.has("--no-clean-fragments");
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
     options.clean.pick = pick_from(arguments);
+    options.complete = arguments.has("--complete");
     options.tell_leaves = !arguments.has("--all-wood");
     // Enough for the summary; a report tells more exactly.
     if (!arguments.has("--report")) options.score_points = 1500;
@@ -168,6 +169,7 @@ const Command& reconstruct_command() {
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
+         {"--complete", "", "look again for branches where points are left over"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
          {"--no-clean", "", "leave out all cleaning, or one step of it:"},

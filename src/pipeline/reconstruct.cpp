@@ -9,6 +9,7 @@
 #include "exchange/tree_files.h"
 #include "scan/check_shape.h"
 #include "scan/wood_leaf.h"
+#include "skeleton/complete_all.h"
 
 namespace treerec {
 
@@ -20,6 +21,7 @@ constexpr double kOrientEnd = 0.15;
 constexpr double kCleanEnd = 0.30;
 constexpr double kLeavesEnd = 0.40;
 constexpr double kSkeletonEnd = 0.97;
+constexpr double kCompletedEnd = 0.98;
 
 // Below these shares the user is told: of explained points, and of the wood's volume whose radius was
 // measured. The sparsest scans of trees reach 0.02 of the latter, houses and balls 0.003.
@@ -145,8 +147,16 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
         result.wood = std::move(told.leaf);
         clock.stop("Foliage", result.leaf_points);
     }
+    if (options.complete && !told.fronds) {
+        SubProgress completing(progress, kSkeletonEnd, kCompletedEnd);
+        const CompletedTree walked = complete_all(result.tree, result.cloud, {}, result.wood, &completing);
+        result.completed = walked.branches.size();
+        for (const Completion& branch : walked.branches)
+            result.completed_length += branch.length;
+        clock.stop("Completion", result.tree.size());
+    }
     const PointCloud& judged = wood.empty() ? result.cloud : wood;
-    SubProgress scoring(progress, kSkeletonEnd, 1.0);
+    SubProgress scoring(progress, kCompletedEnd, 1.0);
     result.measured = measure(result.tree);
     result.fit = score_scan(result.tree, judged, 0.0, &scoring, options.score_points);
     const bool unexplained = result.fit.explained_2cm < kLeastExplained;

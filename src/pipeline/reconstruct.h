@@ -23,6 +23,9 @@ struct ReconstructOptions {
     ReadCloudOptions read;
     OrientOptions orient;
     CleanOptions clean;
+    // Walk over what the tree does not explain and add what is found (skeleton/complete_all.h); not for
+    // palms.
+    bool complete = false;
     bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;
     size_t score_points = 200000;  // about how many points the fit is measured on
@@ -43,6 +46,8 @@ struct Reconstruction {
     CloudKind kind = CloudKind::kSurface;
     bool kind_told = false;
     std::vector<FloodStep> steps;  // in the tree's frame
+    size_t completed = 0;          // branches that were added afterwards
+    double completed_length = 0.0;
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;

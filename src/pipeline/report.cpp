@@ -60,6 +60,7 @@ Json options_json(const ReportDetails& details) {
     json["columns"] = options.read.columns;
     json["leaves"] = details.leaves;
     json["tell_leaves"] = options.tell_leaves;
+    json["complete"] = options.complete;
     const PickOptions& pick = options.clean.pick;
     json["tree"] = !pick.enabled || pick.position ? Json(nullptr) : Json(pick.number);
     json["tree_at"] = pick.position ? vector_json(*pick.position) : Json(nullptr);
@@ -150,6 +151,8 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["trees"] = trees;
     json["tree_taken"] = trees.empty() ? Json(nullptr) : Json(result.clean.pick.taken + 1);
     json["spacing_m"] = result.spacing;
+    json["completed_branches"] = result.completed;
+    json["completed_length_m"] = result.completed_length;
     if (result.voxel > 0.0) {
         json["voxel_m"] = result.voxel;
         json["points_are"] = !result.kind_told                    ? "surface, probably"

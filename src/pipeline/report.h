@@ -20,7 +20,7 @@ struct ReportDetails {
 // report.json, UTF-8, numbers finite or null. Keys:
 //   format_version 1, version, scan, scan_format, seed
 //   options {up, scale, known_height_m, known_length_m, skeleton, voxel_m (of a flood), spacing_m, columns,
-//   leaves, tell_leaves,
+//   leaves, tell_leaves, complete,
 //     tree (number; null where a place or no tree was asked for), tree_at [x y z], one_tree, clean}
 //   points_read, points (after cleaning), leaf_points and leaf_share (of these), foliage_cells,
 //   removed {step: points}
@@ -28,6 +28,7 @@ struct ReportDetails {
 //   its scale), origin [x y z in scan coordinates]
 //   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
 //   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
+//   completed_branches, completed_length_m (option complete: what was added afterwards)
 //   voxel_m, points_are "surface", "solid" or "surface, probably" (of a flood alone)
 //   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
 //   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than breast

@@ -36,6 +36,22 @@ TEST_F(CliFlood, FloodsAndReportsItsVoxels) {
     EXPECT_FALSE(other.contains("voxel_m"));
 }
 
+TEST_F(CliFlood, CompletesWhatIsLeftOver) {
+    ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
+    // Voxels as wide as twigs are apart leave much over.
+    const std::string words = "reconstruct s/scan.ply --all-wood --skeleton flood --voxel 0.12 --quiet ";
+    ASSERT_EQ(run(words + "-o out/a.txt --report out/a.json").code, 0);
+    ASSERT_EQ(run(words + "-o out/b.txt --report out/b.json --complete").code, 0);
+    const auto before = nlohmann::json::parse(get("out/a.json"));
+    const auto after = nlohmann::json::parse(get("out/b.json"));
+    EXPECT_EQ(before["completed_branches"], 0);
+    EXPECT_GT(after["completed_branches"], 0);
+    EXPECT_GT(after["fit"]["explained_2cm"], before["fit"]["explained_2cm"]);
+    EXPECT_NEAR(after["length_m"].get<double>(),
+                before["length_m"].get<double>() + after["completed_length_m"].get<double>(),
+                0.01 * after["length_m"].get<double>());
+}
+
 TEST_F(CliFlood, RefusesWhatMakesNoSense) {
     ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
     EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton voxels").code, 2);
