@@ -8,6 +8,7 @@
 
 #include "fidelity/segment_tree.h"
 #include "skeleton/assemble.h"
+#include "skeleton/bark.h"
 #include "skeleton/flood_limbs.h"
 #include "skeleton/flood_skeleton.h"
 #include "skeleton/radii.h"
@@ -23,6 +24,8 @@ constexpr double kMostAngle = 1.5;    // radians
 constexpr double kAside = 2.0;        // a place straight aside counts as so many times farther, and once
 constexpr double kGapVoxels = 6.0;    // the flood crosses gaps so wide,
 constexpr double kStartVoxels = 4.0;  // and a first step so long over nothing is a guess
+constexpr double kStripVoxels = 1.5;  // what reaches less far out of the new bark is bark,
+constexpr double kShortest = 0.1;     // metres: a shorter side branch is noise
 constexpr size_t kLeastPoints = 4;
 constexpr size_t kGrain = 2048;  // points between two looks at the cancel flag
 
@@ -156,10 +159,11 @@ Completion Completer::complete(Tree& tree, NodeId node, const DVec3& direction, 
     infer_radii(made.axes, made.limbs);
     refine_axes(made.axes, made.limbs, made.places, points, progress);
     infer_radii(made.axes, made.limbs);
-    drop_short(made, kGapVoxels * voxel);
     Completion done;
     for (const int32_t limb : made.places.limb)
         done.points += limb >= 0;
+    drop_strips(made.limbs, made.axes, std::max(kTolerance, kStripVoxels * voxel));
+    drop_short(made, std::max(kShortest, kGapVoxels * voxel));
     if (made.axes.front().size() < 2 || done.points < kLeastPoints) throw Error(nothing_there(reach));
     const Tree branch = assemble_tree(made.axes, made.limbs, 0.0);
     progress.check();

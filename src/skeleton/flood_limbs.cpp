@@ -8,6 +8,7 @@ namespace treerec {
 namespace {
 
 constexpr double kStrayGap = 5.0;     // gaps longer than so many times the wood behind them lead to strays
+constexpr double kLeapVoxels = 4.0;   // shorter gaps are only sparse wood
 constexpr double kStepVoxels = 2.0;   // between stations, at least,
 constexpr double kStepRadii = 0.7;    // and of the radius
 constexpr double kMostBetween = 3.0;  // stations between two nodes: refinement looks so far for a point's own
@@ -27,12 +28,13 @@ Wood look_back(const std::vector<FloodNode>& nodes, double voxel) {
     for (size_t n = nodes.size(); n-- > 1;) {
         const FloodNode& node = nodes[n];
         const double way = glm::distance(node.position, nodes[node.parent].position);
-        if (node.bridged && way > kStrayGap * wood.length[n]) {
+        const bool leap = node.bridged && way > kLeapVoxels * voxel;
+        if (leap && way > kStrayGap * wood.length[n]) {
             wood.kept[n] = 0;
             continue;
         }
         wood.bulk[n] += node.bridged ? 0.0 : way * (node.radius + voxel);
-        wood.length[node.parent] += wood.length[n] + (node.bridged ? 0.0 : way);
+        wood.length[node.parent] += wood.length[n] + (leap ? 0.0 : way);
         wood.bulk[node.parent] += wood.bulk[n];
         if (wood.bulk[n] >= best[node.parent]) {
             best[node.parent] = wood.bulk[n];
@@ -158,8 +160,6 @@ void drop_short(FloodLimbs& made, double least) {
     }
     made.limbs.resize(kept);
     made.axes.resize(kept);
-    for (int32_t& limb : made.places.limb)
-        if (limb >= 0) limb = now[limb];
 }
 
 }  // namespace treerec

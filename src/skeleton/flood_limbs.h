@@ -15,12 +15,13 @@ struct FloodLimbs {
     PointPlaces places;  // by point of the grid
 };
 
-// At every fork the child with the most wood behind it continues the limb. What lies beyond a gap five times
-// as long as all the wood behind it is left out. Between far nodes there are stations about a radius apart.
-// point_count: of the points in the grid.
+// At every fork the child with the most wood behind it continues the limb. What lies beyond a gap of more
+// than four voxels that is five times as long as all the wood behind it is left out. Between far nodes there
+// are stations about a radius apart. point_count: of the points in the grid.
 FloodLimbs limbs_of(const FloodResult& flooded, const FloodGrid& grid, size_t point_count);
 
-// Takes away the limbs that bear nothing and do not reach `least` metres along out of their parent.
+// Takes away the limbs that bear nothing and do not reach `least` metres along out of their parent. The
+// places know nothing of it.
 void drop_short(FloodLimbs& made, double least);
 
 }  // namespace treerec
