@@ -13,14 +13,14 @@ namespace treerec {
 
 namespace {
 
-constexpr double kFirstVoxel = 1.5;     // spacings: the smallest size that is tried,
-constexpr double kNextVoxel = 1.25;     // times the one before,
-constexpr double kClosed = 1.5;         // times the size that hangs together: then bark has no holes
+constexpr double kFirstVoxel = 1.5;      // spacings: the smallest size that is tried,
+constexpr double kNextVoxel = 1.25;      // times the one before,
+constexpr double kClosed = 1.5;          // times the size that hangs together: then bark has no holes
 constexpr double kLargestVoxel = 0.003;  // and of the tree's extent: the largest
-constexpr size_t kSpeck = 20;           // points: a smaller part is a speck
-constexpr double kTogether = 0.6;       // of the points must lie in larger ones; gaps are bridged
-constexpr double kFewestVoxels = 8.0;   // along the tree
-constexpr size_t kGrain = 4096;         // voxels between two looks at the cancel flag
+constexpr size_t kSpeck = 20;            // points: a smaller part is a speck
+constexpr double kTogether = 0.6;        // of the points must lie in larger ones; gaps are bridged
+constexpr double kFewestVoxels = 8.0;    // along the tree
+constexpr size_t kGrain = 4096;          // voxels between two looks at the cancel flag
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
     while (leader[v] != v)
