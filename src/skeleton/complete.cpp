@@ -121,7 +121,7 @@ Completer::Completer(const Tree& tree, const PointCloud& cloud, const CompleteOp
     const double spacing = automatic_spacing(left_, &progress);
     left_ =
         thin_points(left_, options.voxel > 0.0 ? std::min(spacing, 0.5 * options.voxel) : spacing, progress);
-    voxel_ = options.voxel > 0.0 ? options.voxel : automatic_voxel(left_, spacing, progress);
+    voxel_ = options.voxel > 0.0 ? options.voxel : automatic_voxel(left_, spacing, false, progress);
     if (!(voxel_ > 0.0)) throw Error("The cloud's points all lie in one place.");
     left_ = outside_of(tree, left_, options_.tolerance, progress);
 }

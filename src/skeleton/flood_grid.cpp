@@ -16,11 +16,12 @@ namespace {
 constexpr double kFirstVoxel = 1.5;      // spacings: the smallest size that is tried,
 constexpr double kNextVoxel = 1.25;      // times the one before,
 constexpr double kClosed = 1.5;          // times the size that hangs together: then bark has no holes
-constexpr double kLargestVoxel = 0.003;  // and of the tree's extent: the largest
-constexpr size_t kSpeck = 20;            // points: a smaller part is a speck
-constexpr double kTogether = 0.6;        // of the points must lie in larger ones; gaps are bridged
-constexpr double kFewestVoxels = 8.0;    // along the tree
-constexpr size_t kGrain = 4096;          // voxels between two looks at the cancel flag
+constexpr double kLargestVoxel = 0.003;  // and of the tree's extent: the largest, that twigs stay apart
+constexpr double kStem = 0.004;    // of the extent of a stem without branches: bark hangs together at that
+constexpr size_t kSpeck = 20;      // points: a smaller part is a speck
+constexpr double kTogether = 0.6;  // of the points must lie in larger ones; gaps are bridged
+constexpr double kFewestVoxels = 8.0;  // along the tree
+constexpr size_t kGrain = 4096;        // voxels between two looks at the cancel flag
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
     while (leader[v] != v)
@@ -131,8 +132,10 @@ DVec3 FloodGrid::centre(size_t voxel) const {
     return cells.layout.low + (index - 0.5) * cells.layout.cell;
 }
 
-double automatic_voxel(const std::vector<Vec3>& points, double spacing, const Progress& progress) {
+double automatic_voxel(const std::vector<Vec3>& points, double spacing, bool one_stem,
+                       const Progress& progress) {
     const Bounds bounds = bounds_of(points);
+    if (one_stem) return kClosed * std::max(kFirstVoxel * spacing, kStem * extent_of(bounds));
     const double largest = kLargestVoxel * extent_of(bounds);
     double voxel = kFirstVoxel * spacing;
     for (; voxel * kNextVoxel <= largest; voxel *= kNextVoxel) {

@@ -34,7 +34,8 @@ struct FloodGrid {
 
 // The smallest of a row of sizes at which the voxels that hold points hang together (papers/002, 5.1: as
 // small as continuity allows): most points lie in parts that are no specks, and links over the gaps do the
-// rest. points: thinned to `spacing` metres.
-double automatic_voxel(const std::vector<Vec3>& points, double spacing, const Progress& progress);
+// rest. points: thinned to `spacing` metres. one_stem: there are no twigs to be kept apart.
+double automatic_voxel(const std::vector<Vec3>& points, double spacing, bool one_stem,
+                       const Progress& progress);
 
 }  // namespace treerec

@@ -1,6 +1,7 @@
 #include "skeleton/flood_skeleton.h"
 
 #include <array>
+#include <cstdio>
 #include <string>
 
 #include "skeleton/assemble.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kBranchVoxels = 1.5;  // what reaches less far out of the bark is bark
 constexpr double kLeastEscape = 0.02;  // metres,
 constexpr double kNoiseEscape = 2.5;   // and times the scan's noise, likewise
+constexpr double kFineVoxel = 0.4;     // of the automatic size: the user is told of finer voxels
 constexpr int kPasses = 2;             // the flood's nodes lie farther from the axis than slices do
 constexpr double kThinnest = 0.001;    // metres
 constexpr std::array<const char*, 2> kMethods = {"delaunay", "flood"};
@@ -52,6 +54,16 @@ void trust_radii(std::vector<std::vector<Station>>& axes, double voxel) {
             station.measured = station.radius > voxel;
 }
 
+std::string fine_voxel_warning(double fitting) {
+    std::array<char, 200> text;
+    std::snprintf(
+        text.data(), text.size(),
+        "The voxels are finer than the scan's points are apart, so that wood falls to pieces and its "
+        "thickness cannot be told; take about %.0f mm.",
+        1e3 * fitting);
+    return text.data();
+}
+
 }  // namespace
 
 SkeletonMethod parse_skeleton_method(const std::string& word) {
@@ -68,7 +80,10 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
                     SkeletonResult& result, StageClock& clock, Progress* listener) {
     SubProgress gridding(listener, 0.1, 0.4);
     gridding.update(0.0, "Voxels");
-    result.voxel = options.voxel > 0.0 ? options.voxel : automatic_voxel(points, result.spacing, gridding);
+    const double fitting_voxel = automatic_voxel(points, result.spacing, options.one_stem, gridding);
+    result.voxel = options.voxel > 0.0 ? options.voxel : fitting_voxel;
+    if (result.voxel < kFineVoxel * fitting_voxel)
+        result.warnings.push_back(fine_voxel_warning(fitting_voxel));
     const FloodGrid grid(points, result.voxel, gridding);
     gridding.check();
     const RootGuess root = find_root(grid.means, grid.graph, local_scale(grid.graph, result.voxel));

@@ -255,16 +255,36 @@ TEST_F(Pipeline, APalmIsOneStem) {
         VirtualScanOptions options = scan_options_for(Habit::kPalm);
         options.seed = seed;
         write_cloud(path("palm.ply"), scan_tree(palm, options).cloud);
-        const Reconstruction made = reconstruct_file(path("palm.ply"), {}, nullptr);
         const Measurements measured = measure(palm);
-        EXPECT_EQ(made.tree.nodes_of_kind(NodeKind::kLeaf).size(), 1u);
-        EXPECT_NEAR(made.measured.total_length, measured.total_length, 0.05 * measured.total_length);
-        EXPECT_NEAR(made.measured.dbh, measured.dbh, 0.03 * measured.dbh);
-        EXPECT_GT(made.foliage.reach, 1.0);
-        EXPECT_EQ(chosen_leaves("auto", made), "palm");
-        EXPECT_EQ(chosen_leaves("oak", made), "oak");
-        EXPECT_LT(suited_leaves("palm", made).leaf_size, made.foliage.reach);
+        for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
+            ReconstructOptions how;
+            how.skeleton.method = method;
+            const Reconstruction made = reconstruct_file(path("palm.ply"), how, nullptr);
+            EXPECT_EQ(made.tree.nodes_of_kind(NodeKind::kLeaf).size(), 1u);
+            EXPECT_NEAR(made.measured.total_length, measured.total_length, 0.05 * measured.total_length);
+            EXPECT_NEAR(made.measured.dbh, measured.dbh, 0.03 * measured.dbh);
+            EXPECT_GT(made.fit.explained_2cm, 0.95);
+            EXPECT_GT(made.foliage.reach, 1.0);
+            EXPECT_EQ(chosen_leaves("auto", made), "palm");
+            EXPECT_EQ(chosen_leaves("oak", made), "oak");
+            EXPECT_LT(suited_leaves("palm", made).leaf_size, made.foliage.reach);
+        }
     }
+}
+
+// Voxels much finer than the points lie apart cut wood to pieces.
+TEST_F(Pipeline, VoxelsThatAreTooFineAreToldOf) {
+    ReconstructOptions how;
+    how.skeleton.method = SkeletonMethod::kFlood;
+    const auto told = [&](double voxel) {
+        how.skeleton.voxel = voxel;
+        const std::vector<std::string> warnings = reconstruct_file(path("scan.ply"), how, nullptr).warnings;
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.starts_with("The voxels are finer");
+        });
+    };
+    EXPECT_TRUE(told(0.002));
+    EXPECT_FALSE(told(0.0));
 }
 
 TEST_F(Pipeline, LeavesBecomeFoliageAndTheSkeletonFollowsWood) {
