@@ -121,8 +121,7 @@ size_t Builder::add_mesh(const Mesh& mesh, const char* name) {
     json["accessors"].back()["min"] = {low.x, low.y, low.z};
     json["accessors"].back()["max"] = {high.x, high.y, high.z};
     add("NORMAL", bytes_of(mesh.normals), kFloat, "VEC3");
-    // No tangents: whoever reads the file makes them from the UVs (specification 2.0, 3.7.2.1: MikkTSpace),
-    // and they would be a third of it.
+    add("TANGENT", bytes_of(mesh.tangents), kFloat, "VEC4");
     add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
     add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
     primitive["material"] = json["meshes"].size();

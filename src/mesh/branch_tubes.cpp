@@ -331,8 +331,8 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         mesh.normals[vertex] = Vec3(normal);
         mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
         mesh.colors[vertex] = color;
-        if (options.shading) {
-            mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
+        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
+        if (options.pivots) {
             mesh.custom0[vertex] = custom0;
             mesh.radii[vertex] = static_cast<float>(radius);
         }
@@ -467,8 +467,8 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     mesh.normals.resize(vertices);
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
-    if (options.shading) {
-        mesh.tangents.resize(vertices);
+    mesh.tangents.resize(vertices);
+    if (options.pivots) {
         mesh.custom0.resize(vertices);
         mesh.radii.resize(vertices);
     }

@@ -14,8 +14,8 @@ struct TubeOptions {
     int minimum_sides = 5;      // one less on branches under 16 mm of diameter, two less under 8 mm
     int maximum_sides = 24;
     double bark_width =
-        1.0;              // metres of circumference per texture repeat, rounded per branch to whole repeats
-    bool shading = true;  // tangents, custom0 and radii are filled: what the shader needs and files leave out
+        1.0;             // metres of circumference per texture repeat, rounded per branch to whole repeats
+    bool pivots = true;  // custom0 and radii are filled; files have no place for them
 };
 
 // Vertices carry normals, tangents, UVs (u around in whole repeats, v along in metres), wind channels.

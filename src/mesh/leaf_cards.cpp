@@ -26,6 +26,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
     const size_t vertices = leaves.size() * corners;
     mesh.positions.resize(vertices);
     mesh.normals.resize(vertices);
+    mesh.tangents.resize(vertices);
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
     mesh.indices.resize(leaves.size() * card_indices);
@@ -41,6 +42,14 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
                 const Vec3 normal = flat * (1.0f - kRoundness) + leaf.outward * kRoundness;
                 const float length = glm::length(normal);
                 mesh.normals[v] = length > 1e-3f ? normal / length : flat;
+                const Vec3 across = turn * Vec3(card.tangents[k]);
+                const Vec3 tangent = across - mesh.normals[v] * glm::dot(across, mesh.normals[v]);
+                const float tangent_length = glm::length(tangent);
+                // Where the rounded normal runs along the card's x, its y axis still gives a direction.
+                mesh.tangents[v] =
+                    Vec4(tangent_length > 1e-3f ? tangent / tangent_length
+                                                : glm::normalize(glm::cross(leaf.y, mesh.normals[v])),
+                         1.0f);
                 mesh.uvs[v] = card.uvs[k];
                 mesh.colors[v] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
             }

@@ -25,8 +25,8 @@ inline constexpr size_t kMostSprigParts = 4096;
 bool uses_blade_picture(const LeafRules& rules);
 
 // Every leaf as geometry, with rounded-canopy normals and wind channels in colors; colors.g runs from 0 at
-// the card's base to 1 at its tip. tangents and custom0 stay empty: this is for files. Throws Error for too
-// many leaves, or Cancelled.
+// the card's base to 1 at its tip. custom0 stays empty. Throws Error for too many leaves, or
+// Cancelled.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card,
                  const Progress* progress = nullptr);
 // With the cards of sprays.

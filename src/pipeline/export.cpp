@@ -50,7 +50,7 @@ TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const
 const Mesh& TreeExporter::bark() {
     if (!bark_) {
         TubeOptions tubes;
-        tubes.shading = false;
+        tubes.pivots = false;
         bark_ = build_branch_tubes(leafy_tree(tree_, options_.leaves, options_.foliage), tubes, progress_);
     }
     return *bark_;

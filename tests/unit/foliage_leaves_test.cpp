@@ -326,6 +326,8 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
                                 row[4 * axis + 3],
                             1e-4f);
             ASSERT_NEAR(glm::length(mesh.normals[v]), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::length(Vec3(mesh.tangents[v])), 1.0f, 1e-4f);
+            ASSERT_NEAR(glm::dot(Vec3(mesh.tangents[v]), mesh.normals[v]), 0.0f, 1e-3f);
         }
         const Vec3 outward = Vec3(row[12], row[13], row[14]) * 2.0f - 1.0f;
         const Vec3 world = leaves[i].x * outward.x + leaves[i].y * outward.y + leaves[i].z * outward.z;

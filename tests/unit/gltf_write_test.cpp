@@ -93,7 +93,7 @@ void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh)
         expect_attribute(model, primitive.indices, mesh.indices);
     expect_attribute(model, primitive.attributes.at("POSITION"), mesh.positions);
     expect_attribute(model, primitive.attributes.at("NORMAL"), mesh.normals);
-    EXPECT_FALSE(primitive.attributes.contains("TANGENT"));
+    expect_attribute(model, primitive.attributes.at("TANGENT"), mesh.tangents);
     expect_attribute(model, primitive.attributes.at("TEXCOORD_0"), mesh.uvs);
     const tinygltf::Accessor& wind = model.accessors[static_cast<size_t>(primitive.attributes.at("_WIND"))];
     EXPECT_TRUE(wind.normalized);

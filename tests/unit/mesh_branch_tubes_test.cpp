@@ -140,13 +140,12 @@ TEST(BranchTubes, AHugeTreeStaysSoundAndLight) {
     }
 }
 
-TEST(BranchTubes, WhatTheShaderNeedsCanBeLeftOut) {
+TEST(BranchTubes, PivotsCanBeLeftOut) {
     const Tree tree = test::random_tree(4, 500);
     const Mesh with = build_branch_tubes(tree);
-    Mesh without = build_branch_tubes(tree, {.shading = false});
-    EXPECT_TRUE(without.custom0.empty() && without.tangents.empty() && without.radii.empty());
+    Mesh without = build_branch_tubes(tree, {.pivots = false});
+    EXPECT_TRUE(without.custom0.empty() && without.radii.empty());
     without.custom0 = with.custom0;
-    without.tangents = with.tangents;
     without.radii = with.radii;
     EXPECT_TRUE(same_bytes(with, without));
 }
