@@ -106,12 +106,6 @@ void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
     index.tree->findNeighbors(found, &p.x, nanoflann::SearchParams());
     for (size_t k = 0; k < found.size(); k++) {
         const auto [limb, station] = index.names[found.index[k]];
-        // A nearer station of the limb has looked there.
-        const bool looked = std::any_of(found.index.begin(), found.index.begin() + k, [&](uint32_t nearer) {
-            return index.names[nearer].first == limb &&
-                   std::abs(index.names[nearer].second - station) < kLookAround;
-        });
-        if (looked) continue;
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
     }

@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Kind{"SideBranches", [](uint64_t seed) { return test::sides_scan(seed, 4, 1.0); }, 20, 4,
                          5},
                     Kind{"HalfSeen", [](uint64_t seed) { return test::sides_scan(seed, 2, 0.55); }, 20, 3, 1},
-                    Kind{"Gaps", test::gap_scan, 20, 3, 2}),
+                    Kind{"Gaps", test::gap_scan, 20, 3, 1}),
     [](const testing::TestParamInfo<Kind>& info) { return std::string(info.param.name); });
 
 // A stem as wide as an eighth of the tree's height, and a scan that samples it finely.
