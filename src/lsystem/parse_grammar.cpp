@@ -192,6 +192,19 @@ class GrammarParser {
         return found;
     }
 
+    // Whether a list of symbols goes on with c. open: where its brackets stand that are not closed yet.
+    bool goes_on(char c, std::vector<size_t>& open) {
+        if (c == '[') {
+            open.push_back(text_.at);
+        } else if (c == ']') {
+            if (open.empty()) text_.fail("this ] closes no [.");
+            open.pop_back();
+        } else {
+            return is_symbol(c);
+        }
+        return true;
+    }
+
     // Symbols with formal parameters, up to what is none; a lone * is an empty list.
     std::vector<GrammarPattern> patterns(Variables& variables) {
         std::vector<GrammarPattern> found;
@@ -203,14 +216,7 @@ class GrammarParser {
         }
         for (text_.skip(); !text_.at_arrow(); text_.skip()) {
             const char c = text_.next();
-            if (c == '[') {
-                open.push_back(text_.at);
-            } else if (c == ']') {
-                if (open.empty()) text_.fail("this ] closes no [.");
-                open.pop_back();
-            } else if (!is_symbol(c)) {
-                break;
-            }
+            if (!goes_on(c, open)) break;
             if (found.size() >= kLongestContext) text_.fail("a context has at most 32 symbols.");
             text_.at++;
             found.push_back({c, static_cast<int>(variables.size()), 0});
@@ -296,14 +302,7 @@ class GrammarParser {
         }
         for (;; skip_within(!open.empty())) {
             const char c = text_.next();
-            if (c == '[') {
-                open.push_back(text_.at);
-            } else if (c == ']') {
-                if (open.empty()) text_.fail("this ] closes no [.");
-                open.pop_back();
-            } else if (!is_symbol(c)) {
-                break;
-            }
+            if (!goes_on(c, open)) break;
             text_.at++;
             modules.push_back({c, {}});
             if (c != '[' && c != ']') actuals(modules.back(), variables);

@@ -25,14 +25,11 @@ struct Outcome {
 };
 
 // Each test gets a folder of its own, with an empty folder "out" in it.
-class Cli : public ::testing::Test {
+class InFolder : public ::testing::Test {
   protected:
     void SetUp() override {
-        const char* program = std::getenv("TREEREC_CLI");
-        if (!program || !fs::exists(program)) GTEST_SKIP() << "TREEREC_CLI does not name the program";
-        program_ = fs::absolute(program).string();
         folder_ = fs::temp_directory_path() /
-                  ("treerec_cli_" + std::to_string(::getpid()) + "_" +
+                  ("treerec_" + std::to_string(::getpid()) + "_" +
                    std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
         fs::remove_all(folder_);
         fs::create_directories(folder_ / "out");
@@ -51,6 +48,18 @@ class Cli : public ::testing::Test {
         return path(name);
     }
 
+    fs::path folder_;
+};
+
+class Cli : public InFolder {
+  protected:
+    void SetUp() override {
+        const char* program = std::getenv("TREEREC_CLI");
+        if (!program || !fs::exists(program)) GTEST_SKIP() << "TREEREC_CLI does not name the program";
+        program_ = fs::absolute(program).string();
+        InFolder::SetUp();
+    }
+
     // Runs "treerec <words>" in the test's folder.
     Outcome run(const std::string& words) const {
         const std::string command = "cd '" + folder_.string() + "' && timeout 120 '" + program_ + "' " +
@@ -66,7 +75,6 @@ class Cli : public ::testing::Test {
     bool out_is_empty() const { return fs::is_empty(folder_ / "out"); }
 
     std::string program_;
-    fs::path folder_;
 };
 
 }  // namespace treerec::test

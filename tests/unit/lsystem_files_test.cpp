@@ -1,15 +1,7 @@
 // L-strings in files, and the commands 'lstring' and 'grow' of the program (which TREEREC_CLI names).
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
-#ifndef _WIN32
-#include <sys/wait.h>
-#include <unistd.h>
-#endif
-
+#include "cli_runner.h"
 #include "error.h"
 #include "exchange/lstring_file.h"
 #include "exchange/tree_files.h"
@@ -21,42 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class LStringFiles : public ::testing::Test {
-  protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("treerec_lstring_" + std::to_string(::getpid()) + "_" +
-                   std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    std::string get(const std::string& name) const {
-        std::ifstream in(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    std::string put(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
-    }
-
-    // Runs "treerec <words>" in the test's folder; its exit code.
-    int run(const std::string& words) const {
-        const std::string program = fs::absolute(std::getenv("TREEREC_CLI")).string();
-        const std::string command = "cd '" + folder_.string() + "' && timeout 120 '" + program + "' " +
-                                    words + " >stdout.log 2>stderr.log </dev/null";
-        const int status = std::system(command.c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000;
-    }
-
-    fs::path folder_;
-};
-
-#define SKIP_WITHOUT_PROGRAM()                                                  \
-    if (!std::getenv("TREEREC_CLI") || !fs::exists(std::getenv("TREEREC_CLI"))) \
-    GTEST_SKIP() << "TREEREC_CLI does not name the program"
+class LStringFiles : public test::InFolder {};
+class LStringCli : public test::Cli {};
 
 ScanFrame utm_frame() {
     ScanFrame frame;
@@ -162,19 +120,18 @@ TEST_F(LStringFiles, DamagedOnesAreRefused) {
               "'x.lstring' holds no L-string that can be read: An L-string's radius must be positive.");
 }
 
-TEST_F(LStringFiles, ATreeFileGoesThroughLstringAndGrow) {
-    SKIP_WITHOUT_PROGRAM();
+TEST_F(LStringCli, ATreeFileGoesThroughLstringAndGrow) {
     Tree tree = test::random_tree(5, 700);
     tree.set_frame(utm_frame());
     write_treefile(path("a.txt"), tree);
-    ASSERT_EQ(run("lstring a.txt -o a.lstring"), 0) << get("stderr.log");
-    ASSERT_EQ(run("grow a.lstring -o b.txt -o b.glb -o b.lstring"), 0) << get("stderr.log");
+    ASSERT_EQ(run("lstring a.txt -o a.lstring").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lstring -o b.txt -o b.glb -o b.lstring").code, 0) << get("stderr.log");
     expect_same_in_scan(read_treefile(path("a.txt")), read_treefile(path("b.txt")));
     EXPECT_GT(fs::file_size(path("b.glb")), 10000u);
-    ASSERT_EQ(run("info b.lstring"), 0) << get("stderr.log");
+    ASSERT_EQ(run("info b.lstring").code, 0) << get("stderr.log");
     EXPECT_NE(get("stdout.log").find("700"), std::string::npos);
     // On the terminal, and of a branch alone.
-    ASSERT_EQ(run("lstring a.txt --node 300 --no-flags"), 0) << get("stderr.log");
+    ASSERT_EQ(run("lstring a.txt --node 300 --no-flags").code, 0) << get("stderr.log");
     const std::string branch = get("stdout.log");
     EXPECT_TRUE(branch.starts_with("!(")) << branch;
     EXPECT_EQ(branch.find('@'), std::string::npos);
@@ -182,26 +139,24 @@ TEST_F(LStringFiles, ATreeFileGoesThroughLstringAndGrow) {
     EXPECT_EQ(read_lstring(branch).size(), read_treefile(path("a.txt")).depth_first(300).size() + 1);
 }
 
-TEST_F(LStringFiles, GrammarsGrow) {
-    SKIP_WITHOUT_PROGRAM();
+TEST_F(LStringCli, GrammarsGrow) {
     put("a.lsys",
         "iterations: 3\nangle: 30\nstep: 0.5\nradius: 0.05\naxiom: X\nX -> F[+X]F[-X]~ : 0.5\nX -> FX : "
         "0.5\nF -> FF\n");
-    ASSERT_EQ(run("grow a.lsys --seed 4 -o a.txt -o a.lstring -o a.glb"), 0) << get("stderr.log");
-    ASSERT_EQ(run("grow a.lsys --seed 4 -o b.txt"), 0) << get("stderr.log");
-    ASSERT_EQ(run("grow a.lsys --seed 5 -o c.txt"), 0) << get("stderr.log");
-    ASSERT_EQ(run("grow a.lstring -o d.txt"), 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lsys --seed 4 -o a.txt -o a.lstring -o a.glb").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lsys --seed 4 -o b.txt").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lsys --seed 5 -o c.txt").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow a.lstring -o d.txt").code, 0) << get("stderr.log");
     EXPECT_EQ(get("a.txt"), get("b.txt"));
     EXPECT_NE(get("a.txt"), get("c.txt"));
     EXPECT_EQ(get("a.txt"), get("d.txt"));
-    EXPECT_EQ(run("grow a.lsys --iterations 40 -o e.txt"), 1);
+    EXPECT_EQ(run("grow a.lsys --iterations 40 -o e.txt").code, 1);
     EXPECT_NE(get("stderr.log").find("grows past 5000000 symbols"), std::string::npos) << get("stderr.log");
     for (const std::string& name : grammar_preset_names())
-        EXPECT_EQ(run("grow " + name + " -o " + name + ".ply --quiet"), 0) << get("stderr.log");
+        EXPECT_EQ(run("grow " + name + " -o " + name + ".ply --quiet").code, 0) << get("stderr.log");
 }
 
-TEST_F(LStringFiles, WrongCommandLinesAreTold) {
-    SKIP_WITHOUT_PROGRAM();
+TEST_F(LStringCli, WrongCommandLinesAreTold) {
     put("a.lstring", "F[");
     put("b.lstring", "F(1)[+F(1)]");
     for (const auto& [words, code] :
@@ -216,7 +171,7 @@ TEST_F(LStringFiles, WrongCommandLinesAreTold) {
                                                   {"lstring", 2},
                                                   {"lstring nothing.txt -o x.lstring", 1},
                                                   {"lstring b.lstring --accuracy 5 -o x.lstring", 2}}) {
-        EXPECT_EQ(run(words), code) << words;
+        EXPECT_EQ(run(words).code, code) << words;
         EXPECT_GT(get("stderr.log").size(), 20u) << words;
         EXPECT_FALSE(fs::exists(path("x.txt")) || fs::exists(path("x.lstring"))) << words;
     }
