@@ -132,6 +132,14 @@ class TreeReconstruction : public godot::Resource {
     static godot::PackedByteArray draw_branch(const godot::String& p_lstring, int p_size);
     static godot::TypedArray<godot::Dictionary> get_twig_library();
 
+    // For an editor (tree_reconstruction_viewing.cpp).
+    int pick_node(const godot::Projection& p_to_screen, const godot::Vector2& p_viewport,
+                  const godot::Vector2& p_position, double p_distance) const;
+    godot::PackedInt32Array pick_nodes(const godot::Projection& p_to_screen, const godot::Vector2& p_viewport,
+                                       const godot::Rect2& p_rect) const;
+    godot::Array build_selection_lines(const godot::PackedInt32Array& p_ids) const;
+    godot::Dictionary preview_edit(const godot::String& p_command) const;
+
   protected:
     static void _bind_methods();
     void _validate_property(godot::PropertyInfo& p_property) const;
@@ -149,6 +157,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_properties();
     static void _bind_editing();
     static void _bind_grafting();
+    static void _bind_viewing();
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
     void _log(const godot::Ref<TreeEdit>& p_edit);
