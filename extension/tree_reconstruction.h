@@ -120,6 +120,7 @@ class TreeReconstruction : public godot::Resource {
     void set_edit_log(const godot::String& p_log);
     godot::String get_edit_log() const;
     godot::PackedInt32Array select_nodes(const godot::String& p_selection) const;
+    godot::String check_selection(const godot::String& p_selection) const;
     static godot::TypedArray<godot::Dictionary> get_edit_commands();
 
     // Grafting (tree_reconstruction_grafting.cpp).

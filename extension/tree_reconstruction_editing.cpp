@@ -147,6 +147,15 @@ PackedInt32Array TreeReconstruction::select_nodes(const String& p_selection) con
                    [&] { return to_godot(treerec::select(*_editable_tree(), to_std(p_selection)).ids); });
 }
 
+String TreeReconstruction::check_selection(const String& p_selection) const {
+    try {
+        treerec::select(*_editable_tree(), to_std(p_selection));
+        return String();
+    } catch (const std::exception& error) {
+        return to_godot(std::string(error.what()));
+    }
+}
+
 TypedArray<Dictionary> TreeReconstruction::get_edit_commands() {
     TypedArray<Dictionary> list;
     for (const treerec::EditCommand& command : treerec::edit_commands()) {
@@ -187,6 +196,7 @@ void TreeReconstruction::_bind_editing() {
     ClassDB::bind_method(D_METHOD("replay", "log", "tolerance"), &TreeReconstruction::replay, DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("run_script", "script"), &TreeReconstruction::run_script);
     ClassDB::bind_method(D_METHOD("select_nodes", "selection"), &TreeReconstruction::select_nodes);
+    ClassDB::bind_method(D_METHOD("check_selection", "selection"), &TreeReconstruction::check_selection);
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_edit_commands"),
                                 &TreeReconstruction::get_edit_commands);
     ClassDB::bind_method(D_METHOD("set_edit_log", "log"), &TreeReconstruction::set_edit_log);

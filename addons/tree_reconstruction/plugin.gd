@@ -1,7 +1,23 @@
 @tool
 extends EditorPlugin
-## The editor's side of the addon. The classes register themselves: TreeReconstruction and
-## TreeReconstructor by the native library, TreeInstance3D by its class_name.
+## The editor's side of the addon: makes the session of what is being edited, and the parts that
+## show it.
+##
+## The classes register themselves: TreeReconstruction and TreeReconstructor by the native
+## library, TreeInstance3D by its class_name. The parts are loaded once the library is known to be
+## there, since their scripts are made of its classes.
+
+const DOMAIN: StringName = &"tree_reconstruction"
+const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
+# In the order in which they come; they go in the opposite one. Each has enter(plugin, session)
+# and exit().
+const _PARTS: PackedStringArray = []
+
+var _session: RefCounted
+var _parts: Array[RefCounted] = []
+# Those that take the viewport's events: they have input(camera, event) and draw_over(overlay).
+var _listeners: Array[RefCounted] = []
+var _export_skip: EditorExportPlugin
 
 
 func _enter_tree() -> void:
@@ -12,7 +28,98 @@ func _enter_tree() -> void:
 				+ " and check that addons/tree_reconstruction/bin/ holds a library for this system."
 			)
 		)
+		return
+	_export_skip = _load("export_skip.gd").new()
+	add_export_plugin(_export_skip)
+	_session = _load("session.gd").new(get_undo_redo())
+	_session.set_translation_domain(DOMAIN)
+	_session.view.restore(EditorInterface.get_editor_settings())
+	_session.said.connect(_on_said)
+	for path: String in _PARTS:
+		var part: RefCounted = _load(path).new()
+		part.set_translation_domain(DOMAIN)
+		part.call(&"enter", self, _session)
+		_parts.append(part)
+		if part.has_method(&"input"):
+			_listeners.append(part)
+	set_process(true)
 
 
 func _exit_tree() -> void:
-	pass
+	if _session == null:
+		return
+	set_process(false)
+	_session.edit_node(null)
+	_listeners.clear()
+	_parts.reverse()
+	for part: RefCounted in _parts:
+		part.call(&"exit")
+	_parts.clear()
+	_session.said.disconnect(_on_said)
+	_session.view.keep(EditorInterface.get_editor_settings())
+	_session.shut_down()
+	_session = null
+	remove_export_plugin(_export_skip)
+	_export_skip = null
+
+
+func _process(_delta: float) -> void:
+	_session.update()
+
+
+func _handles(object: Object) -> bool:
+	return _session != null and object is TreeInstance3D
+
+
+func _edit(object: Object) -> void:
+	if _session != null:
+		_session.edit_node(object as TreeInstance3D)
+
+
+func _make_visible(visible: bool) -> void:
+	if _session != null and not visible:
+		_session.edit_node(null)
+
+
+func _forward_3d_gui_input(camera: Camera3D, event: InputEvent) -> int:
+	for listener: RefCounted in _listeners:
+		var answer: int = listener.call(&"input", camera, event)
+		if answer != AFTER_GUI_INPUT_PASS:
+			return answer
+	return AFTER_GUI_INPUT_PASS
+
+
+func _forward_3d_draw_over_viewport(overlay: Control) -> void:
+	for listener: RefCounted in _listeners:
+		listener.call(&"draw_over", overlay)
+
+
+# With the scenes.
+func _save_external_data() -> void:
+	if _session == null:
+		return
+	for sentence: String in _session.local_trees.save():
+		_session.say(sentence, _session.Kind.ERROR)
+
+
+func _get_unsaved_status(for_scene: String) -> String:
+	if _session == null or not for_scene.is_empty():
+		return ""
+	var unsaved: PackedStringArray = _session.local_trees.get_unsaved()
+	if unsaved.is_empty():
+		return ""
+	return (
+		_session.tr("Save the changes of these trees before closing?") + "\n" + "\n".join(unsaved)
+	)
+
+
+func _on_said(sentence: String, kind: int) -> void:
+	# What is no more than information stands in the viewport's status line.
+	if kind == _session.Kind.WARNING:
+		EditorInterface.get_editor_toaster().push_toast(sentence, EditorToaster.SEVERITY_WARNING)
+	elif kind == _session.Kind.ERROR:
+		EditorInterface.get_editor_toaster().push_toast(sentence, EditorToaster.SEVERITY_ERROR)
+
+
+static func _load(path: String) -> GDScript:
+	return load(_EDITOR + path) as GDScript

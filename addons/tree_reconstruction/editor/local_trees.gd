@@ -1,0 +1,133 @@
+@tool
+extends RefCounted
+## Trees of the user's own: made of imported ones at their first edit, saved with the scene.
+##
+## An imported tree is overwritten whenever its scan is imported again, so it is never edited
+## itself: a copy is saved beside the scan, as [code]oak_tree.res[/code] of [code]oak.ply[/code].
+
+const _ADDON: String = "res://addons/"
+const _SUFFIX: String = "_tree"
+
+# Paths of files whose trees have changed since they were saved, with weak references to these
+# trees: one that was closed unsaved is gone.
+var _changed: Dictionary[String, WeakRef] = {}
+var _watched: Array[WeakRef] = []
+
+
+## Whether an edit of [param tree] would be lost, since it belongs to an import, to the addon, or
+## to another scene than that of [param node].
+static func is_foreign(tree: TreeReconstruction, node: Node) -> bool:
+	var path: String = tree.resource_path
+	if path.is_empty():
+		return false
+	if path.begins_with(_ADDON):
+		return true
+	if path.contains("::"):
+		var scene: Node = node.owner if node.owner != null else node
+		return path.get_slice("::", 0) != scene.scene_file_path
+	return FileAccess.file_exists(path + ".import")
+
+
+## A copy of [param tree] that may be edited, in a file of its own beside its scan. Returns
+## [code]null[/code] if that can't be written; [param say] then gets a sentence.
+func make_local(tree: TreeReconstruction, node: Node, say: Callable) -> TreeReconstruction:
+	var local: TreeReconstruction = copy_of(tree)
+	var path: String = free_path(tree, node)
+	var error: Error = ResourceSaver.save(local, path, ResourceSaver.FLAG_COMPRESS)
+	if error != OK:
+		say.call(
+			(
+				tr("The tree can't be edited, since its copy can't be written to %s: %s.")
+				% [path, error_string(error)]
+			)
+		)
+		return null
+	local.take_over_path(path)
+	watch(local)
+	return local
+
+
+## A copy that shares nothing that is edited with [param tree].
+static func copy_of(tree: TreeReconstruction) -> TreeReconstruction:
+	var copy: TreeReconstruction = tree.duplicate() as TreeReconstruction
+	copy.resource_name = tree.resource_name
+	if tree.leaf_rule != null and tree.leaf_rule.resource_path.contains("::"):
+		copy.leaf_rule = tree.leaf_rule.duplicate() as LeafRule
+	return copy
+
+
+## The file that a copy of [param tree] would get: beside its scan if that lies in the project,
+## else beside the scene; never one that exists.
+static func free_path(tree: TreeReconstruction, node: Node) -> String:
+	var scan: String = tree.provenance.get("source", "")
+	if not scan.begins_with("res://") or scan.begins_with(_ADDON):
+		scan = tree.resource_path
+	var folder: String = scan.get_base_dir()
+	var stem: String = scan.get_file().get_basename()
+	if not scan.begins_with("res://") or scan.begins_with(_ADDON) or scan.contains("::"):
+		var scene: Node = node.owner if node.owner != null else node
+		folder = scene.scene_file_path.get_base_dir()
+		stem = String(node.name).to_snake_case()
+	if not folder.begins_with("res://"):
+		folder = "res://"
+	var path: String = folder.path_join(stem + _SUFFIX + ".res")
+	var number: int = 2
+	while FileAccess.file_exists(path):
+		path = folder.path_join("%s%s_%d.res" % [stem, _SUFFIX, number])
+		number += 1
+	return path
+
+
+## Notices from now on when [param tree] has to be saved.
+func watch(tree: TreeReconstruction) -> void:
+	for known: WeakRef in _watched:
+		if known.get_ref() == tree:
+			return
+	_watched = _watched.filter(func(known: WeakRef) -> bool: return known.get_ref() != null)
+	_watched.append(weakref(tree))
+	tree.changed.connect(_on_changed.bind(weakref(tree)))
+
+
+## The files that a save would write.
+func get_unsaved() -> PackedStringArray:
+	var paths: PackedStringArray = []
+	for path: String in _changed:
+		if _changed[path].get_ref() != null:
+			paths.append(path)
+	return paths
+
+
+## Writes the files of all trees that have changed. Returns a sentence for each that could not be.
+func save() -> PackedStringArray:
+	var failed: PackedStringArray = []
+	for path: String in get_unsaved():
+		var tree: TreeReconstruction = _changed[path].get_ref() as TreeReconstruction
+		# Another tree may have taken its place since.
+		if tree.resource_path == path:
+			var error: Error = _write(tree, path)
+			if error != OK:
+				failed.append(tr("%s can't be written: %s.") % [path, error_string(error)])
+				continue
+		_changed.erase(path)
+	return failed
+
+
+# Beside it first: a full disk must not cost the file that is there.
+static func _write(tree: TreeReconstruction, path: String) -> Error:
+	var part: String = path.get_basename() + ".saving." + path.get_extension()
+	var error: Error = ResourceSaver.save(tree, part, ResourceSaver.FLAG_COMPRESS)
+	if error == OK:
+		error = DirAccess.rename_absolute(part, path)
+	if error != OK and FileAccess.file_exists(part):
+		DirAccess.remove_absolute(part)
+	return error
+
+
+func _on_changed(of: WeakRef) -> void:
+	var tree: TreeReconstruction = of.get_ref() as TreeReconstruction
+	if tree == null:
+		return
+	var path: String = tree.resource_path
+	# What has no file of its own is saved with its scene.
+	if path.begins_with("res://") and not path.contains("::"):
+		_changed[path] = of

@@ -1,0 +1,395 @@
+@tool
+extends "node_selection.gd"
+## What is being edited: a tree, what is selected of it, and the tool at hand. Every change of a
+## tree goes through here, as one step of the undo history.
+##
+## One per plugin. [method update] is called once a frame; tests make one with a plain [UndoRedo].
+
+## Another node is edited, or none.
+signal node_changed
+## The wood, the rules, or the resource of the edited tree changed, for whatever reason; at most
+## once a frame.
+signal tree_changed
+signal tool_changed
+signal view_changed
+## The scan's points came or went.
+signal scan_changed
+## The Pick tool took a branch, as an L-string that begins at a node.
+signal string_picked(lstring: String, id: int)
+## A sentence for the user.
+signal said(sentence: String, kind: Kind)
+
+enum Kind { INFO, WARNING, ERROR }
+
+const History := preload("history.gd")
+const Jobs := preload("jobs.gd")
+const LocalTrees := preload("local_trees.gd")
+const ScanData := preload("scan_data.gd")
+const ViewState := preload("view_state.gd")
+
+## The edited node, or [code]null[/code].
+var node: TreeInstance3D
+var history: History
+var jobs: Jobs = Jobs.new()
+var view: ViewState = ViewState.new()
+var local_trees: LocalTrees = LocalTrees.new()
+var scan: ScanData
+## The tools by their ids (see [code]tools/tool.gd[/code]), and the chosen one.
+var tools: Dictionary[StringName, RefCounted] = {}
+var tool: RefCounted
+## What finds nodes on the screen. The viewport's part sets it.
+var picker: RefCounted
+## What a graft puts on: an L-string, or the name of a twig of the library as
+## [code]twig=oak[/code].
+var scion: String = ""
+
+var _shown: TreeReconstruction
+var _tree_moved: bool = false
+# The drag under way.
+var _drag: Drag
+
+
+# What a drag did so far.
+class Drag:
+	extends RefCounted
+	var title: String
+	var tree: TreeReconstruction
+	var imported: TreeReconstruction
+	var edit: TreeEdit
+
+
+func _init(undo: Object) -> void:
+	history = History.new(undo)
+	# Methods, since functions made here would keep this session alive.
+	scan = ScanData.new(jobs, _warn)
+	scan.changed.connect(_on_scan_changed)
+	view.changed.connect(_on_view_changed)
+
+
+# --- what is edited -------------------------------------------------------------------------------
+
+
+## Edits another node, or none.
+func edit_node(other: TreeInstance3D) -> void:
+	if other == node:
+		return
+	cancel_drag()
+	if tool != null:
+		tool.call(&"stop")
+	node = other
+	_watch(tree)
+	selection = []
+	hovered = NO_NODE
+	if tool != null and node != null:
+		tool.call(&"start")
+	node_changed.emit()
+	selection_changed.emit()
+
+
+## To be called once a frame.
+func update() -> void:
+	if node != null and (not is_instance_valid(node) or node.is_queued_for_deletion()):
+		node = null
+		_drag = null
+		edit_node(null)
+		_watch(null)
+		selection = []
+		node_changed.emit()
+		selection_changed.emit()
+	if tree != _shown:
+		_watch(tree)
+	if _tree_moved:
+		_tree_moved = false
+		_drop_missing()
+		scan.note_edit()
+		tree_changed.emit()
+	jobs.update()
+	scan.update()
+
+
+## Ends everything, before the plugin goes.
+func shut_down() -> void:
+	edit_node(null)
+	jobs.shut_down()
+
+
+## Chooses a tool, or none with an empty id.
+func choose(id: StringName) -> void:
+	var other: RefCounted = tools.get(id)
+	if other == tool:
+		return
+	cancel_drag()
+	if tool != null:
+		tool.call(&"stop")
+	tool = other
+	if tool != null and node != null:
+		tool.call(&"start")
+	tool_changed.emit()
+
+
+## Tells the user something.
+func say(sentence: String, kind: Kind = Kind.INFO) -> void:
+	if not sentence.is_empty():
+		said.emit(sentence, kind)
+
+
+func _warn(sentence: String) -> void:
+	say(sentence, Kind.WARNING)
+
+
+func _on_scan_changed() -> void:
+	scan_changed.emit()
+
+
+func _on_view_changed() -> void:
+	view_changed.emit()
+
+
+func _watch(other: TreeReconstruction) -> void:
+	if other == _shown:
+		return
+	if _shown != null:
+		_shown.changed.disconnect(_on_tree_changed)
+	_shown = other
+	if _shown != null:
+		_shown.changed.connect(_on_tree_changed)
+		if is_instance_valid(node) and not LocalTrees.is_foreign(_shown, node):
+			local_trees.watch(_shown)
+	scan.set_tree(_shown)
+	_tree_moved = true
+
+
+func _on_tree_changed() -> void:
+	_tree_moved = true
+
+
+# --- edits ----------------------------------------------------------------------------------------
+
+
+## Does an edit command (docs/editing.md) as one step of the history. Where it is refused, the
+## user gets its sentence and the result is [code]null[/code].
+func run(title: String, command: String) -> TreeEdit:
+	if tree == null:
+		return null
+	var sentence: String = tree.check_edit(command)
+	if not sentence.is_empty():
+		say(sentence, Kind.ERROR)
+		return null
+	return run_edit(title, func(of: TreeReconstruction) -> TreeEdit: return of.edit(command))
+
+
+## As [method run], for whatever returns a [TreeEdit]: [param make] is called with the tree to
+## change.
+func run_edit(title: String, make: Callable) -> TreeEdit:
+	if tree == null:
+		return null
+	cancel_drag()
+	var imported: TreeReconstruction = tree
+	var edited: TreeReconstruction = _editable()
+	if edited == null:
+		return null
+	var edit: TreeEdit = make.call(edited)
+	if edit == null or edit.is_empty():
+		if edit != null:
+			say(edit.get_message())
+		_take_back(edited, imported)
+		return edit
+	_record(title, edited, imported, edit)
+	say(edit.get_message())
+	return edit
+
+
+## Begins a change that follows the mouse: the history gets one step for it at [method end_drag].
+func begin_drag(title: String) -> void:
+	cancel_drag()
+	_drag = Drag.new()
+	_drag.title = title
+
+
+## Whether a drag is under way.
+func is_dragging() -> bool:
+	return _drag != null
+
+
+## Does [param command] in the place of what the drag did before. Where it is refused, the tree is
+## as it was before the drag.
+func drag(command: String) -> bool:
+	if _drag == null or tree == null:
+		return false
+	if _drag.tree == null:
+		_drag.imported = tree
+		_drag.tree = _editable()
+		if _drag.tree == null:
+			_drag = null
+			return false
+	if _drag.edit != null:
+		_drag.tree.revert_edit(_drag.edit)
+		_drag.edit = null
+	if not _drag.tree.check_edit(command).is_empty():
+		return false
+	_drag.edit = _drag.tree.edit(command)
+	return _drag.edit != null
+
+
+## Ends the drag. Returns what it did, or [code]null[/code].
+func end_drag() -> TreeEdit:
+	var done: Drag = _drag
+	_drag = null
+	if done == null or done.tree == null:
+		return null
+	if done.edit == null or done.edit.is_empty():
+		_take_back(done.tree, done.imported)
+		return null
+	_record(done.title, done.tree, done.imported, done.edit)
+	say(done.edit.get_message())
+	return done.edit
+
+
+## Ends the drag; the tree is as before.
+func cancel_drag() -> void:
+	var done: Drag = _drag
+	_drag = null
+	if done == null or done.tree == null:
+		return
+	if done.edit != null:
+		done.tree.revert_edit(done.edit)
+	_take_back(done.tree, done.imported)
+
+
+## Sets a property of the edited tree, of its leaf rule, or of the node. With [param merged],
+## changes that follow each other quickly become one step, as those of a slider.
+func set_value(
+	title: String, object: Object, property: StringName, value: Variant, merged: bool = false
+) -> void:
+	if tree == null or object.get(property) == value:
+		return
+	cancel_drag()
+	if object == node:
+		history.begin(title, node, merged)
+		history.add_property(node, property, value, node.get(property))
+		history.commit()
+		return
+	var imported: TreeReconstruction = tree
+	var edited: TreeReconstruction = _editable()
+	if edited == null:
+		return
+	var rule: LeafRule = edited.leaf_rule
+	var of_rule: bool = object is LeafRule
+	var own: LeafRule = rule
+	if (
+		of_rule
+		and (rule.resource_path.begins_with("res://") and not rule.resource_path.contains("::"))
+	):
+		# A rule in a file may be that of other trees too.
+		own = rule.duplicate() as LeafRule
+		edited.leaf_rule = own
+	var target: Object = own if of_rule else edited
+	# A property may set others with it: a preset sets them all.
+	var before: Dictionary = _stored(target)
+	target.set(property, value)
+	var after: Dictionary = _stored(target)
+	history.begin(title, node, merged)
+	_add_local(edited, imported)
+	if own != rule:
+		history.add_property(edited, &"leaf_rule", own, rule)
+	for changed: StringName in after:
+		if not is_same(after[changed], before[changed]) and after[changed] != before[changed]:
+			history.add_property(target, changed, after[changed], before[changed])
+	history.commit(false)
+
+
+## Shows [param made] in the place of the edited tree, as what a reconstruction with other options
+## made. It gets the old one's file.
+func replace_tree(title: String, made: TreeReconstruction) -> void:
+	if tree == null or made == null or made == tree:
+		return
+	cancel_drag()
+	var old: TreeReconstruction = tree
+	made.resource_name = old.resource_name
+	history.begin(title, node)
+	if LocalTrees.is_foreign(old, node):
+		var path: String = LocalTrees.free_path(old, node)
+		var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
+		if error != OK:
+			say(
+				tr("The tree can't be written to %s: %s.") % [path, error_string(error)], Kind.ERROR
+			)
+			path = ""
+		made.take_over_path(path)
+	elif old.resource_path.begins_with("res://") and not old.resource_path.contains("::"):
+		var path: String = old.resource_path
+		history.add_method(made, &"take_over_path", [path], &"set_path", [""])
+		history.add_method(old, &"set_path", [""], &"take_over_path", [path])
+	history.add_property(node, &"reconstruction", made, old)
+	history.add_method(made, &"emit_changed", [], &"emit_changed", [])
+	history.commit()
+	local_trees.watch(made)
+	made.emit_changed()
+
+
+# The tree to change: the edited one, or a copy of it in a file of its own.
+func _editable() -> TreeReconstruction:
+	var shown: TreeReconstruction = tree
+	if not LocalTrees.is_foreign(shown, node):
+		return shown
+	var local: TreeReconstruction = local_trees.make_local(shown, node, _refuse)
+	if local != null:
+		node.reconstruction = local
+	return local
+
+
+# Nothing came of an edit that had needed a copy.
+func _take_back(edited: TreeReconstruction, imported: TreeReconstruction) -> void:
+	if edited == imported:
+		return
+	node.reconstruction = imported
+	var path: String = edited.resource_path
+	edited.take_over_path("")
+	DirAccess.remove_absolute(path)
+
+
+func _record(
+	title: String, edited: TreeReconstruction, imported: TreeReconstruction, edit: TreeEdit
+) -> void:
+	history.begin(title, node)
+	_add_local(edited, imported)
+	history.add_method(edited, &"apply_edit", [edit], &"revert_edit", [edit])
+	history.commit(false)
+
+
+func _add_local(edited: TreeReconstruction, imported: TreeReconstruction) -> void:
+	if edited == imported:
+		return
+	history.add_property(node, &"reconstruction", edited, imported)
+	say(
+		(
+			tr(
+				"The edited tree is a copy of its own now, %s: importing the scan again keeps your work."
+			)
+			% edited.resource_path
+		),
+		Kind.WARNING
+	)
+	if Engine.is_editor_hint():
+		EditorInterface.get_resource_filesystem().update_file(edited.resource_path)
+
+
+static func _stored(object: Object) -> Dictionary:
+	var values: Dictionary = {}
+	for property: Dictionary in object.get_property_list():
+		var name: StringName = property.name
+		# What is large is not set by a property of the leaves.
+		if (
+			property.usage & PROPERTY_USAGE_STORAGE
+			and name not in [&"skeleton", &"foliage", &"provenance", &"edit_log", &"script"]
+		):
+			values[name] = object.get(name)
+	return values
+
+
+func _get_tree() -> TreeReconstruction:
+	return node.reconstruction if is_instance_valid(node) else null
+
+
+func _refuse(sentence: String) -> void:
+	say(sentence, Kind.ERROR)

@@ -1,0 +1,80 @@
+@tool
+extends RefCounted
+## What of the edited tree is shown. Kept for each project, never in a scene.
+
+signal changed
+
+enum PointColors { SCAN, HEIGHT, FIDELITY }
+
+const _SECTION: String = "tree_reconstruction"
+const _KEY: String = "view"
+const _KEPT: PackedStringArray = [
+	"editing", "points", "point_colors", "point_size", "skeleton", "mesh", "leaves", "axes", "grid"
+]
+
+## Whether the viewport's clicks go to the tree's skeleton.
+var editing: bool = true:
+	set(value):
+		editing = value
+		changed.emit()
+## The scan.
+var points: bool = false:
+	set(value):
+		points = value
+		changed.emit()
+## By what the scan's points are coloured.
+var point_colors: PointColors = PointColors.SCAN:
+	set(value):
+		point_colors = value
+		changed.emit()
+## In pixels at the editor's scale of 1.
+var point_size: float = 2.0:
+	set(value):
+		point_size = value
+		changed.emit()
+## The lines and joints that are edited.
+var skeleton: bool = true:
+	set(value):
+		skeleton = value
+		changed.emit()
+## The bark.
+var mesh: bool = true:
+	set(value):
+		mesh = value
+		changed.emit()
+## The leaves.
+var leaves: bool = true:
+	set(value):
+		leaves = value
+		changed.emit()
+## The wind, while the tree is edited.
+var wind: bool = false:
+	set(value):
+		wind = value
+		changed.emit()
+## The scan's axes at the tree's foot.
+var axes: bool = false:
+	set(value):
+		axes = value
+		changed.emit()
+## Squares of a metre at the tree's foot.
+var grid: bool = false:
+	set(value):
+		grid = value
+		changed.emit()
+
+
+## Reads what was shown when the project was open last.
+func restore(settings: EditorSettings) -> void:
+	var kept: Dictionary = settings.get_project_metadata(_SECTION, _KEY, {})
+	for key: String in _KEPT:
+		if typeof(kept.get(key)) == typeof(get(key)):
+			set(key, kept[key])
+
+
+## Keeps what is shown for the next time.
+func keep(settings: EditorSettings) -> void:
+	var kept: Dictionary = {}
+	for key: String in _KEPT:
+		kept[key] = get(key)
+	settings.set_project_metadata(_SECTION, _KEY, kept)
