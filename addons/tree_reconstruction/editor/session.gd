@@ -307,6 +307,9 @@ func replace_tree(title: String, made: TreeReconstruction) -> void:
 	var old: TreeReconstruction = tree
 	made.resource_name = old.resource_name
 	history.begin(title, node)
+	# First, so that it is the last to be undone: by then the path is the old one's again, and has to be
+	# saved.
+	history.add_method(old, &"emit_changed", [], &"emit_changed", [])
 	if LocalTrees.is_foreign(old, node):
 		var path: String = LocalTrees.free_path(old, node)
 		var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)

@@ -1,0 +1,167 @@
+extends "./suite.gd"
+## Imported trees are never edited themselves: their first edit makes a copy in a file of its own.
+
+const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
+const FOLDER: String = "res://.godot/tree_reconstruction_test"
+
+var _undo: UndoRedo
+var _session: Session
+var _said: PackedStringArray = []
+
+
+# A tree as the engine holds one that was imported: at its scan's path, with an .import beside.
+func _edit_imported(made: TreeReconstruction) -> void:
+	DirAccess.make_dir_recursive_absolute(FOLDER)
+	_empty()
+	for file: String in ["oak.ply", "oak.ply.import"]:
+		FileAccess.open(FOLDER.path_join(file), FileAccess.WRITE).store_string("for a test")
+	made.take_over_path(FOLDER.path_join("oak.ply"))
+	made.provenance = {"source": FOLDER.path_join("oak.ply")}
+	_undo = UndoRedo.new()
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.reconstruction = made
+	tree.root.add_child(node)
+	_session = Session.new(_undo)
+	_session.said.connect(func(sentence: String, _kind: int) -> void: _said.append(sentence))
+	_session.edit_node(node)
+
+
+func _end() -> void:
+	var node: TreeInstance3D = _session.node
+	_session.shut_down()
+	_undo.clear_history()
+	_undo.free()
+	_session = null
+	node.free()
+	_empty()
+
+
+func _empty() -> void:
+	for file: String in DirAccess.get_files_at(FOLDER):
+		DirAccess.remove_absolute(FOLDER.path_join(file))
+
+
+func _saved(path: String) -> TreeReconstruction:
+	return (
+		ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE_DEEP) as TreeReconstruction
+	)
+
+
+func test_the_first_edit_makes_a_copy_beside_the_scan() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var before: Dictionary = made.skeleton
+	_edit_imported(made)
+	_session.run("Prune", "prune_order order=1")
+	var local: TreeReconstruction = _session.tree
+	check(local != made, "The imported tree itself was edited.")
+	check_equal(made.skeleton, before, "the imported skeleton")
+	check_equal(local.resource_path, FOLDER.path_join("oak_tree.res"), "the file")
+	check(FileAccess.file_exists(local.resource_path), "There is no file.")
+	check(_said.size() == 2 and "oak_tree.res" in _said[0], "Nobody said so: %s" % _said)
+	check_equal(_undo.get_history_count(), 1, "steps")
+	_undo.undo()
+	check_equal(_session.tree, made, "the tree after undo")
+	check_equal(local.skeleton, before, "the copy after undo")
+	_undo.redo()
+	check_equal(_session.tree, local, "the tree after redo")
+	check(local.get_node_count() < made.get_node_count(), "It was not pruned again.")
+	_session.update()
+	_session.run("Prune", "prune_radius radius=0.005")
+	check_equal(_session.tree, local, "the tree after a second edit")
+	_end()
+
+
+func test_what_changed_is_saved_with_the_scene() -> void:
+	_edit_imported(grown_tree(3))
+	_session.run("Prune", "prune_order order=1")
+	var local: TreeReconstruction = _session.tree
+	var path: String = local.resource_path
+	check(_saved(path).skeleton != local.skeleton, "It was saved before anybody asked.")
+	check_equal(_session.local_trees.get_unsaved(), PackedStringArray([path]), "unsaved files")
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check_equal(_saved(path).skeleton, local.skeleton, "the saved skeleton")
+	check_equal(_saved(path).edit_log, local.edit_log, "the saved log")
+	check_equal(_session.local_trees.get_unsaved(), PackedStringArray(), "unsaved files then")
+	_undo.undo()
+	check_equal(_session.local_trees.get_unsaved(), PackedStringArray([path]), "after undo")
+	_end()
+
+
+func test_nothing_is_left_of_a_refused_or_cancelled_edit() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	_edit_imported(made)
+	_session.run("Cut", "cut node=999999")
+	check_equal(_session.tree, made, "the tree after a refusal")
+	_session.run("Prune", "prune_radius radius=0")
+	check_equal(_session.tree, made, "the tree after an edit that changed nothing")
+	_session.begin_drag("Move")
+	_session.drag("move nodes=%d by=1,0,0" % made.get_leaves()[0])
+	_session.cancel_drag()
+	check_equal(_session.tree, made, "the tree after a cancelled drag")
+	check_equal(DirAccess.get_files_at(FOLDER).size(), 2, "files")
+	check_equal(_undo.get_history_count(), 0, "steps")
+	_end()
+
+
+func test_no_file_is_overwritten() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	_edit_imported(made)
+	var other: String = FOLDER.path_join("oak_tree.res")
+	FileAccess.open(other, FileAccess.WRITE).store_string("the user's")
+	_session.run("Prune", "prune_order order=1")
+	check_equal(_session.tree.resource_path, FOLDER.path_join("oak_tree_2.res"), "the file")
+	check_equal(FileAccess.get_file_as_string(other), "the user's", "the user's file")
+	_end()
+
+
+func test_a_value_makes_a_copy_too() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	_edit_imported(made)
+	_session.set_value("Leaves", made, &"leaf_preset", "pine")
+	check(_session.tree != made, "The imported tree itself was changed.")
+	check_equal(_session.tree.leaf_preset, "pine", "the preset")
+	check_equal(made.leaf_preset, "generic", "the imported preset")
+	_undo.undo()
+	check_equal(_session.tree, made, "the tree after undo")
+	_end()
+
+
+func test_a_rule_in_a_file_stays_as_it_is() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	_edit_imported(made)
+	var preset: String = "res://addons/tree_reconstruction/presets/maple_rule.tres"
+	var shared: LeafRule = load(preset) as LeafRule
+	var size: float = shared.leaf_size
+	_session.set_value("Leaf rule", made, &"leaf_rule", shared)
+	_session.update()
+	_session.set_value("Leaf size", _session.tree.leaf_rule, &"leaf_size", size * 2.0)
+	check_equal(shared.leaf_size, size, "the preset's size")
+	check_near(_session.tree.leaf_rule.leaf_size, size * 2.0, 1e-6, "the tree's size")
+	_undo.undo()
+	check_equal(_session.tree.leaf_rule, shared, "the rule after undo")
+	_end()
+
+
+func test_a_new_reconstruction_takes_the_file_over() -> void:
+	_edit_imported(grown_tree(3))
+	_session.run("Prune", "prune_order order=1")
+	var old: TreeReconstruction = _session.tree
+	var path: String = old.resource_path
+	var other: TreeReconstruction = grown_tree(8)
+	_session.replace_tree("Reconstruct again", other)
+	_session.update()
+	check_equal(other.resource_path, path, "the new tree's file")
+	_session.local_trees.save()
+	check_equal(_saved(path).skeleton, other.skeleton, "the saved skeleton")
+	_undo.undo()
+	_session.update()
+	check_equal(_session.tree, old, "the tree after undo")
+	check_equal(old.resource_path, path, "the old tree's file")
+	_session.local_trees.save()
+	check_equal(_saved(path).skeleton, old.skeleton, "the saved skeleton after undo")
+	_undo.redo()
+	_session.update()
+	check_equal(other.resource_path, path, "the new tree's file after redo")
+	_session.local_trees.save()
+	check_equal(_saved(path).skeleton, other.skeleton, "the saved skeleton after redo")
+	_end()
