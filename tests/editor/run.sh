@@ -1,0 +1,193 @@
+#!/usr/bin/env bash
+# Tests the addon in the real editor, in a window under Xvfb, driven by mouse and keyboard events of the X server.
+# ./dev test editor calls it, with GODOT set, project/addons/ built and a sample scan in build/sample/.
+#
+#   tests/editor/run.sh [NAME…]     all scenarios, or those whose file name contains a NAME
+#
+# It makes an empty project in a temporary folder with the built addon and test_plugin/ in it, and opens it in the
+# editor with settings of its own. A scenario is a script in scenarios/FOLDER/: it runs in the editor, in test_plugin/,
+# asserts what it finds there, and asks this script over a socket to press keys and buttons (xdotool), to take
+# pictures and to copy files. Each FOLDER is one run of the editor, in alphabetical order, on the same project; it
+# ends with Ctrl+Q. What the engine reports as an error fails the step in which it appears, unless the step expects it.
+# Nothing waits for a fixed time: scenarios wait for what should be there, at most for TREE_EDITOR_PATIENCE seconds.
+# Pictures: build/editor/NN-name.png; what the editor printed: build/editor/FOLDER.log. Last line: 'N passed, N failed'.
+set -uo pipefail
+cd "$(dirname "$0")/../.."
+: "${GODOT:?GODOT must name the engine: ./dev test editor sets it}"
+root=$PWD
+pictures=$root/build/editor
+work=$(mktemp -d)
+export TREE_EDITOR_TEST=$work
+# Seconds that anything may take on a machine that does something else, too.
+export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-60}
+# The whole of one editor's run, in seconds: whatever hangs ends then.
+limit=600
+passed=0
+failed=0
+shots=0
+engine=
+screen=
+
+# Ends what this script has started, and nothing else.
+cleanup() {
+    [ -z "$engine" ] || kill -KILL -- "-$engine" 2>/dev/null
+    [ -z "$screen" ] || kill "$screen" 2>/dev/null
+    wait 2>/dev/null
+    rm -rf "$work"
+}
+trap cleanup EXIT
+trap 'exit 1' INT TERM
+
+start_screen() {
+    Xvfb -displayfd 3 -screen 0 1600x900x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
+    screen=$!
+    local tries
+    for tries in $(seq 200); do
+        [ ! -s "$work/display" ] || break
+        sleep 0.05
+    done
+    [ -s "$work/display" ] || {
+        cat "$work/xvfb.log"
+        echo "0 passed, 1 failed"
+        exit 1
+    }
+    DISPLAY=:$(cat "$work/display")
+    export DISPLAY
+}
+
+# A game's project as it comes from version control: the addon is in it, nothing is imported.
+make_project() {
+    mkdir -p "$work/project/addons" "$work/config/godot" "$work/data" "$work/cache" "$work/runtime"
+    chmod 700 "$work/runtime"
+    cp -r project/addons/tree_reconstruction "$work/project/addons/"
+    mkdir "$work/project/addons/editor_test"
+    cp -r tests/editor/test_plugin tests/editor/scenarios "$work/project/addons/editor_test/"
+    # Nobody should see it in the pictures.
+    touch "$work/project/addons/editor_test/.gdignore"
+    cp tests/editor/project.cfg "$work/project/project.godot"
+    cp tests/editor/editor_settings.cfg "$work/config/godot/editor_settings-4.6.tres"
+}
+
+count() {
+    case $1 in
+    ok*) passed=$((passed + 1)) ;;
+    FAILED*) failed=$((failed + 1)) ;;
+    esac
+    printf '%s\n' "$1"
+}
+
+picture() {
+    shots=$((shots + 1))
+    import -window root -define png:compression-level=2 "$pictures/$(printf '%02d' "$shots")-$1.png"
+}
+
+# focus editor, focus elsewhere: where the keyboard goes. There is no window manager that would see to it.
+focus() {
+    case $1 in
+    editor) xdotool windowfocus "$(xdotool search --onlyvisible --class godot 2>/dev/null | head -n 1)" ;;
+    elsewhere) xdotool windowfocus "$(xwininfo -root | sed -n 's/.*Window id: \(0x[0-9a-f]*\).*/\1/p')" ;;
+    esac
+}
+
+# Does what the scenarios ask for until they end, or the editor does.
+serve() {
+    local line words
+    while IFS= read -r line <&"$socket"; do
+        IFS=$'\t' read -r -a words <<<"$line"
+        case ${words[0]} in
+        x) xdotool "${words[@]:1}" ;;
+        focus) focus "${words[1]}" ;;
+        picture) picture "${words[1]}" ;;
+        copy) cp "${words[1]}" "${words[2]}.part" && mv "${words[2]}.part" "${words[2]}" ;;
+        say) count "${words[1]}" ;;
+        end) return 0 ;;
+        *) echo "FAILED  a scenario asked for '${words[0]}'" ;;
+        esac
+        echo >&"$socket"
+    done
+    return 1
+}
+
+is_running() { kill -0 "$engine" 2>/dev/null; }
+
+# wait_until SECONDS COMMAND…
+wait_until() {
+    local end=$((SECONDS + $1))
+    shift
+    until "$@"; do
+        [ "$SECONDS" -lt "$end" ] || return 1
+        sleep 0.1
+    done
+}
+
+ended() { ! is_running; }
+# What it waits for is there, or will never be.
+met() { [ -s "$work/port" ] || ended; }
+
+# run_editor FOLDER SCRIPT…: one run of the editor.
+run_editor() {
+    local folder=$1 log=$pictures/$1.log port status=0
+    shift
+    echo "-- $folder"
+    rm -f "$work/port"
+    TREE_EDITOR_SCENARIOS="$*" XDG_CONFIG_HOME=$work/config XDG_DATA_HOME=$work/data XDG_CACHE_HOME=$work/cache \
+        XDG_RUNTIME_DIR=$work/runtime \
+        setsid timeout --signal=ABRT --kill-after=10 "$limit" "$GODOT" --rendering-driver opengl3 --audio-driver Dummy --resolution 1600x900 --position 0,0 \
+        --path "$work/project" --editor >"$log" 2>&1 &
+    engine=$!
+    if wait_until $((TREE_EDITOR_PATIENCE * 3)) met && ! ended; then
+        port=$(cat "$work/port")
+        exec {socket}<>"/dev/tcp/127.0.0.1/$port"
+        serve || count "FAILED  $folder: the editor ended before its scenarios did"
+        exec {socket}>&-
+        if is_running; then
+            # What is not saved is asked about only where the scenarios left it so: then this does not end.
+            xdotool key ctrl+q
+            wait_until "$TREE_EDITOR_PATIENCE" ended || {
+                picture "$folder-does-not-close"
+                count "FAILED  $folder: the editor does not close"
+            }
+        fi
+    else
+        picture "$folder-does-not-start"
+        count "FAILED  $folder: the editor does not start"
+    fi
+    ! is_running || kill -ABRT -- "-$engine"
+    wait "$engine" 2>/dev/null || status=$?
+    engine=
+    if [ "$status" = 0 ]; then count "ok      $folder: the editor ended well"; else
+        tail -n 25 "$log"
+        count "FAILED  $folder: the editor ended with status $status"
+    fi
+    if [ ! -s "$log" ] || grep -E 'ObjectDB instances (were )?leaked|resources still in use|were leaked at exit|Leaked instance:|handle_crash' "$log"; then
+        count "FAILED  $folder: something leaked"
+    else
+        count "ok      $folder: nothing leaked"
+    fi
+}
+
+main() {
+    local folder scripts script name
+    rm -rf "$pictures"
+    mkdir -p "$pictures"
+    make_project
+    start_screen
+    for folder in tests/editor/scenarios/*/; do
+        folder=$(basename "$folder")
+        scripts=()
+        for script in tests/editor/scenarios/"$folder"/*.gd; do
+            [ -f "$script" ] || continue
+            script=$(basename "$script")
+            for name in "${@:-}"; do
+                [[ $script == *"$name"* ]] || continue
+                scripts+=("res://addons/editor_test/scenarios/$folder/$script")
+                break
+            done
+        done
+        [ ${#scripts[@]} = 0 ] || run_editor "$folder" "${scripts[@]}"
+    done
+    echo "$passed passed, $failed failed"
+    [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
+}
+
+main "$@"

@@ -1,0 +1,144 @@
+@tool
+extends RefCounted
+## Hands and voice: a mouse and a keyboard that work through the X server, as a user's do.
+##
+## run.sh listens at the other end of a socket: it presses (xdotool), takes pictures and prints what is
+## said. Every function here returns when the editor has had time to take the events: some frames.
+## Places on the screen are in pixels; the editor's window begins at (0, 0), and dialogs are drawn in it.
+
+const LEFT: int = 1
+const MIDDLE: int = 2
+const RIGHT: int = 3
+const WHEEL_UP: int = 4
+const WHEEL_DOWN: int = 5
+# What the editor needs to take what xdotool sent: one frame to get the events, one to act, and one
+# for what was deferred.
+const _FRAMES: int = 4
+
+var _server: TCPServer = TCPServer.new()
+var _peer: StreamPeerTCP
+var _heard: String = ""
+
+
+## Waits until run.sh has come to the socket whose number is left in `folder`.
+func meet(folder: String) -> void:
+	_server.listen(0, "127.0.0.1")
+	var path: String = folder.path_join("port")
+	var file: FileAccess = FileAccess.open(path + ".part", FileAccess.WRITE)
+	file.store_line(str(_server.get_local_port()))
+	file.close()
+	DirAccess.rename_absolute(path + ".part", path)
+	while not _server.is_connection_available():
+		await _frame()
+	_peer = _server.take_connection()
+	_peer.set_no_delay(true)
+	await come()
+
+
+## Brings the keyboard's focus to the editor.
+func come() -> void:
+	await ask(["focus", "editor"])
+	while not _window().has_focus():
+		await _frame()
+
+
+## Takes the focus away, as somebody does who works in another program.
+func go() -> void:
+	await ask(["focus", "elsewhere"])
+	while _window().has_focus():
+		await _frame()
+
+
+## The end of all scenarios of this editor. It goes on running: run.sh closes it as a user would.
+func end() -> void:
+	_peer.put_data("end\n".to_utf8_buffer())
+	await frames(2)
+
+
+func leave() -> void:
+	if _peer != null:
+		_peer.disconnect_from_host()
+	_server.stop()
+
+
+## Lets run.sh do something: its name and its arguments, none of which has a tab or a line break.
+func ask(words: PackedStringArray) -> void:
+	_peer.put_data(("\t".join(words) + "\n").to_utf8_buffer())
+	while not "\n" in _heard:
+		await _frame()
+		_peer.poll()
+		if _peer.get_available_bytes() > 0:
+			_heard += _peer.get_utf8_string(_peer.get_available_bytes())
+	_heard = _heard.substr(_heard.find("\n") + 1)
+
+
+func say(line: String) -> void:
+	await ask(["say", line.replace("\n", " ").replace("\t", " ")])
+
+
+## Keeps what the screen shows as build/editor/NN-name.png.
+func picture(name: String) -> void:
+	await frames(_FRAMES)
+	await ask(["picture", name])
+
+
+func frames(count: int) -> void:
+	for i: int in count:
+		await _frame()
+
+
+func move(to: Vector2) -> void:
+	await _x(["mousemove", str(roundi(to.x)), str(roundi(to.y))])
+
+
+## Clicks. `modifiers` is something like "shift" or "ctrl+alt".
+func click(at: Vector2, button: int = LEFT, modifiers: String = "", times: int = 1) -> void:
+	await move(at)
+	var press: PackedStringArray = ["click", "--repeat", str(times), "--delay", "40", str(button)]
+	await _x(_held(modifiers, press))
+
+
+## Presses at the first place, goes through the others, and lets go at the last.
+func drag(places: PackedVector2Array, button: int = LEFT, modifiers: String = "") -> void:
+	await move(places[0])
+	for modifier: String in modifiers.split("+", false):
+		await _x(["keydown", modifier])
+	await _x(["mousedown", str(button)])
+	for i: int in range(1, places.size()):
+		for step: int in range(1, 6):
+			await move(places[i - 1].lerp(places[i], step / 5.0))
+	await _x(["mouseup", str(button)])
+	for modifier: String in modifiers.split("+", false):
+		await _x(["keyup", modifier])
+
+
+## Presses a key by its name in X: "ctrl+z", "Delete", "bracketleft".
+func key(name: String) -> void:
+	await _x(["key", name])
+
+
+func type(text: String) -> void:
+	await _x(["type", "--delay", "10", text])
+
+
+func _held(modifiers: String, what: PackedStringArray) -> PackedStringArray:
+	var words: PackedStringArray = []
+	for modifier: String in modifiers.split("+", false):
+		words.append_array(["keydown", modifier])
+	words.append_array(what)
+	for modifier: String in modifiers.split("+", false):
+		words.append_array(["keyup", modifier])
+	return words
+
+
+func _x(words: PackedStringArray) -> void:
+	await ask(PackedStringArray(["x"]) + words)
+	await frames(_FRAMES)
+
+
+func _frame() -> void:
+	await (Engine.get_main_loop() as SceneTree).process_frame
+
+
+func _window() -> Window:
+	return EditorInterface.get_base_control().get_window()
