@@ -140,6 +140,7 @@ class TreeReconstruction : public godot::Resource {
                                        const godot::Rect2& p_rect) const;
     godot::Array build_selection_lines(const godot::PackedInt32Array& p_ids) const;
     godot::Dictionary preview_edit(const godot::String& p_command) const;
+    godot::PackedByteArray draw(int p_size) const;
 
   protected:
     static void _bind_methods();

@@ -1,5 +1,6 @@
 // What an editor shows of a TreeReconstruction and asks about it: what lies under the pointer, what an edit
-// would do.
+// would do, how the tree looks in a list.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,6 +8,9 @@
 #include "edit/pick.h"
 #include "edit/preview.h"
 #include "error.h"
+#include "foliage/foliage_twigs.h"
+#include "foliage/leaves.h"
+#include "mesh/tree_picture.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -92,6 +96,33 @@ Dictionary TreeReconstruction::preview_edit(const String& p_command) const {
     return result;
 }
 
+// What the season makes of a colour (0..255): alpha says how far.
+static treerec::DVec3 turned(const treerec::DVec3& p_color, const Color& p_tint) {
+    return glm::mix(p_color, 230.0 * treerec::DVec3(p_tint.r, p_tint.g, p_tint.b), double(p_tint.a));
+}
+
+PackedByteArray TreeReconstruction::draw(int p_size) const {
+    return guarded(PackedByteArray(), [&] {
+        const std::shared_ptr<const treerec::Tree> tree = get_tree();
+        const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
+        const treerec::LeafRules rules = get_leaf_rules();
+        treerec::TreeColors colors = treerec::tree_colors(to_std(get_leaf_look()));
+        const Ref<LeafRule> rule = get_leaf_rule();
+        if (rule.is_valid()) {
+            const PackedColorArray tints = rule->get_season_tints();
+            colors.leaf = turned(colors.leaf, tints[0]);
+            colors.other = turned(colors.other, tints[1]);
+        }
+        const treerec::Image image = treerec::draw_tree(
+            treerec::leafy_tree(*tree, rules, *foliage),
+            treerec::place_leaves(*tree, rules, uint64_t(get_seed()), *foliage), colors, p_size);
+        PackedByteArray pixels;
+        pixels.resize(int64_t(image.pixels.size()));
+        std::copy(image.pixels.begin(), image.pixels.end(), pixels.ptrw());
+        return pixels;
+    });
+}
+
 void TreeReconstruction::_bind_viewing() {
     ClassDB::bind_method(D_METHOD("pick_node", "to_screen", "viewport", "position", "distance"),
                          &TreeReconstruction::pick_node, DEFVAL(8.0));
@@ -100,4 +131,5 @@ void TreeReconstruction::_bind_viewing() {
     ClassDB::bind_method(D_METHOD("build_selection_lines", "ids"),
                          &TreeReconstruction::build_selection_lines);
     ClassDB::bind_method(D_METHOD("preview_edit", "command"), &TreeReconstruction::preview_edit);
+    ClassDB::bind_method(D_METHOD("draw", "size"), &TreeReconstruction::draw, DEFVAL(128));
 }

@@ -92,3 +92,25 @@ func test_a_preview_changes_nothing() -> void:
 	check(gone["added"].is_empty() and gone["removed"].size() > 4, "%s" % gone["error"])
 	check_sentence(made.preview_edit("prune factor=-3")["error"], "a refusal")
 	check_sentence(TreeReconstruction.new().preview_edit("prune")["error"], "for an empty tree")
+
+
+func test_the_picture() -> void:
+	var made: TreeReconstruction = grown_tree(5)
+	made.leaf_preset = "oak"
+	for size: int in [16, 64, 256]:
+		var image: Image = Image.create_from_data(
+			size, size, false, Image.FORMAT_RGBA8, made.draw(size)
+		)
+		check(not image.is_invisible(), "Nothing is seen at %d pixels." % size)
+		check_equal(image.get_pixel(0, size - 1).a, 0.0, "the alpha beside the tree")
+	var leafy: PackedByteArray = made.draw()
+	check_equal(leafy.size(), 128 * 128 * 4, "the usual size")
+	made.leaf_rule = LeafRule.from_preset("maple")
+	var summer: PackedByteArray = made.draw()
+	made.leaf_rule.season = 0.75
+	check(made.draw() != summer, "Autumn looks like summer.")
+	made.leaf_rule = LeafRule.from_preset("none")
+	check(made.draw() != leafy, "The leaves make no difference.")
+	expect_error("pixels wide")
+	check(made.draw(7).is_empty(), "A tiny picture was drawn.")
+	check_equal(TreeReconstruction.new().draw(32).count(0), 32 * 32 * 4, "an empty tree")
