@@ -3,9 +3,9 @@ extends EditorPlugin
 ## Runs the scenarios of one folder, one after another, in the editor that it finds itself in.
 ##
 ## tests/editor/run.sh starts the editor with TREE_EDITOR_TEST naming its temporary folder and
-## TREE_EDITOR_SCENARIOS the scripts to run. Each of them extends scenario.gd and has a run(); what it
-## does goes out to the X server through User, and what it finds comes back as lines of this plugin:
-## 'ok …' and 'FAILED …' for every step, counted by run.sh.
+## TREE_EDITOR_SCENARIOS the scripts to run. Each of them extends scenario.gd and has a run();
+## what it does goes out to the X server through User, and what it finds comes back as lines of
+## this plugin: 'ok …' and 'FAILED …' for every step, counted by run.sh.
 
 const User: GDScript = preload("./user.gd")
 const ErrorCollector: GDScript = preload("./error_collector.gd")

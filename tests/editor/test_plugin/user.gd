@@ -2,17 +2,18 @@
 extends RefCounted
 ## Hands and voice: a mouse and a keyboard that work through the X server, as a user's do.
 ##
-## run.sh listens at the other end of a socket: it presses (xdotool), takes pictures and prints what is
-## said. Every function here returns when the editor has had time to take the events: some frames.
-## Places on the screen are in pixels; the editor's window begins at (0, 0), and dialogs are drawn in it.
+## run.sh listens at the other end of a socket: it presses (xdotool), takes pictures and prints
+## what is said. Every function here returns when the editor has had time to take the events: some
+## frames. Places on the screen are in pixels; the editor's window begins at (0, 0), and dialogs
+## are drawn in it.
 
 const LEFT: int = 1
 const MIDDLE: int = 2
 const RIGHT: int = 3
 const WHEEL_UP: int = 4
 const WHEEL_DOWN: int = 5
-# What the editor needs to take what xdotool sent: one frame to get the events, one to act, and one
-# for what was deferred.
+# What the editor needs to take what xdotool sent: one frame to get the events, one to act, and
+# one for what was deferred.
 const _FRAMES: int = 4
 
 var _server: TCPServer = TCPServer.new()
