@@ -56,16 +56,25 @@ var _node: TreeInstance3D
 var _states: Array[Dictionary] = []
 var _story: PackedStringArray = []
 var _failed: bool = false
+# How often each kind of thing became a step, or was undone or redone.
+var _done: Dictionary[String, int] = {}
 
 
 func test_random_walks_on_a_tree_of_ones_own() -> void:
-	for walk: int in 6:
+	for walk: int in 25:
 		_walk(walk, false)
+	_check_that_much_happened()
 
 
 func test_random_walks_on_an_imported_tree() -> void:
-	for walk: int in 6:
+	for walk: int in 25:
 		_walk(100 + walk, true)
+	_check_that_much_happened()
+
+
+func _check_that_much_happened() -> void:
+	for kind: String in ["run", "drag", "set", "rule", "replace", "undo", "redo"]:
+		check(_done.get(kind, 0) >= 15, "Too little happened: %s" % _done)
 
 
 func _walk(random_seed: int, imported: bool) -> void:
@@ -133,10 +142,14 @@ func _act() -> void:
 			_drag(_random.randf() < 0.7)
 		5:
 			_change(_session.tree, VALUES)
+			place = _undo.get_current_action()
 		6:
-			_change(_session.tree.leaf_rule, RULE_VALUES)
+			if _session.tree.leaf_rule != null:
+				_change(_session.tree.leaf_rule, RULE_VALUES)
+			place = _undo.get_current_action()
 		7:
 			_change(_node, NODE_VALUES)
+			place = _undo.get_current_action()
 		8:
 			var rule: LeafRule = load(RULE % _any(PRESETS)) as LeafRule
 			_tell("rule %s" % rule.resource_path)
@@ -182,10 +195,18 @@ func _drag(to_end: bool) -> void:
 
 func _change(object: Object, values: Dictionary[StringName, Array]) -> void:
 	var property: StringName = _any(values.keys())
-	var value: Variant = _any(values[property])
 	var merged: bool = _random.randf() < 0.5
-	_tell("set %s to %s%s" % [property, value, ", merged" if merged else ""])
-	_session.set_value("Set %s" % property, object, property, value, merged)
+	# As a slider does.
+	for i: int in 4 if merged else 1:
+		var value: Variant = _any(values[property])
+		var place: int = _undo.get_current_action()
+		_tell("set %s to %s%s" % [property, value, ", merged" if merged else ""])
+		_session.set_value("Set %s" % property, object, property, value, merged)
+		_session.update()
+		_note(place)
+		if object is LeafRule:
+			# It may have become a rule of the tree's own.
+			object = _session.tree.leaf_rule
 
 
 func _command() -> String:
@@ -207,6 +228,7 @@ func _note(place: int) -> void:
 		# What could have been redone is gone.
 		_states.resize(now + 1)
 		_states.append(_state())
+		_count(_story[-1])
 	elif place >= 0 and _story[-1].ends_with(", merged"):
 		# It may have become part of the step before.
 		_states[place + 1] = _state()
@@ -224,8 +246,14 @@ func _wander(count: int, back: bool) -> void:
 			_undo.redo()
 		if _random.randf() < 0.5:
 			_session.update()
+		_count(_story[-1])
 		var place: int = _undo.get_current_action() + 1
 		_compare(_state(), _states[place], "Place %d of the history" % place)
+
+
+func _count(what: String) -> void:
+	var kind: String = what.get_slice(" ", 0)
+	_done[kind] = _done.get(kind, 0) + 1
 
 
 func _tell(what: String) -> void:

@@ -13,6 +13,10 @@ extends RefCounted
 
 # EditorUndoRedoManager or UndoRedo.
 var _undo: Object
+# What the step before may merge with, and the history's version after it.
+var _merged: Array = []
+var _version: int = -1
+var _context: WeakRef
 
 
 func _init(undo: Object) -> void:
@@ -20,10 +24,17 @@ func _init(undo: Object) -> void:
 
 
 ## Begins a step that the user will see as [param title]. It goes into the history of the scene
-## that [param context] is in. With [param merged], steps of the same title that follow each other
-## quickly become one, so that a slider that is dragged is one step.
-func begin(title: String, context: Node, merged: bool = false) -> void:
-	var mode: int = UndoRedo.MERGE_ENDS if merged else UndoRedo.MERGE_DISABLE
+## that [param context] is in. Steps with the same [param merged], such as an object and its
+## property, that follow each other quickly become one, so that a slider that is dragged is one
+## step.
+func begin(title: String, context: Node, merged: Array = []) -> void:
+	# The engine would merge by the title alone.
+	var same: bool = (
+		not merged.is_empty() and merged == _merged and _get_version(context) == _version
+	)
+	var mode: int = UndoRedo.MERGE_ENDS if same else UndoRedo.MERGE_DISABLE
+	_merged = merged
+	_context = weakref(context)
 	# What is undone is undone in the opposite order.
 	if _undo is UndoRedo:
 		(_undo as UndoRedo).create_action(title, mode, true)
@@ -53,6 +64,17 @@ func add_property(object: Object, property: StringName, value: Variant, old: Var
 	_undo.call(&"add_undo_property", object, property, old)
 
 
+## Adds all of an object's [param values] and [param old] values, by their names. Both are set in
+## the order of [param values], since what is set first may set others with it, as a preset does.
+func add_properties(object: Object, values: Dictionary, old: Dictionary) -> void:
+	var names: Array = values.keys()
+	for name: StringName in names:
+		_undo.call(&"add_do_property", object, name, values[name])
+	names.reverse()
+	for name: StringName in names:
+		_undo.call(&"add_undo_property", object, name, old[name])
+
+
 ## Keeps [param node], which the step adds to the scene, alive while the step can be undone or
 ## done.
 func keep_added(node: Node) -> void:
@@ -62,3 +84,12 @@ func keep_added(node: Node) -> void:
 ## Ends the step. Without [param execute] what it does is done already.
 func commit(execute: bool = true) -> void:
 	_undo.call(&"commit_action", execute)
+	_version = _get_version(_context.get_ref() as Node)
+
+
+func _get_version(context: Node) -> int:
+	var plain: UndoRedo = _undo as UndoRedo
+	if plain == null:
+		var id: int = _undo.call(&"get_object_history_id", context)
+		plain = _undo.call(&"get_history_undo_redo", id)
+	return plain.get_version()

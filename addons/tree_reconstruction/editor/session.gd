@@ -265,7 +265,7 @@ func set_value(
 		return
 	cancel_drag()
 	if object == node:
-		history.begin(title, node, merged)
+		history.begin(title, node, [node.get_instance_id(), property] if merged else [])
 		history.add_property(node, property, value, node.get(property))
 		history.commit()
 		return
@@ -284,17 +284,18 @@ func set_value(
 		own = rule.duplicate() as LeafRule
 		edited.leaf_rule = own
 	var target: Object = own if of_rule else edited
-	# A property may set others with it: a preset sets them all.
+	# A property may set others with it, as a preset does: so all are set again.
 	var before: Dictionary = _stored(target)
 	target.set(property, value)
 	var after: Dictionary = _stored(target)
-	history.begin(title, node, merged)
+	history.begin(title, node, [target.get_instance_id(), property] if merged else [])
 	_add_local(edited, imported)
-	if own != rule:
+	if merged and edited == imported:
+		# The last of the steps that become one does all that it does again.
+		history.add_property(node, &"reconstruction", edited, edited)
+	if own != rule or (merged and of_rule):
 		history.add_property(edited, &"leaf_rule", own, rule)
-	for changed: StringName in after:
-		if not is_same(after[changed], before[changed]) and after[changed] != before[changed]:
-			history.add_property(target, changed, after[changed], before[changed])
+	history.add_properties(target, after, before)
 	history.commit(false)
 
 
@@ -307,8 +308,8 @@ func replace_tree(title: String, made: TreeReconstruction) -> void:
 	var old: TreeReconstruction = tree
 	made.resource_name = old.resource_name
 	history.begin(title, node)
-	# First, so that it is the last to be undone: by then the path is the old one's again, and has to be
-	# saved.
+	# First, so that it is the last to be undone: by then the path is the old one's again, and has to
+	# be saved.
 	history.add_method(old, &"emit_changed", [], &"emit_changed", [])
 	if LocalTrees.is_foreign(old, node):
 		var path: String = LocalTrees.free_path(old, node)
