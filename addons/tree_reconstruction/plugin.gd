@@ -11,7 +11,9 @@ const DOMAIN: StringName = &"tree_reconstruction"
 const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 # In the order in which they come; they go in the opposite one. Each has enter(plugin, session)
 # and exit().
-const _PARTS: PackedStringArray = []
+const _PARTS: PackedStringArray = [
+	"import/part.gd",
+]
 
 var _session: RefCounted
 var _parts: Array[RefCounted] = []

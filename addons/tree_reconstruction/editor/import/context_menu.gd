@@ -1,0 +1,23 @@
+@tool
+extends EditorContextMenuPlugin
+## 'Add Tree to Scene' in the FileSystem dock's menu of scans and trees.
+
+const SceneAdder: GDScript = preload("./scene_adder.gd")
+
+const _ICON: String = "res://addons/tree_reconstruction/icons/TreeInstance3D.svg"
+
+var adder: SceneAdder
+
+
+func _popup_menu(paths: PackedStringArray) -> void:
+	var count: int = SceneAdder.tree_files(paths).size()
+	if count == 0:
+		return
+	var title: String = tr("Add Tree to Scene") if count == 1 else tr("Add Trees to Scene")
+	# Not preloaded: in a project that was just made it is imported after this script is loaded.
+	var icon: Texture2D = load(_ICON) as Texture2D if ResourceLoader.exists(_ICON) else null
+	add_context_menu_item(title, _add, icon)
+
+
+func _add(paths: PackedStringArray) -> void:
+	adder.add(SceneAdder.load_trees(paths), SceneAdder.place_in_view())

@@ -1,0 +1,212 @@
+@tool
+extends RefCounted
+## What happens to trees that were edited when their scan is imported again: their edits are done
+## again on the new import. What no longer fits is listed; nothing of the user's is lost.
+##
+## A tree in an open scene changes as one step of its undo history, another one in its file.
+## Before, the tree as it was is kept beside it, as [code]oak_tree.res.bak[/code].
+
+const SceneAdder: GDScript = preload("./scene_adder.gd")
+
+const _BACKUPS: int = 5
+# What an import makes; all else is the user's.
+const _IMPORTED: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
+const _LISTED: int = 20
+
+# The session of what is edited: its history, its trees, its voice.
+var _session: RefCounted
+
+
+func _init(session: RefCounted) -> void:
+	_session = session
+
+
+func enter() -> void:
+	EditorInterface.get_resource_filesystem().resources_reimported.connect(_on_reimported)
+
+
+func exit() -> void:
+	EditorInterface.get_resource_filesystem().resources_reimported.disconnect(_on_reimported)
+
+
+## Does the edits of all trees that were made of these imported ones again. Returns their paths.
+func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
+	var updated: PackedStringArray = []
+	var report: PackedStringArray = []
+	for path: String in SceneAdder.tree_files(imported_paths):
+		if not FileAccess.file_exists(path + ".import"):
+			continue
+		var fresh: TreeReconstruction = _load_fresh(path)
+		if fresh == null:
+			continue
+		for local_path: String in local_trees_of(path, fresh.provenance.get("source", path)):
+			var local: TreeReconstruction = load(local_path) as TreeReconstruction
+			if local != null and _update(local, fresh, report):
+				updated.append(local_path)
+	if not report.is_empty():
+		_show(report)
+	elif not updated.is_empty():
+		_session.say(tr("The edits were done again on the new import: %s") % ", ".join(updated), 0)
+	return updated
+
+
+## The files beside an imported tree, or beside its scan, that hold edited copies of it.
+static func local_trees_of(imported_path: String, source: String) -> PackedStringArray:
+	var folders: PackedStringArray = [imported_path.get_base_dir()]
+	if source.begins_with("res://") and source.get_base_dir() not in folders:
+		folders.append(source.get_base_dir())
+	var paths: PackedStringArray = []
+	for folder: String in folders:
+		for name: String in DirAccess.get_files_at(folder):
+			var path: String = folder.path_join(name)
+			if name.get_extension() not in ["res", "tres"] or name.contains(".saving."):
+				continue
+			if FileAccess.file_exists(path + ".import"):
+				continue
+			# The name tells nearly always; a file that was renamed is looked into.
+			if not SceneAdder.is_tree_file(path):
+				continue
+			var tree: TreeReconstruction = load(path) as TreeReconstruction
+			if tree != null and tree.provenance.get("source", "") == source:
+				paths.append(path)
+	return paths
+
+
+## A copy of the user's tree on the new import, with its edits, and what of them did not fit.
+static func replayed(local: TreeReconstruction, fresh: TreeReconstruction) -> Dictionary:
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = fresh.skeleton
+	made.foliage = fresh.foliage
+	made.provenance = fresh.provenance
+	var result: Dictionary = {"tree": made, "done": 0, "left_out": []}
+	if not local.edit_log.is_empty():
+		var replay: Dictionary = made.replay(local.edit_log)
+		if replay["edit"] == null:
+			return {}
+		result["done"] = replay["done"]
+		result["left_out"] = replay["left_out"]
+	return result
+
+
+func _on_reimported(paths: PackedStringArray) -> void:
+	# The engine is in the middle of it.
+	update_trees.call_deferred(paths)
+
+
+func _update(
+	local: TreeReconstruction, fresh: TreeReconstruction, report: PackedStringArray
+) -> bool:
+	var path: String = local.resource_path
+	var result: Dictionary = replayed(local, fresh)
+	if result.is_empty():
+		report.append(tr("%s stays as it is: its list of edits cannot be read.") % path)
+		return false
+	var made: TreeReconstruction = result["tree"]
+	if local.skeleton == made.skeleton and local.foliage == made.foliage:
+		return false
+	var error: Error = _back_up(local, path)
+	if error != OK:
+		report.append(
+			(
+				tr("%s stays as it is, since no backup can be written: %s.")
+				% [path, error_string(error)]
+			)
+		)
+		return false
+	_list(path, result["left_out"], report)
+	var node: TreeInstance3D = _node_of(local)
+	if node == null:
+		for property: StringName in _IMPORTED:
+			local.set(property, made.get(property))
+		error = ResourceSaver.save(local, path, ResourceSaver.FLAG_COMPRESS)
+		if error != OK:
+			report.append(tr("%s can't be written: %s.") % [path, error_string(error)])
+		return true
+	_session.cancel_drag()
+	_session.history.begin(tr("Import Scan Again"), node)
+	for property: StringName in _IMPORTED:
+		_session.history.add_property(local, property, made.get(property), local.get(property))
+	_session.history.commit()
+	_session.local_trees.watch(local)
+	# It is saved with the scene.
+	local.emit_changed()
+	return true
+
+
+func _list(path: String, left_out: Array, report: PackedStringArray) -> void:
+	if left_out.is_empty():
+		return
+	(
+		report
+		. append(
+			(
+				tr(
+					"%s: %d of its edits no longer fit the scan. They are kept, and tried again next time:"
+				)
+				% [path, left_out.size()]
+			)
+		)
+	)
+	for i: int in mini(left_out.size(), _LISTED):
+		var entry: Dictionary = left_out[i]
+		report.append("  %s\n    %s" % [entry["command"], entry["reason"]])
+	if left_out.size() > _LISTED:
+		report.append(tr("  … and %d more.") % (left_out.size() - _LISTED))
+
+
+# A node of an open scene that shows the tree: first the one that is edited.
+func _node_of(local: TreeReconstruction) -> TreeInstance3D:
+	if is_instance_valid(_session.node) and _session.node.reconstruction == local:
+		return _session.node
+	if not Engine.is_editor_hint():
+		return null
+	for root: Node in EditorInterface.get_open_scene_roots():
+		var nodes: Array[Node] = root.find_children("*", "MeshInstance3D", true, false)
+		nodes.push_front(root)
+		for node: Node in nodes:
+			if node is TreeInstance3D and (node as TreeInstance3D).reconstruction == local:
+				return node
+	return null
+
+
+func _show(report: PackedStringArray) -> void:
+	var text: String = "\n".join(report)
+	print(text)
+	if not Engine.is_editor_hint():
+		return
+	var dialog: AcceptDialog = AcceptDialog.new()
+	dialog.title = tr("Edits That No Longer Fit")
+	var lines: TextEdit = TextEdit.new()
+	lines.text = text
+	lines.editable = false
+	lines.wrap_mode = TextEdit.LINE_WRAPPING_BOUNDARY
+	lines.custom_minimum_size = Vector2(640, 320) * EditorInterface.get_editor_scale()
+	dialog.add_child(lines)
+	dialog.visibility_changed.connect(_free_hidden.bind(dialog))
+	EditorInterface.popup_dialog_centered(dialog)
+
+
+static func _free_hidden(dialog: AcceptDialog) -> void:
+	if not dialog.visible:
+		dialog.queue_free()
+
+
+# The import as it is on disk now, whatever is in memory.
+static func _load_fresh(path: String) -> TreeReconstruction:
+	return ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as TreeReconstruction
+
+
+# As it is in memory, saved or not. The last few are kept.
+static func _back_up(local: TreeReconstruction, path: String) -> Error:
+	var part: String = path.get_basename() + ".saving." + path.get_extension()
+	var error: Error = ResourceSaver.save(local, part, ResourceSaver.FLAG_COMPRESS)
+	if error != OK:
+		return error
+	for i: int in range(_BACKUPS - 1, 0, -1):
+		if FileAccess.file_exists(_backup(path, i)):
+			DirAccess.rename_absolute(_backup(path, i), _backup(path, i + 1))
+	return DirAccess.rename_absolute(part, _backup(path, 1))
+
+
+static func _backup(path: String, number: int) -> String:
+	return path + ".bak" + ("" if number == 1 else str(number))
