@@ -5,8 +5,9 @@ extends EditorExportPlugin
 const _FOLDER: String = "res://addons/tree_reconstruction/"
 
 
+# Plugins take their turns by name: before "GDScript", which would put the scripts in, compiled.
 func _get_name() -> String:
-	return "TreeReconstructionEditorFiles"
+	return "EditorFilesOfTreeReconstruction"
 
 
 func _export_file(path: String, _type: String, _features: PackedStringArray) -> void:

@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# Exports a game with a tree, for real, and runs it: without a screen and in a window. ./dev test export calls
+# it, with GODOT set, the libraries of the editor and of both templates built, and the sample scan made. The
+# last line is 'N passed, N failed'.
+set -uo pipefail
+cd "$(dirname "$0")/../.."
+passed=0
+failed=0
+check() {
+    local what=$1
+    shift
+    if "$@"; then
+        echo "ok      $what"
+        passed=$((passed + 1))
+    else
+        echo "FAILED  $what"
+        failed=$((failed + 1))
+    fi
+}
+finish() {
+    echo "$passed passed, $failed failed"
+    [ "$failed" = 0 ]
+    exit
+}
+
+work=$PWD/build/export
+rm -rf "$work"
+mkdir -p "$work/out"
+cp -r tests/export/game "$work/game"
+mkdir "$work/game/addons"
+cp -r project/addons/tree_reconstruction "$work/game/addons/"
+
+# The templates lie beside the engine in Debian's package; elsewhere where the editor keeps them.
+template() {
+    local found
+    for found in "$(dirname "$(readlink -f "$GODOT")")/usr/bin/godot-template-$1" "/usr/bin/godot-template-$1" \
+        "$HOME/.local/share/godot/export_templates"/*/linux_"$1".x86_64; do
+        [ ! -x "$found" ] || { echo "$found"; return; }
+    done
+}
+release=$(template release)
+debug=$(template debug)
+if [ -z "$release" ] || [ -z "$debug" ]; then
+    echo "Skipped: this engine has no export templates. Install them in its editor."
+    check 'the templates are told to be missing' true
+    finish
+fi
+sed -i "s|TEMPLATE_DEBUG|$debug|; s|TEMPLATE_RELEASE|$release|" "$work/game/export_presets.cfg"
+
+log=$work/log
+engine() { timeout 300 "$GODOT" --headless --path "$work/game" "$@" >"$log" 2>&1; }
+# The first import only finds the extension; the tree is made before the second one, which needs it.
+engine --import --quit-after 2000
+engine --script res://make_tree.gd -- "$PWD/build/sample/scan.ply" || { tail -n 20 "$log"; }
+wanted=$(sed -n 's/^digest //p' "$log")
+check 'the editor makes the tree' [ -n "$wanted" ]
+engine --import --quit-after 2000
+for kind in release debug; do
+    engine --export-$kind Linux "$work/out/$kind.x86_64"
+    check "the $kind export ends" [ -x "$work/out/$kind.x86_64" ]
+    grep -E '^(SCRIPT )?ERROR' "$log" && check "the $kind export without errors" false
+done
+
+# The unpacked engine's templates find its libraries as ./dev has the engine itself find them.
+root=$(dirname "$(readlink -f "$GODOT")")
+if [ -e "$root/run-godot" ]; then
+    libraries=$(echo "$root"/usr/lib/*-linux-gnu)
+    LIBGL_DRIVERS_PATH=$libraries/dri
+    export LIBGL_DRIVERS_PATH
+    for kind in release debug; do
+        patchelf --set-interpreter "$(patchelf --print-interpreter "$root/usr/bin/godot")" "$work/out/$kind.x86_64"
+        patchelf --force-rpath --set-rpath "$libraries:$libraries/pulseaudio" "$work/out/$kind.x86_64"
+    done
+fi
+
+for kind in release debug; do
+    (cd "$work/out" && timeout 120 "./$kind.x86_64" --headless) >"$work/$kind.log" 2>&1
+    check "the $kind game runs" grep -q '^digest ' "$work/$kind.log"
+    check "the $kind game makes the same bytes as the editor" grep -q "^digest $wanted\$" "$work/$kind.log"
+    check "the $kind game has no class of the editor's" grep -q '^editor false$' "$work/$kind.log"
+    ! grep -E 'ERROR|WARNING' "$work/$kind.log"
+    check "the $kind game says nothing else" [ $? = 0 ]
+done
+if command -v xvfb-run >/dev/null; then
+    (cd "$work/out" && timeout 120 xvfb-run -a -s '-screen 0 640x640x24' \
+        ./release.x86_64 --rendering-driver opengl3 --audio-driver Dummy -- --picture "$work/picture.png") >"$work/window.log" 2>&1
+    check 'the game shows itself in a window' [ -s "$work/picture.png" ]
+fi
+
+# Nothing of the editor ships.
+strings -n 8 "$work/out/release.pck" >"$work/names"
+! grep -E 'tree_reconstruction/(editor/.*|plugin)\.(gdc|gd.remap|tscn|po)' "$work/names"
+check 'no script of the editor is in the pack' [ $? = 0 ]
+grep -q 'tree_reconstruction/nodes/tree_instance_3d' "$work/names"
+check 'the node is in the pack' [ $? = 0 ]
+libraries=$(cd "$work/out" && ls ./*.so)
+check 'only the libraries of the two templates are beside it' \
+    [ "$(echo "$libraries" | wc -l)" = 2 ]
+! echo "$libraries" | grep editor
+check 'not that of the editor' [ $? = 0 ]
+echo "Shipped with a game: $(du -bc "$work"/out/*template_release*.so | tail -n 1 | cut -f 1) bytes of library," \
+    "$(stat -c %s "$work/out/release.pck") bytes of pack."
+finish
