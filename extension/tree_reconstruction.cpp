@@ -336,10 +336,13 @@ Array TreeReconstruction::build_skeleton_lines() const {
     }
     PackedVector3Array points;
     PackedColorArray colors;
+    PackedVector2Array radii;
     points.resize(int64_t(2 * (tree->size() - 1)));
     colors.resize(points.size());
+    radii.resize(points.size());
     Vector3* write_point = points.ptrw();
     Color* write_color = colors.ptrw();
+    Vector2* write_radius = radii.ptrw();
     for (const NodeId id : list_nodes(*tree)) {
         const NodeId parent = tree->node(id).parent;
         if (parent == treerec::kNoNode) {
@@ -349,10 +352,12 @@ Array TreeReconstruction::build_skeleton_lines() const {
             const treerec::Node& node = tree->node(end);
             *write_point++ = to_godot(node.position);
             *write_color++ = kKindColors[int(node.kind())];
+            *write_radius++ = Vector2(float(node.radius), 0.0f);
         }
     }
     arrays.resize(Mesh::ARRAY_MAX);
     arrays[Mesh::ARRAY_VERTEX] = points;
     arrays[Mesh::ARRAY_COLOR] = colors;
+    arrays[Mesh::ARRAY_TEX_UV] = radii;
     return arrays;
 }

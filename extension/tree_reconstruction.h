@@ -106,6 +106,7 @@ class TreeReconstruction : public godot::Resource {
     godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
     godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;
     godot::Array build_skeleton_lines() const;
+    static godot::Array widen_lines(const godot::Array& p_lines);
     godot::Array build_leaf_form_arrays(int p_lod) const;
     static godot::Array build_leaf_card_arrays(int p_lod);
     static godot::PackedStringArray get_leaf_preset_names();
@@ -138,6 +139,7 @@ class TreeReconstruction : public godot::Resource {
                   const godot::Vector2& p_position, double p_distance) const;
     godot::PackedInt32Array pick_nodes(const godot::Projection& p_to_screen, const godot::Vector2& p_viewport,
                                        const godot::Rect2& p_rect) const;
+    int get_node_order(int p_id) const;
     godot::Array build_selection_lines(const godot::PackedInt32Array& p_ids) const;
     godot::Dictionary preview_edit(const godot::String& p_command) const;
     godot::PackedByteArray draw(int p_size) const;

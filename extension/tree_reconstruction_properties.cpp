@@ -264,6 +264,8 @@ void TreeReconstruction::_bind_methods() {
                          DEFVAL(0));
     ClassDB::bind_method(D_METHOD("build_leaves", "lod"), &TreeReconstruction::build_leaves, DEFVAL(0));
     ClassDB::bind_method(D_METHOD("build_skeleton_lines"), &TreeReconstruction::build_skeleton_lines);
+    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("widen_lines", "lines"),
+                                &TreeReconstruction::widen_lines);
     ClassDB::bind_method(D_METHOD("build_leaf_form_arrays", "lod"),
                          &TreeReconstruction::build_leaf_form_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("build_leaf_card_arrays", "lod"),

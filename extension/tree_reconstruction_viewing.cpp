@@ -11,6 +11,7 @@
 #include "foliage/foliage_twigs.h"
 #include "foliage/leaves.h"
 #include "mesh/tree_picture.h"
+#include "tree/branches.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -38,6 +39,13 @@ PackedInt32Array TreeReconstruction::pick_nodes(const Projection& p_to_screen, c
     const Vector2 end = p_rect.position + p_rect.size;
     return to_godot(treerec::pick_nodes(*get_tree(), to_view(p_to_screen, p_viewport),
                                         {p_rect.position.x, p_rect.position.y}, {end.x, end.y}));
+}
+
+int TreeReconstruction::get_node_order(int p_id) const {
+    const std::shared_ptr<const treerec::Tree> tree = get_tree();
+    ERR_FAIL_COND_V_MSG(!tree->contains(p_id), -1, vformat("The tree has no node %d.", p_id));
+    const treerec::BranchList list = treerec::list_branches(*tree);
+    return list.branches[size_t(list.branch_of[size_t(p_id)])].order;
 }
 
 Array TreeReconstruction::build_selection_lines(const PackedInt32Array& p_ids) const {
@@ -128,6 +136,7 @@ void TreeReconstruction::_bind_viewing() {
                          &TreeReconstruction::pick_node, DEFVAL(8.0));
     ClassDB::bind_method(D_METHOD("pick_nodes", "to_screen", "viewport", "rect"),
                          &TreeReconstruction::pick_nodes);
+    ClassDB::bind_method(D_METHOD("get_node_order", "id"), &TreeReconstruction::get_node_order);
     ClassDB::bind_method(D_METHOD("build_selection_lines", "ids"),
                          &TreeReconstruction::build_selection_lines);
     ClassDB::bind_method(D_METHOD("preview_edit", "command"), &TreeReconstruction::preview_edit);

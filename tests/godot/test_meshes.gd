@@ -127,6 +127,42 @@ func test_skeleton_lines() -> void:
 	check_equal(
 		arrays[Mesh.ARRAY_COLOR].size(), arrays[Mesh.ARRAY_VERTEX].size(), "the number of colours"
 	)
+	var ids: PackedInt32Array = made.get_node_ids()
+	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
+	for i: int in places.size():
+		var id: int = ids[Array(made.get_positions()).find(places[i])]
+		check_near(
+			arrays[Mesh.ARRAY_TEX_UV][i].x, made.get_node_radius(id), 1e-6, "the radius at an end"
+		)
+
+
+func test_lines_are_widened() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	var lines: Array = made.build_skeleton_lines()
+	var ribbons: Array = TreeReconstruction.widen_lines(lines)
+	var ends: PackedVector3Array = lines[Mesh.ARRAY_VERTEX]
+	check_equal(ribbons[Mesh.ARRAY_VERTEX].size(), 2 * ends.size(), "the number of corners")
+	check_equal(ribbons[Mesh.ARRAY_INDEX].size(), 3 * ends.size(), "the number of indices")
+	var sides: float = 0.0
+	for i: int in ribbons[Mesh.ARRAY_VERTEX].size():
+		@warning_ignore("integer_division")
+		var end: int = i / 2
+		var place: Vector2 = ribbons[Mesh.ARRAY_TEX_UV][i]
+		var way: Vector3 = (ends[end | 1] - ends[end & ~1]).normalized()
+		check_equal(ribbons[Mesh.ARRAY_VERTEX][i], ends[end], "a corner's place")
+		check_equal(place.x, float(end & 1), "a corner's end")
+		check_equal(absf(place.y), 1.0, "a corner's side")
+		check(ribbons[Mesh.ARRAY_NORMAL][i].is_equal_approx(way), "A ribbon goes another way.")
+		check_equal(ribbons[Mesh.ARRAY_COLOR][i], lines[Mesh.ARRAY_COLOR][end], "a colour")
+		check_equal(ribbons[Mesh.ARRAY_TEX_UV2][i], lines[Mesh.ARRAY_TEX_UV][end], "a radius")
+		sides += place.y
+	check_equal(sides, 0.0, "the sum of the sides")
+	for i: int in ribbons[Mesh.ARRAY_INDEX].size():
+		@warning_ignore("integer_division")
+		var line: int = i / 6
+		@warning_ignore("integer_division")
+		check_equal(ribbons[Mesh.ARRAY_INDEX][i] / 4, line, "an index's line")
+	check(TreeReconstruction.widen_lines([]).is_empty(), "Nothing has ribbons.")
 
 
 func test_builders_work_on_a_worker_while_the_tree_changes() -> void:

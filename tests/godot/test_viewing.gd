@@ -114,3 +114,13 @@ func test_the_picture() -> void:
 	expect_error("pixels wide")
 	check(made.draw(7).is_empty(), "A tiny picture was drawn.")
 	check_equal(TreeReconstruction.new().draw(32).count(0), 32 * 32 * 4, "an empty tree")
+
+
+func test_orders_of_branching() -> void:
+	var made: TreeReconstruction = grown_tree(5)
+	for order: int in 4:
+		for id: int in made.select_nodes("order:%d" % order):
+			check_equal(made.get_node_order(id), order, "the order of node %d" % id)
+	check_equal(made.get_node_order(made.get_root()), 0, "the root's order")
+	expect_error("no node 99999")
+	check_equal(made.get_node_order(99999), -1, "the order of no node")
