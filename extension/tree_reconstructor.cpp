@@ -1,5 +1,6 @@
 #include "tree_reconstructor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <godot_cpp/classes/json.hpp>
@@ -45,6 +46,7 @@ class TreeReconstructor::Job {
     }
     ~Job() {
         if (owns_) {
+            owner_->cache_bytes_ = int64_t(owner_->cache_.bytes());
             owner_->cancelled_ = false;
             owner_->running_ = false;
         }
@@ -111,13 +113,14 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
         stage_.clear();
         report_json_.clear();
         result_ = std::make_shared<treerec::Reconstruction>();
+        cloud_ = std::make_shared<treerec::PointCloud>();
         steps_.clear();
     }
     p_listener.check();
     const ParsedOptions options = parse_reconstruct_options(p_options);
     treerec::SubProgress reconstructing(&p_listener, 0.0, kReportBegins);
     treerec::Reconstruction result =
-        treerec::reconstruct_file(file_path(p_path), options.pipeline, &reconstructing);
+        treerec::reconstruct_file(file_path(p_path), options.pipeline, &reconstructing, &cache_);
     p_listener.update(kReportBegins, "Reporting");
     const treerec::ReportDetails details = report_details(result, options, to_std(p_path), p_listener);
     const std::string report = treerec::report_json(result, details);
@@ -142,6 +145,7 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, co
     steps_ = std::move(result.steps);
     voxel_ = result.voxel;
     result_ = std::make_shared<treerec::Reconstruction>(std::move(result));
+    cloud_ = std::shared_ptr<const treerec::PointCloud>(result_, &result_->cloud);
     details_ = std::make_shared<treerec::ReportDetails>(details);
     fraction_ = 1.0;
     return made;
@@ -158,6 +162,49 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path
         _fail(error.what());
         return Ref<TreeReconstruction>();
     }
+}
+
+bool TreeReconstructor::load_cloud(const Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), false, "There is no tree whose scan could be loaded.");
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), false, BUSY);
+    try {
+        Listener listener(this);
+        listener.check();
+        {
+            const std::lock_guard lock(mutex_);
+            fraction_ = 0.0;
+            stage_.clear();
+        }
+        const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+        const Dictionary provenance = p_tree->get_provenance();
+        const String source = provenance.get("source", "");
+        if (source.is_empty()) {
+            throw treerec::Error("This tree does not say which scan it was made from.");
+        }
+        const ParsedOptions options = parse_reconstruct_options(provenance.get("options", Dictionary()));
+        treerec::PointCloud cloud =
+            treerec::load_scan(file_path(source), options.pipeline, tree->frame(),
+                               size_t(std::max<int64_t>(p_maximum_points, 0)), &listener, &cache_);
+        listener.check();
+        const std::lock_guard lock(mutex_);
+        cloud_ = std::make_shared<treerec::PointCloud>(std::move(cloud));
+        fraction_ = 1.0;
+        return true;
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return false;
+    }
+}
+
+void TreeReconstructor::clear_cache() {
+    const Job job(this);
+    ERR_FAIL_COND_MSG(!job.is_alone(), BUSY);
+    cache_ = {};
+}
+
+int64_t TreeReconstructor::get_cache_size() const {
+    return cache_bytes_;
 }
 
 Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path, const String& p_up_axis) {
@@ -258,11 +305,11 @@ Dictionary TreeReconstructor::get_report() const {
 PackedVector3Array TreeReconstructor::get_cloud_points() const {
     const std::lock_guard lock(mutex_);
     PackedVector3Array points;
-    points.resize(int64_t(result_->cloud.size()));
+    points.resize(int64_t(cloud_->size()));
     static_assert(sizeof(treerec::Vec3) == sizeof(Vector3));
-    if (!result_->cloud.empty()) {
-        std::memcpy(static_cast<void*>(points.ptrw()), result_->cloud.positions.data(),
-                    result_->cloud.size() * sizeof(Vector3));
+    if (!cloud_->empty()) {
+        std::memcpy(static_cast<void*>(points.ptrw()), cloud_->positions.data(),
+                    cloud_->size() * sizeof(Vector3));
     }
     return points;
 }
@@ -270,9 +317,9 @@ PackedVector3Array TreeReconstructor::get_cloud_points() const {
 PackedColorArray TreeReconstructor::get_cloud_colors() const {
     const std::lock_guard lock(mutex_);
     PackedColorArray colors;
-    colors.resize(int64_t(result_->cloud.colors.size()));
+    colors.resize(int64_t(cloud_->colors.size()));
     Color* write = colors.ptrw();
-    for (const treerec::Color8& color : result_->cloud.colors) {
+    for (const treerec::Color8& color : cloud_->colors) {
         *write++ = Color(float(color[0]) / 255.0f, float(color[1]) / 255.0f, float(color[2]) / 255.0f);
     }
     return colors;
@@ -289,6 +336,10 @@ Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
 void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("reconstruct_file", "path", "options"),
                          &TreeReconstructor::reconstruct_file, DEFVAL(Dictionary()));
+    ClassDB::bind_method(D_METHOD("load_cloud", "tree", "maximum_points"), &TreeReconstructor::load_cloud,
+                         DEFVAL(500000));
+    ClassDB::bind_method(D_METHOD("clear_cache"), &TreeReconstructor::clear_cache);
+    ClassDB::bind_method(D_METHOD("get_cache_size"), &TreeReconstructor::get_cache_size);
     ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis"), &TreeReconstructor::import_skeleton,
                          DEFVAL("z"));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path"), &TreeReconstructor::export_file);

@@ -14,8 +14,8 @@
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
 
-// Turns scans into trees, in the editor. reconstruct_file(), import_skeleton(), export_file() and
-// save_html_report() may run on any thread, one at a time; the other methods may be called from any other
+// Turns scans into trees, in the editor. reconstruct_file(), load_cloud(), import_skeleton(), export_file()
+// and save_html_report() may run on any thread, one at a time; the other methods may be called from any other
 // thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
@@ -23,6 +23,9 @@ class TreeReconstructor : public godot::RefCounted {
   public:
     godot::Ref<TreeReconstruction> reconstruct_file(const godot::String& p_path,
                                                     const godot::Dictionary& p_options);
+    bool load_cloud(const godot::Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points);
+    void clear_cache();
+    int64_t get_cache_size() const;
     godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,
                                                    const godot::String& p_up_axis);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path);
@@ -53,6 +56,10 @@ class TreeReconstructor : public godot::RefCounted {
     void _report_progress(double p_fraction, const char* p_stage);
     void _fail(const std::string& p_sentence);
 
+    // What the last reconstruct_file() read and cleaned; the running job's alone.
+    treerec::ReconstructCache cache_;
+    std::atomic<int64_t> cache_bytes_ = 0;
+
     std::atomic<bool> running_ = false;
     std::atomic<bool> cancelled_ = false;
 
@@ -65,6 +72,8 @@ class TreeReconstructor : public godot::RefCounted {
     // Of the last reconstruct_file() that made a tree; both never null.
     std::shared_ptr<const treerec::Reconstruction> result_ = std::make_shared<treerec::Reconstruction>();
     std::shared_ptr<const treerec::ReportDetails> details_ = std::make_shared<treerec::ReportDetails>();
+    // Of the last reconstruct_file() or load_cloud(); never null.
+    std::shared_ptr<const treerec::PointCloud> cloud_ = std::make_shared<treerec::PointCloud>();
     std::vector<treerec::FloodStep> steps_;
     double voxel_ = 0.0;
     int64_t last_signal_ms_ = 0;

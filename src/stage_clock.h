@@ -11,7 +11,8 @@ namespace treerec {
 struct StageTime {
     std::string name;
     double milliseconds = 0.0;
-    size_t count = 0;  // points, branches or nodes after the stage
+    size_t count = 0;   // points, branches or nodes after the stage
+    bool kept = false;  // its result was there already, from a job before
 };
 
 // Appends a StageTime at every stop(), measured from the last one.
@@ -23,9 +24,10 @@ class StageClock {
     static inline void (*observer)(const StageTime& stage) = nullptr;
 
     void restart() { start_ = Clock::now(); }
-    void stop(const char* name, size_t count) {
+    void stop(const char* name, size_t count, bool kept = false) {
         const Clock::time_point now = Clock::now();
-        stages_.push_back({name, std::chrono::duration<double, std::milli>(now - start_).count(), count});
+        stages_.push_back(
+            {name, std::chrono::duration<double, std::milli>(now - start_).count(), count, kept});
         if (observer) observer(stages_.back());
         start_ = now;
     }

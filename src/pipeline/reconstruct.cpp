@@ -8,6 +8,7 @@
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "scan/check_shape.h"
+#include "scan/thin_cloud.h"
 #include "scan/wood_leaf.h"
 #include "skeleton/complete_all.h"
 
@@ -35,6 +36,24 @@ constexpr size_t kLeastFollowed = 200;
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
+}
+
+// The cloud as the file has it, or as the cache has the file. kept: gets which.
+PointCloud read_or_take(const std::string& path, const ReadCloudOptions& options, ReadCloudReport& report,
+                        Progress* progress, ReconstructCache* cache, bool& kept) {
+    const std::optional<FileStamp> file = cache ? FileStamp::of(path) : std::nullopt;
+    kept = file && cache->has_read(*file, options);
+    if (kept) {
+        report = cache->read->report;
+        return cache->read->cloud;
+    }
+    // Its nodes would pass for points.
+    if (is_skeleton_file(path)) throw Error("'" + path + "' is a skeleton, not a point cloud.");
+    if (cache) *cache = {};
+    PointCloud cloud = read_cloud(path, options, &report, progress);
+    // Not of a file that was written to meanwhile.
+    if (file && FileStamp::of(path) == file) cache->read = {*file, options, cloud, report};
+    return cloud;
 }
 
 // Moves the cloud into the tree's frame; both have the same axes and unit.
@@ -70,42 +89,63 @@ LeafRules suited_leaves(const std::string& preset, const Reconstruction& result)
 }
 
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
-                                Progress* progress) {
+                                Progress* progress, ReconstructCache* cache) {
     Reconstruction result;
     StageClock clock(result.stages);
-    // Its nodes would pass for points.
-    if (is_skeleton_file(path)) throw Error("'" + path + "' is a skeleton, not a point cloud.");
+    bool kept = false;
 
     SubProgress reading(progress, 0.0, kReadEnd);
     reading.update(0.0, "Reading");
-    result.cloud = read_cloud(path, options.read, &result.read, &reading);
+    result.cloud = read_or_take(path, options.read, result.read, &reading, cache, kept);
     result.points_read = result.cloud.size();
     append(result.warnings, result.read.warnings);
-    clock.stop("Read", result.cloud.size());
+    clock.stop("Read", result.cloud.size(), kept);
     reading.check();
 
     SubProgress orienting(progress, kReadEnd, kOrientEnd);
     orienting.update(0.0, "Orienting");
-    result.orient = orient_cloud(result.cloud, options.orient, &orienting);
+    kept = kept && cache->has_clean(options.orient, options.clean);
+    if (cache && !kept) {
+        cache->clean.reset();
+        cache->leaves.reset();
+    }
+    result.orient = kept ? cache->clean->orient : orient_cloud(result.cloud, options.orient, &orienting);
     append(result.warnings, result.orient.warnings);
-    clock.stop("Orient", result.cloud.size());
+    const size_t oriented = kept ? cache->clean->oriented : result.cloud.size();
+    clock.stop("Orient", oriented, kept);
     orienting.check();
 
     SubProgress cleaning(progress, kOrientEnd, kCleanEnd);
     cleaning.update(0.0, "Cleaning");
-    result.clean = clean_cloud(result.cloud, options.clean, &cleaning);
-    settle_height(result.cloud, options.orient, result.orient);
+    std::vector<std::string> shape_warnings;
+    if (kept) {
+        result.cloud = cache->clean->cloud;
+        result.clean = cache->clean->report;
+        shape_warnings = cache->clean->shape_warnings;
+    } else {
+        result.clean = clean_cloud(result.cloud, options.clean, &cleaning);
+        settle_height(result.cloud, options.orient, result.orient);
+        shape_warnings = check_shape(result.cloud, &cleaning);
+        if (cache && cache->read)
+            cache->clean = {options.orient, options.clean, oriented,      result.cloud,
+                            result.orient,  result.clean,  shape_warnings};
+    }
     append(result.warnings, result.clean.warnings);
-    append(result.warnings, check_shape(result.cloud, &cleaning));
-    clock.stop("Clean", result.cloud.size());
+    append(result.warnings, shape_warnings);
+    clock.stop("Clean", result.cloud.size(), kept);
     cleaning.check();
 
     SubProgress telling(progress, kCleanEnd, kLeavesEnd);
     telling.update(0.0, "Leaves");
     WoodLeaf told;
-    if (options.tell_leaves) told = tell_wood_from_leaves(result.cloud, &telling);
+    kept = kept && options.tell_leaves && cache->leaves;
+    if (kept)
+        told = *cache->leaves;
+    else if (options.tell_leaves)
+        told = tell_wood_from_leaves(result.cloud, &telling);
+    if (cache && cache->clean && options.tell_leaves && !kept) cache->leaves = told;
     append(result.warnings, told.warnings);
-    clock.stop("Leaves", result.cloud.size());
+    clock.stop("Leaves", result.cloud.size(), kept);
     telling.check();
 
     SubProgress growing(progress, kLeavesEnd, kSkeletonEnd);
@@ -177,6 +217,32 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
             " cm or more to either side of it. Twigs and the radii of thin wood are guesses.");
     clock.stop("Score", result.cloud.size());
     return result;
+}
+
+PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
+                     size_t most, Progress* progress, ReconstructCache* cache) {
+    constexpr double kScanRead = 0.4, kScanOriented = 0.5, kScanCleaned = 0.9;
+    bool kept = false;
+    ReadCloudReport report;
+    SubProgress reading(progress, 0.0, kScanRead);
+    reading.update(0.0, "Reading");
+    PointCloud cloud = read_or_take(path, options.read, report, &reading, cache, kept);
+    reading.check();
+    // The tree knows which way is up and how long a metre is.
+    OrientOptions orient;
+    orient.up = frame.up;
+    orient.metres_per_unit = frame.metres_per_unit;
+    SubProgress orienting(progress, kScanRead, kScanOriented);
+    orienting.update(0.0, "Orienting");
+    orient_cloud(cloud, orient, &orienting);
+    SubProgress cleaning(progress, kScanOriented, kScanCleaned);
+    cleaning.update(0.0, "Cleaning");
+    clean_cloud(cloud, options.clean, &cleaning);
+    SubProgress thinning(progress, kScanCleaned, 1.0);
+    thinning.update(0.0, "Thinning");
+    thin_cloud(cloud, most, &thinning);
+    rebase_cloud(cloud, frame);
+    return cloud;
 }
 
 }  // namespace treerec

@@ -8,6 +8,7 @@
 #include "fidelity/score.h"
 #include "foliage/foliage.h"
 #include "pipeline/export.h"
+#include "pipeline/reconstruct_cache.h"
 #include "progress.h"
 #include "scan/clean_cloud.h"
 #include "scan/point_cloud.h"
@@ -66,7 +67,16 @@ std::string chosen_leaves(const std::string& asked, const Reconstruction& result
 LeafRules suited_leaves(const std::string& preset, const Reconstruction& result);
 
 // Throws Error with a sentence, or Cancelled.
+// cache: if given, stages that it has with the same options of the same file are taken from it
+// (StageTime::kept says which), and it gets those that were done; it changes nothing else.
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
-                                Progress* progress = nullptr);
+                                Progress* progress = nullptr, ReconstructCache* cache = nullptr);
+
+// The scan that a tree was made from, as points in the tree's own frame (metres, so that they lie on its
+// bark): read again, cleaned as `options` say with the frame's up axis and unit, and thinned to at most
+// `most` points (scan/thin_cloud.h). options: those of read and clean count. cache: may have the file read.
+// Throws Error with a sentence, or Cancelled.
+PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
+                     size_t most, Progress* progress = nullptr, ReconstructCache* cache = nullptr);
 
 }  // namespace treerec

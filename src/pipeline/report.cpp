@@ -162,7 +162,9 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     Json stages = Json::array();
     double total = 0.0;
     for (const StageTime& stage : result.stages) {
-        stages.push_back({{"name", stage.name}, {"ms", stage.milliseconds}, {"count", stage.count}});
+        Json entry = {{"name", stage.name}, {"ms", stage.milliseconds}, {"count", stage.count}};
+        if (stage.kept) entry["kept"] = true;
+        stages.push_back(std::move(entry));
         total += stage.milliseconds;
     }
     json["stages"] = stages;

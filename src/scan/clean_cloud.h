@@ -16,6 +16,8 @@ struct KnownLength {
     DVec3 from{0.0};
     DVec3 to{0.0};
     double metres = 0.0;
+
+    bool operator==(const KnownLength&) const = default;
 };
 
 // At most one of metres_per_unit, known_height and known_length sets the scale; where none does, it is
@@ -25,6 +27,8 @@ struct OrientOptions {
     std::optional<double> metres_per_unit = std::nullopt;
     std::optional<double> known_height = std::nullopt;  // metres, of the whole tree
     std::optional<KnownLength> known_length = std::nullopt;
+
+    bool operator==(const OrientOptions&) const = default;
 };
 
 struct OrientReport {
@@ -56,6 +60,8 @@ struct CleanOptions {
     bool remove_fragments = true;     // small clusters far from the rest
     bool remove_ground = true;
     PickOptions pick;  // which tree, where the cloud holds several
+
+    bool operator==(const CleanOptions&) const = default;
 };
 
 struct CleanStep {

@@ -15,6 +15,8 @@ struct PickOptions {
     bool enabled = true;                           // false: whatever is in the cloud is one tree
     size_t number = 1;                             // 1 is the largest, 2 the next, …
     std::optional<DVec3> position = std::nullopt;  // scan coordinates: the tree that stands nearest
+
+    bool operator==(const PickOptions&) const = default;
 };
 
 struct StandingTree {

@@ -15,6 +15,8 @@ struct ReadCloudOptions {
     // Text files only: the columns' names in order, such as {"x","y","z","r","g","b"}; "-" skips one. Empty:
     // detect.
     std::vector<std::string> columns;
+
+    bool operator==(const ReadCloudOptions&) const = default;
 };
 
 // "x, y, z, r, -" as columns; none for an empty text.
