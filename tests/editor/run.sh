@@ -18,10 +18,11 @@ root=$PWD
 pictures=$root/build/editor
 work=$(mktemp -d)
 export TREE_EDITOR_TEST=$work
+export TREE_EDITOR_SAMPLE=$root/build/sample/scan.ply
 # Seconds that anything may take on a machine that does something else, too.
 export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-60}
 # The whole of one editor's run, in seconds: whatever hangs ends then.
-limit=600
+limit=${TREE_EDITOR_LIMIT:-600}
 passed=0
 failed=0
 shots=0
@@ -132,7 +133,7 @@ run_editor() {
     rm -f "$work/port"
     TREE_EDITOR_SCENARIOS="$*" XDG_CONFIG_HOME=$work/config XDG_DATA_HOME=$work/data XDG_CACHE_HOME=$work/cache \
         XDG_RUNTIME_DIR=$work/runtime \
-        setsid timeout --signal=ABRT --kill-after=10 "$limit" "$GODOT" --rendering-driver opengl3 --audio-driver Dummy --resolution 1600x900 --position 0,0 \
+        setsid timeout --signal=ABRT --kill-after=10 "$limit" "$GODOT" --rendering-driver opengl3 --audio-driver Dummy --resolution 1600x900 --position 0,0 --verbose \
         --path "$work/project" --editor >"$log" 2>&1 &
     engine=$!
     if wait_until $((TREE_EDITOR_PATIENCE * 3)) met && ! ended; then

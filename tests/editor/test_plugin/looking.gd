@@ -96,7 +96,7 @@ func addon() -> EditorPlugin:
 ## What the addon's plugin edits (editor/session.gd), or null where the addon is off.
 func session() -> RefCounted:
 	var plugin: EditorPlugin = addon()
-	return null if plugin == null else plugin.get(&"session") as RefCounted
+	return null if plugin == null else plugin.get(&"_session") as RefCounted
 
 
 func scene_path() -> String:

@@ -35,7 +35,7 @@ func _start() -> void:
 	await _user.say("-- the editor is open after %.1f s" % (Time.get_ticks_msec() / 1000.0))
 	for path: String in OS.get_environment("TREE_EDITOR_SCENARIOS").split(" ", false):
 		await _run(path)
-	await _user.end()
+	_user.end()
 
 
 func _is_ready() -> bool:

@@ -1,0 +1,147 @@
+@tool
+extends "./scenario.gd"
+## Scenarios with a tree in them: a scan in the project, a scene with a tree, the view on it.
+
+## The grown and scanned sample.
+var sample: String = OS.get_environment("TREE_EDITOR_SAMPLE")
+
+
+## A path of real scans, or empty where there are none here.
+func real_scan(file: String) -> String:
+	var folder: String = OS.get_environment("TREEREC_SCANS")
+	var path: String = folder.path_join(file)
+	return path if not folder.is_empty() and FileAccess.file_exists(path) else ""
+
+
+## Puts a file into the project's folder from another program, and comes back to the editor.
+func drop_file(from: String, to: String) -> void:
+	await user.go()
+	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
+	await user.come()
+
+
+## Waits until a scan in the project is imported, and returns its tree or null.
+func imported(path: String) -> TreeReconstruction:
+	if not await until(
+		func() -> bool:
+			return (
+				ResourceLoader.exists(path, "TreeReconstruction")
+				and FileAccess.file_exists(path + ".import")
+				and not EditorInterface.get_resource_filesystem().is_scanning()
+			),
+		path + " is imported"
+	):
+		return null
+	return load(path) as TreeReconstruction
+
+
+## The sample's tree as a file of its own: made once, and nothing that is imported.
+func own_tree(path: String) -> TreeReconstruction:
+	if ResourceLoader.exists(path):
+		return load(path) as TreeReconstruction
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var made: TreeReconstruction = reconstructor.reconstruct_file(sample, {})
+	if not check(made != null, "The sample can't be reconstructed."):
+		return null
+	made.leaf_preset = "birch"
+	ResourceSaver.save(made, path)
+	made.take_over_path(path)
+	EditorInterface.get_resource_filesystem().update_file(path)
+	return made
+
+
+## Makes a scene with the tree in it, opens it, and clicks on its node in the Scene dock. The view
+## is on it. Returns the node, or null.
+func open_garden(path: String, of: TreeReconstruction) -> TreeInstance3D:
+	var root: Node3D = Node3D.new()
+	root.name = path.get_file().get_basename().to_pascal_case()
+	var made: TreeInstance3D = TreeInstance3D.new()
+	made.name = "Tree"
+	made.reconstruction = of
+	root.add_child(made)
+	made.owner = root
+	var packed: PackedScene = PackedScene.new()
+	packed.pack(root)
+	root.free()
+	ResourceSaver.save(packed, path)
+	EditorInterface.get_resource_filesystem().update_file(path)
+	EditorInterface.open_scene_from_path(path)
+	if not await until(func() -> bool: return scene_path() == path, path + " is open"):
+		return null
+	return await take_up(EditorInterface.get_edited_scene_root().get_node(^"Tree"))
+
+
+## Clicks on a tree's node in the Scene dock, and brings it into view.
+func take_up(node: TreeInstance3D) -> TreeInstance3D:
+	EditorInterface.set_main_screen_editor("3D")
+	if not await until(func() -> bool: return not node.is_rebuilding(), "the tree is built"):
+		return null
+	if not await click_node(node):
+		return null
+	await frame_view()
+	return node
+
+
+## Clicks on a node in the Scene dock.
+func click_node(node: Node) -> bool:
+	if not await until(func() -> bool: return node_item(node) != null, "the node is in the dock"):
+		return false
+	await user.click(await item_place(node_list(), node_item(node)))
+	return await until(
+		func() -> bool: return EditorInterface.get_selection().get_selected_nodes() == [node],
+		"the node is selected"
+	)
+
+
+## The F key over the 3D view: brings what is selected into it.
+func frame_view() -> void:
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("f")
+	await view_rests()
+
+
+## Waits until the editor's camera has come to where it goes.
+func view_rests() -> void:
+	var last: Transform3D = Transform3D()
+	var still: int = 0
+	while still < 8:
+		await user.frames(1)
+		var now: Transform3D = view().get_camera_3d().global_transform
+		still = still + 1 if now.is_equal_approx(last) else 0
+		last = now
+
+
+## Where a tree's node is on the screen.
+func node_on_screen(of: TreeInstance3D, id: int) -> Vector2:
+	return on_screen(of.global_transform * of.reconstruction.get_node_position(id))
+
+
+## A node in the middle of the trunk's way, which can be seen and clicked.
+func trunk_node(of: TreeReconstruction) -> int:
+	var trunk: PackedInt32Array = of.select_nodes("trunk")
+	@warning_ignore("integer_division")
+	return trunk[trunk.size() / 2]
+
+
+## The node where the largest branch off the trunk begins.
+func large_branch(of: TreeReconstruction) -> int:
+	var best: int = TreeReconstruction.NO_NODE
+	var most: int = 0
+	for id: int in of.select_nodes("!trunk"):
+		var parent: int = of.get_node_parent(id)
+		if not of.is_trunk(parent):
+			continue
+		var count: int = of.select_nodes("below:%d" % id).size()
+		if count > most:
+			most = count
+			best = id
+	return best
+
+
+## How many objects the 3D view draws, with those that no node owns.
+func drawn_objects() -> int:
+	return RenderingServer.viewport_get_render_info(
+		view().get_viewport_rid(),
+		RenderingServer.VIEWPORT_RENDER_INFO_TYPE_VISIBLE,
+		RenderingServer.VIEWPORT_RENDER_INFO_OBJECTS_IN_FRAME
+	)
