@@ -13,6 +13,7 @@ const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 # and exit().
 const _PARTS: PackedStringArray = [
 	"import/part.gd",
+	"viewport/part.gd",
 ]
 
 var _session: RefCounted

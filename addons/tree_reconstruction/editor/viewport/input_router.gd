@@ -1,0 +1,124 @@
+@tool
+extends RefCounted
+## Decides who gets an event of the 3D viewport: the tool at hand, one of our keys, or the editor.
+##
+## While the skeleton is edited the tool is asked first. What it does not take goes to our keys, and
+## the rest to the editor: so orbiting, panning and zooming, and a click on another node, are what
+## they always are.
+
+## One of our keys was pressed.
+signal asked(action: StringName)
+## The mouse was moved over the viewport of this camera.
+signal moved(camera: Camera3D)
+
+const Session: GDScript = preload("../session.gd")
+const Shortcuts: GDScript = preload("shortcuts.gd")
+
+## The camera that the mouse was over last, and where.
+var camera: Camera3D
+var position: Vector2
+
+var _session: Session
+var _shortcuts: Shortcuts
+var _hover_due: bool = false
+# Whether the events that come are ones that were given back to the editor.
+var _giving_back: bool = false
+
+
+func _init(session: Session, shortcuts: Shortcuts) -> void:
+	_session = session
+	_shortcuts = shortcuts
+
+
+## Takes an event, or leaves it to the editor: returns what [method
+## EditorPlugin._forward_3d_gui_input] has to return.
+func input(from: Camera3D, event: InputEvent) -> int:
+	if _giving_back or _session.node == null or _session.tree == null:
+		return EditorPlugin.AFTER_GUI_INPUT_PASS
+	var mouse: InputEventMouse = event as InputEventMouse
+	if mouse != null:
+		camera = from
+		position = mouse.position
+		_hover_due = true
+	if _is_flying():
+		return EditorPlugin.AFTER_GUI_INPUT_PASS
+	if (
+		_session.view.editing
+		and _session.tool != null
+		and _session.tool.call(&"input", from, event)
+	):
+		return EditorPlugin.AFTER_GUI_INPUT_STOP
+	var key: InputEventKey = event as InputEventKey
+	if key != null and key.pressed and _press(key):
+		return EditorPlugin.AFTER_GUI_INPUT_STOP
+	return EditorPlugin.AFTER_GUI_INPUT_PASS
+
+
+## To be called once a frame: what is under the mouse is looked for once, however often it moved.
+func update() -> void:
+	if not _hover_due:
+		return
+	_hover_due = false
+	if not is_instance_valid(camera) or _session.tree == null:
+		return
+	var editing: bool = _session.view.editing and _session.view.skeleton
+	var busy: bool = Input.get_mouse_button_mask() != 0 and Engine.is_editor_hint()
+	if not editing:
+		_session.hovered = TreeReconstruction.NO_NODE
+	elif not busy:
+		_session.hovered = _session.picker.pick(camera, position)
+	moved.emit(camera)
+
+
+## Hands events to the editor that a tool had taken before it knew that they were not for it.
+func give_back(to: Control, events: Array[InputEvent]) -> void:
+	_giving_back = true
+	for event: InputEvent in events:
+		to.gui_input.emit(event)
+	_giving_back = false
+
+
+# Returns whether the key is one of ours.
+func _press(event: InputEventKey) -> bool:
+	var action: StringName = _shortcuts.find(event)
+	if action == Shortcuts.NONE:
+		return false
+	if event.echo and action not in [&"grow_selection", &"shrink_selection"]:
+		return true
+	match action:
+		&"edit_skeleton":
+			pass
+		&"cancel":
+			return _cancel()
+		&"delete_selected":
+			if not _session.view.editing:
+				return false
+		_:
+			if not _session.view.editing:
+				# The editor's own keys, as those of its tools, are not touched then.
+				return false
+	asked.emit(action)
+	return true
+
+
+# Escape: first what is selected goes, then the tool; with neither it is the editor's.
+func _cancel() -> bool:
+	if not _session.view.editing:
+		return false
+	if _session.is_dragging():
+		_session.cancel_drag()
+	elif not _session.selection.is_empty():
+		_session.clear_selection()
+	elif _session.tool != null and _session.tool.call(&"get_id") != &"select":
+		_session.choose(&"select")
+	else:
+		return false
+	return true
+
+
+# Whether the mouse looks around while keys move the camera.
+static func _is_flying() -> bool:
+	return (
+		Input.is_mouse_button_pressed(MOUSE_BUTTON_RIGHT)
+		or Input.mouse_mode == Input.MOUSE_MODE_CAPTURED
+	)

@@ -1,0 +1,260 @@
+@tool
+extends RefCounted
+## The viewport's part of the plugin: draws the edited tree's skeleton, finds nodes under the mouse,
+## hands events to the tools, and brings the toolbar, the menu and the strip around the viewport.
+
+const Session: GDScript = preload("../session.gd")
+const Gizmo: GDScript = preload("skeleton_gizmo.gd")
+const SkeletonView: GDScript = preload("skeleton_view.gd")
+const PointView: GDScript = preload("point_view.gd")
+const AxesGrid: GDScript = preload("axes_grid.gd")
+const Visibility: GDScript = preload("visibility.gd")
+const Picker: GDScript = preload("picker.gd")
+const Shortcuts: GDScript = preload("shortcuts.gd")
+const InputRouter: GDScript = preload("input_router.gd")
+const Actions: GDScript = preload("actions.gd")
+const Overlay: GDScript = preload("overlay.gd")
+const Toolbar: GDScript = preload("toolbar.gd")
+const ViewMenu: GDScript = preload("view_menu.gd")
+const Strip: GDScript = preload("strip.gd")
+const AllTools: GDScript = preload("../tools/all_tools.gd")
+const SelectTool: GDScript = preload("../tools/select.gd")
+
+var _plugin: EditorPlugin
+var _session: Session
+var _gizmo: Gizmo
+var _skeleton: SkeletonView
+var _points: PointView
+var _axes: AxesGrid
+var _visibility: Visibility
+var _picker: Picker
+var _shortcuts: Shortcuts
+var _router: InputRouter
+var _actions: Actions
+var _overlay: Overlay
+var _toolbar: Toolbar
+var _menu: ViewMenu
+var _strip: Strip
+# By the camera's viewport: what the editor takes its events from.
+var _surfaces: Dictionary[Viewport, Control] = {}
+
+
+func enter(plugin: EditorPlugin, session: Session) -> void:
+	_plugin = plugin
+	_session = session
+	AllTools.add_to(session)
+	_make_views()
+	_make_input()
+	_make_controls()
+	_session.node_changed.connect(_on_node_changed)
+	_session.tree_changed.connect(_on_tree_changed)
+	_session.selection_changed.connect(_on_selection_changed)
+	_session.hover_changed.connect(_plugin.update_overlays)
+	_session.tool_changed.connect(_on_tool_changed)
+	_session.view_changed.connect(_on_view_changed)
+	_session.scan_changed.connect(_on_scan_changed)
+	_session.scan.fidelity_changed.connect(_on_scan_changed)
+	_plugin.get_tree().process_frame.connect(_update)
+	_on_tool_changed()
+	_on_node_changed()
+
+
+func exit() -> void:
+	_plugin.get_tree().process_frame.disconnect(_update)
+	_session.scan.fidelity_changed.disconnect(_on_scan_changed)
+	_session.scan_changed.disconnect(_on_scan_changed)
+	_session.view_changed.disconnect(_on_view_changed)
+	_session.tool_changed.disconnect(_on_tool_changed)
+	_session.hover_changed.disconnect(_plugin.update_overlays)
+	_session.selection_changed.disconnect(_on_selection_changed)
+	_session.tree_changed.disconnect(_on_tree_changed)
+	_session.node_changed.disconnect(_on_node_changed)
+	_remove_controls()
+	_remove_input()
+	_remove_views()
+	_session.choose(&"")
+	_session.tools.clear()
+	_session = null
+	_plugin = null
+
+
+## Takes an event of the 3D viewport, or leaves it to the editor.
+func input(camera: Camera3D, event: InputEvent) -> int:
+	if _actions.turntable.is_turning() and Actions.Turntable.is_ended_by(event):
+		_actions.turntable.stop()
+		if event is InputEventKey:
+			_take_key(camera)
+			return EditorPlugin.AFTER_GUI_INPUT_STOP
+	var answer: int = _router.input(camera, event)
+	if answer == EditorPlugin.AFTER_GUI_INPUT_STOP and event is InputEventKey:
+		_take_key(camera)
+	return answer
+
+
+func draw_over(overlay: Control) -> void:
+	var camera: Camera3D = _picker.get_camera_of(overlay)
+	if camera == null or _session.tree == null:
+		return
+	_surfaces[camera.get_viewport()] = overlay
+	_axes.draw(overlay, camera, _picker)
+	if not _session.view.editing or _actions.turntable.is_turning():
+		return
+	_overlay.draw(overlay, camera, _picker, camera == _router.camera)
+	if _session.tool != null:
+		_session.tool.call(&"draw", overlay)
+
+
+# --- making and unmaking --------------------------------------------------------------------------
+
+
+func _make_views() -> void:
+	_picker = Picker.new(_session)
+	_session.picker = _picker
+	_skeleton = SkeletonView.new(_session)
+	_points = PointView.new(_session)
+	_axes = AxesGrid.new(_session)
+	_visibility = Visibility.new(_session)
+	_overlay = Overlay.new(_session)
+	_gizmo = Gizmo.new()
+	_gizmo.set_session(_session)
+	_gizmo.layers.append_array(_axes.layers)
+	_gizmo.layers.append(_points.layer)
+	_gizmo.layers.append_array(_skeleton.layers)
+	_plugin.add_node_3d_gizmo_plugin(_gizmo)
+
+
+func _remove_views() -> void:
+	_visibility.take(null)
+	_gizmo.take(null, false)
+	_plugin.remove_node_3d_gizmo_plugin(_gizmo)
+	_gizmo.set_session(null)
+	_gizmo = null
+	_session.picker = null
+	_surfaces.clear()
+
+
+func _make_input() -> void:
+	var settings: EditorSettings = EditorInterface.get_editor_settings()
+	Actions.Screenshot.add_setting(settings)
+	_shortcuts = Shortcuts.new(_session, settings)
+	_router = InputRouter.new(_session, _shortcuts)
+	_actions = Actions.new(_session)
+	_router.asked.connect(func(action: StringName) -> void: _actions.run(action, _get_camera()))
+	for id: StringName in _session.tools:
+		_session.tools[id].changed.connect(_on_tool_wants)
+	var select: SelectTool = _session.tools.get(&"select") as SelectTool
+	if select != null:
+		select.give_back = _give_back
+	if _session.tool == null:
+		_session.choose(&"select")
+
+
+func _remove_input() -> void:
+	_actions.turntable.stop()
+	for id: StringName in _session.tools:
+		_session.tools[id].changed.disconnect(_on_tool_wants)
+
+
+func _make_controls() -> void:
+	_toolbar = Toolbar.new(_session, _shortcuts)
+	_menu = ViewMenu.new(_session, _shortcuts)
+	_menu.asked.connect(func(action: StringName) -> void: _actions.run(action, _get_camera()))
+	_strip = Strip.new(_session)
+	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_SIDE_LEFT, _toolbar)
+	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_MENU, _menu)
+	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_BOTTOM, _strip)
+
+
+func _remove_controls() -> void:
+	_plugin.remove_control_from_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_BOTTOM, _strip)
+	_plugin.remove_control_from_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_MENU, _menu)
+	_plugin.remove_control_from_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_SIDE_LEFT, _toolbar)
+	for control: Control in [_strip, _menu, _toolbar]:
+		control.queue_free()
+
+
+# --- following the session ------------------------------------------------------------------------
+
+
+func _update() -> void:
+	var delta: float = _plugin.get_process_delta_time()
+	_router.update()
+	_visibility.update()
+	_actions.turntable.update(delta)
+	_strip.update(delta)
+
+
+func _on_node_changed() -> void:
+	_actions.turntable.stop()
+	for control: Control in [_strip, _menu, _toolbar]:
+		control.visible = _session.node != null
+	_visibility.take(_session.node)
+	_gizmo.take(_session.node, _session.view.editing)
+	_on_tree_changed()
+
+
+func _on_tree_changed() -> void:
+	_skeleton.update_tree()
+	_axes.update()
+	_points.update()
+	_on_selection_changed()
+
+
+func _on_selection_changed() -> void:
+	_skeleton.update_selection()
+	_on_tool_wants()
+
+
+func _on_tool_wants() -> void:
+	_skeleton.update_ghosts()
+	_redraw()
+
+
+func _on_tool_changed() -> void:
+	_toolbar.update()
+	_strip.update_tool()
+	_on_tool_wants()
+
+
+func _on_view_changed() -> void:
+	_gizmo.take(_session.node, _session.view.editing)
+	_visibility.update()
+	_toolbar.update()
+	_menu.update()
+	_strip.update_tool()
+	_strip.update_view()
+	_on_tree_changed()
+
+
+func _on_scan_changed() -> void:
+	_points.rebuild()
+	_points.update()
+	_redraw()
+
+
+func _redraw() -> void:
+	_gizmo.update_layers()
+	_plugin.update_overlays()
+
+
+# --- the editor's viewports -----------------------------------------------------------------------
+
+
+# That of the viewport in which the mouse was last.
+func _get_camera() -> Camera3D:
+	if is_instance_valid(_router.camera) and _router.camera.is_visible_in_tree():
+		return _router.camera
+	return EditorInterface.get_editor_viewport_3d(0).get_camera_3d()
+
+
+func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:
+	var surface: Control = _surfaces.get(_router.camera.get_viewport())
+	if surface != null:
+		_router.give_back(surface, [press, release])
+
+
+# The engine would look for the key among the shortcuts of its own.
+func _take_key(camera: Camera3D) -> void:
+	var surface: Control = _surfaces.get(camera.get_viewport())
+	if surface != null:
+		surface.accept_event()

@@ -1,0 +1,102 @@
+@tool
+extends RefCounted
+## Finds the nodes of the edited tree on the screen, and places of the screen in the tree's space.
+##
+## Positions are those of the viewport's events, in the pixels of the control that shows it, also
+## where the editor draws it at half the resolution.
+
+const Session: GDScript = preload("../session.gd")
+const NO_NODE: int = TreeReconstruction.NO_NODE
+## How far off a click may be, in pixels at the editor's scale of 1.
+const REACH: float = 8.0
+
+var _session: Session
+
+
+func _init(session: Session) -> void:
+	_session = session
+
+
+## The node that is seen at [param position], the nearest one within reach, or NO_NODE.
+func pick(camera: Camera3D, position: Vector2) -> int:
+	if _session.tree == null or camera == null:
+		return NO_NODE
+	return _session.tree.pick_node(
+		get_to_screen(camera), get_size(camera), position, REACH * get_scale()
+	)
+
+
+## The nodes that are seen in a rectangle.
+func pick_rect(camera: Camera3D, rect: Rect2) -> PackedInt32Array:
+	if _session.tree == null or camera == null:
+		return PackedInt32Array()
+	return _session.tree.pick_nodes(get_to_screen(camera), get_size(camera), rect.abs())
+
+
+## Where a node is seen. Behind the camera it is [constant Vector2.INF].
+func project(camera: Camera3D, id: int) -> Vector2:
+	if _session.tree == null or not _session.tree.has_node(id):
+		return Vector2.INF
+	return project_place(camera, _session.tree.get_node_position(id))
+
+
+## Where a place of the tree's space is seen. Behind the camera it is [constant Vector2.INF].
+func project_place(camera: Camera3D, place: Vector3) -> Vector2:
+	var clip: Vector4 = get_to_screen(camera) * Vector4(place.x, place.y, place.z, 1.0)
+	if clip.w <= 1e-6:
+		return Vector2.INF
+	var size: Vector2 = get_size(camera)
+	return Vector2(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w) * size
+
+
+## How many pixels a metre of the tree's space is at a place of it.
+func pixels_per_metre(camera: Camera3D, place: Vector3) -> float:
+	var clip: Vector4 = get_to_screen(camera) * Vector4(place.x, place.y, place.z, 1.0)
+	var scale: float = _session.node.global_basis.get_scale().y
+	return (
+		absf(camera.get_camera_projection().y.y)
+		* scale
+		* 0.5
+		* get_size(camera).y
+		/ maxf(clip.w, 1e-6)
+	)
+
+
+## The place in the tree's space that is seen at [param position], on the plane through the place
+## [param through] of the tree's space that faces the camera.
+func ray_plane(camera: Camera3D, position: Vector2, through: Vector3) -> Vector3:
+	var in_viewport: Vector2 = position * camera.get_viewport().get_visible_rect().size
+	in_viewport /= get_size(camera)
+	var from: Vector3 = camera.project_ray_origin(in_viewport)
+	var way: Vector3 = camera.project_ray_normal(in_viewport)
+	var frame: Transform3D = _session.node.global_transform
+	var forward: Vector3 = -camera.global_basis.z.normalized()
+	var distance: float = (frame * through - from).dot(forward) / way.dot(forward)
+	return frame.affine_inverse() * (from + way * distance)
+
+
+## What leads from the tree's space to the camera's clip space.
+func get_to_screen(camera: Camera3D) -> Projection:
+	var to_camera: Transform3D = camera.get_camera_transform().affine_inverse()
+	return camera.get_camera_projection() * Projection(to_camera * _session.node.global_transform)
+
+
+## The size of what shows the camera's picture, in the pixels of its events.
+func get_size(camera: Camera3D) -> Vector2:
+	var viewport: Viewport = camera.get_viewport()
+	var container: SubViewportContainer = viewport.get_parent() as SubViewportContainer
+	return container.size if container != null else viewport.get_visible_rect().size
+
+
+## The camera of the editor's viewport that an overlay lies over, or [code]null[/code].
+func get_camera_of(overlay: Control) -> Camera3D:
+	for i: int in 4:
+		var viewport: SubViewport = EditorInterface.get_editor_viewport_3d(i)
+		if overlay.get_parent().is_ancestor_of(viewport):
+			return viewport.get_camera_3d()
+	return null
+
+
+## How much larger than usual the editor draws its controls.
+static func get_scale() -> float:
+	return EditorInterface.get_editor_scale() if Engine.is_editor_hint() else 1.0

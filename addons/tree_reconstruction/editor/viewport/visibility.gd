@@ -1,0 +1,44 @@
+@tool
+extends RefCounted
+## Hides the edited tree's bark and leaves, and stills its wind, in the rendering server alone: the
+## scene knows nothing of it, and nothing of it is saved.
+
+const Session: GDScript = preload("../session.gd")
+
+var _session: Session
+var _node: TreeInstance3D
+
+
+func _init(session: Session) -> void:
+	_session = session
+
+
+## Another node is edited, or none: the one before is shown as its scene says again.
+func take(node: TreeInstance3D) -> void:
+	if is_instance_valid(_node) and _node != node:
+		_apply(true, true, _node.wind)
+	_node = node
+	update()
+
+
+## To be called once a frame, since the node sets its instances anew on many occasions.
+func update() -> void:
+	if is_instance_valid(_node):
+		_apply(_session.view.mesh, _session.view.leaves, _session.view.wind and _node.wind)
+
+
+func _apply(bark: bool, leaves: bool, wind: bool) -> void:
+	if not _node.is_inside_tree():
+		return
+	var seen: bool = _node.is_visible_in_tree()
+	_set_up(_node, seen and bark, wind)
+	var bearer: GeometryInstance3D = _node.get(&"_leaves_node")
+	if is_instance_valid(bearer):
+		_set_up(bearer, seen and leaves, wind)
+
+
+func _set_up(instance: GeometryInstance3D, seen: bool, wind: bool) -> void:
+	RenderingServer.instance_set_visible(instance.get_instance(), seen)
+	RenderingServer.instance_geometry_set_shader_parameter(
+		instance.get_instance(), &"tree_wind", 1.0 if wind else 0.0
+	)

@@ -1,0 +1,377 @@
+extends "./suite.gd"
+## The viewport's part of the editor, without an editor: finding nodes on the screen, selecting by
+## mouse events, keys, and what is drawn.
+
+const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
+const Picker := preload("res://addons/tree_reconstruction/editor/viewport/picker.gd")
+const Shortcuts := preload("res://addons/tree_reconstruction/editor/viewport/shortcuts.gd")
+const InputRouter := preload("res://addons/tree_reconstruction/editor/viewport/input_router.gd")
+const Actions := preload("res://addons/tree_reconstruction/editor/viewport/actions.gd")
+const SkeletonView := preload("res://addons/tree_reconstruction/editor/viewport/skeleton_view.gd")
+const PointView := preload("res://addons/tree_reconstruction/editor/viewport/point_view.gd")
+const AxesGrid := preload("res://addons/tree_reconstruction/editor/viewport/axes_grid.gd")
+const AllTools := preload("res://addons/tree_reconstruction/editor/tools/all_tools.gd")
+const Select := preload("res://addons/tree_reconstruction/editor/tools/select.gd")
+
+const _SIZE: Vector2i = Vector2i(800, 600)
+const PASS: int = EditorPlugin.AFTER_GUI_INPUT_PASS
+const STOP: int = EditorPlugin.AFTER_GUI_INPUT_STOP
+
+var _undo: UndoRedo
+var _viewport: SubViewport
+var _camera: Camera3D
+var _session: Session
+var _shortcuts: Shortcuts
+var _router: InputRouter
+var _given_back: Array[InputEvent] = []
+
+
+# A session with a tree in the view of a camera that looks at it from the front.
+func _open(made: TreeReconstruction) -> void:
+	_undo = UndoRedo.new()
+	_viewport = SubViewport.new()
+	_viewport.size = _SIZE
+	tree.root.add_child(_viewport)
+	_camera = Camera3D.new()
+	_viewport.add_child(_camera)
+	_camera.look_at_from_position(Vector3(0.3, 2.0, 7.0), Vector3(0.3, 1.9, 0.0))
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.reconstruction = made
+	_viewport.add_child(node)
+	node.transform = Transform3D(
+		Basis(Vector3.UP, 0.4).scaled(Vector3.ONE * 1.2), Vector3(0.3, 0, 0)
+	)
+	_session = Session.new(_undo)
+	AllTools.add_to(_session)
+	_session.picker = Picker.new(_session)
+	_session.edit_node(node)
+	_session.choose(&"select")
+	(_session.tool as Select).give_back = func(
+		press: InputEventMouseButton, release: InputEventMouseButton
+	) -> void:
+		_given_back.append_array([press, release])
+	_shortcuts = Shortcuts.new(_session, null)
+	_router = InputRouter.new(_session, _shortcuts)
+
+
+func _close() -> void:
+	_session.shut_down()
+	_session.choose(&"")
+	_session.tools.clear()
+	_session.picker = null
+	_undo.clear_history()
+	_undo.free()
+	_viewport.free()
+	# What the closures of a test hold on to.
+	_session = null
+	_router = null
+	_given_back.clear()
+
+
+func _button(at: Vector2, pressed: bool, double: bool = false) -> InputEventMouseButton:
+	var event: InputEventMouseButton = InputEventMouseButton.new()
+	event.button_index = MOUSE_BUTTON_LEFT
+	event.position = at
+	event.pressed = pressed
+	event.double_click = double
+	return event
+
+
+func _motion(at: Vector2) -> InputEventMouseMotion:
+	var event: InputEventMouseMotion = InputEventMouseMotion.new()
+	event.position = at
+	event.button_mask = MOUSE_BUTTON_MASK_LEFT
+	return event
+
+
+func _key(code: Key) -> InputEventKey:
+	var event: InputEventKey = InputEventKey.new()
+	event.keycode = code
+	event.pressed = true
+	return event
+
+
+# A node that is seen, with no other one near it.
+func _lone_node() -> int:
+	for id: int in _session.tree.get_node_ids():
+		var at: Vector2 = _session.picker.project(_camera, id)
+		var near: PackedInt32Array = _session.picker.pick_rect(
+			_camera, Rect2(at - Vector2.ONE * 12.0, Vector2.ONE * 24.0)
+		)
+		var inner: bool = id > 0 and not _session.tree.get_node_children(id).is_empty()
+		if inner and near == PackedInt32Array([id]):
+			return id
+	return -1
+
+
+# A place of the screen far from all wood.
+func _nothing() -> Vector2:
+	return Vector2(790, 590)
+
+
+func test_nodes_are_found_where_they_are_seen() -> void:
+	_open(grown_tree(3))
+	var id: int = _lone_node()
+	check(id >= 0, "No node stands alone.")
+	var at: Vector2 = _session.picker.project(_camera, id)
+	var place: Vector3 = _session.node.global_transform * _session.tree.get_node_position(id)
+	check(at.distance_to(_camera.unproject_position(place)) < 0.1, "It is seen elsewhere.")
+	check_equal(_session.picker.pick(_camera, at), id, "the node there")
+	check_equal(_session.picker.pick(_camera, _nothing()), -1, "the node far from wood")
+	check_equal(
+		_session.picker.project_place(_camera, Vector3(0, 0, 900)), Vector2.INF, "behind the camera"
+	)
+	var through: Vector3 = _session.tree.get_node_position(id)
+	check(
+		_session.picker.ray_plane(_camera, at, through).distance_to(through) < 0.002,
+		"The ray misses the node."
+	)
+	var beside: Vector3 = _session.picker.ray_plane(_camera, at + Vector2(50, 20), through)
+	check(
+		_session.picker.project_place(_camera, beside).distance_to(at + Vector2(50, 20)) < 0.1,
+		"The ray goes elsewhere."
+	)
+	# A metre to the side of the view is as many pixels as it is said to be.
+	var side: Vector3 = _session.node.global_basis.inverse() * _camera.global_basis.x
+	var metre: Vector2 = _session.picker.project_place(_camera, through + side.normalized()) - at
+	check_near(
+		metre.length() / _session.picker.pixels_per_metre(_camera, through), 1.0, 0.01, "a metre"
+	)
+	_close()
+
+
+func test_clicks_select() -> void:
+	_open(grown_tree(3))
+	var id: int = _lone_node()
+	var at: Vector2 = _session.picker.project(_camera, id)
+	check_equal(_router.input(_camera, _button(at, true)), STOP, "the answer to a press on wood")
+	_router.input(_camera, _button(at, false))
+	check_equal(_session.selection, PackedInt32Array([id]), "the selection")
+	var other: int = _session.tree.get_root()
+	_session.select([other])
+	var adding: InputEventMouseButton = _button(at, true)
+	adding.shift_pressed = true
+	_router.input(_camera, adding)
+	check_equal(_session.selection, PackedInt32Array([other, id]), "the selection with Shift")
+	var toggling: InputEventMouseButton = _button(at, true)
+	toggling.ctrl_pressed = true
+	_router.input(_camera, toggling)
+	check_equal(_session.selection, PackedInt32Array([other]), "the selection with Ctrl")
+	_router.input(_camera, _button(at, true, true))
+	var wanted: PackedInt32Array = _session.tree.select_nodes("below:%d" % id)
+	var got: PackedInt32Array = _session.selection.duplicate()
+	check_equal(_session.get_active(), id, "the active node after a double click")
+	wanted.sort()
+	got.sort()
+	check_equal(got, wanted, "the selection after a double click")
+	check(_given_back.is_empty(), "A click on wood went to the editor, too.")
+	check_equal(_undo.get_history_count(), 0, "steps of the history")
+	_close()
+
+
+func test_a_click_on_nothing_is_the_editors() -> void:
+	_open(grown_tree(3))
+	_session.select([0])
+	_router.input(_camera, _button(_nothing(), true))
+	check(_given_back.is_empty(), "It was given back before it was known to be a click.")
+	_router.input(_camera, _button(_nothing(), false))
+	check_equal(_given_back.size(), 2, "events given back")
+	check(_given_back[0].is_pressed() and not _given_back[1].is_pressed(), "In a wrong order.")
+	check_equal(_session.selection, PackedInt32Array([0]), "the selection")
+	# A press beside the tree's foot is for the arrows that move the node.
+	var foot: Vector2 = _session.picker.project_place(_camera, Vector3.ZERO)
+	check_equal(
+		_router.input(_camera, _button(foot + Vector2(60, 0), true)), PASS, "beside the foot"
+	)
+	# With Alt it may be a move of the camera.
+	var orbiting: InputEventMouseButton = _button(_nothing(), true)
+	orbiting.alt_pressed = true
+	check_equal(_router.input(_camera, orbiting), PASS, "with Alt")
+	var wheel: InputEventMouseButton = _button(_nothing(), true)
+	wheel.button_index = MOUSE_BUTTON_WHEEL_UP
+	check_equal(_router.input(_camera, wheel), PASS, "the wheel")
+	_session.view.editing = false
+	var at: Vector2 = _session.picker.project(_camera, _lone_node())
+	check_equal(_router.input(_camera, _button(at, true)), PASS, "a click while not editing")
+	check_equal(_router.input(_camera, _key(KEY_X)), PASS, "a key while not editing")
+	_close()
+
+
+func test_a_box_selects_what_is_in_it() -> void:
+	_open(grown_tree(3))
+	var redraws: Array[int] = [0]
+	_session.tool.changed.connect(func() -> void: redraws[0] += 1)
+	check_equal(_router.input(_camera, _button(Vector2(5, 5), true)), STOP, "the press")
+	check_equal(_router.input(_camera, _motion(Vector2(400, 300))), STOP, "the drag")
+	check(redraws[0] > 0, "The box isn't drawn.")
+	_router.input(_camera, _button(Vector2(400, 300), false))
+	check(_session.selection.size() > 3, "Hardly anything is selected.")
+	check(_given_back.is_empty(), "The box was a click.")
+	for id: int in _session.tree.get_node_ids():
+		var at: Vector2 = _session.picker.project(_camera, id)
+		check_equal(
+			id in _session.selection,
+			Rect2(5, 5, 395, 295).has_point(at),
+			"whether node %d at %s is selected" % [id, at]
+		)
+	# Escape ends a box; the next release is nobody's.
+	_router.input(_camera, _button(Vector2(5, 5), true))
+	_router.input(_camera, _motion(Vector2(700, 500)))
+	var before: PackedInt32Array = _session.selection
+	check_equal(_router.input(_camera, _key(KEY_ESCAPE)), STOP, "Escape")
+	_router.input(_camera, _button(Vector2(700, 500), false))
+	check_equal(_session.selection, before, "the selection after Escape")
+	_close()
+
+
+func test_hovering_looks_once_a_frame() -> void:
+	_open(grown_tree(3))
+	var id: int = _lone_node()
+	var changes: Array[int] = [0]
+	_session.hover_changed.connect(func() -> void: changes[0] += 1)
+	var motion: InputEventMouseMotion = InputEventMouseMotion.new()
+	for at: Vector2 in [Vector2(3, 3), _session.picker.project(_camera, id)]:
+		motion.position = at
+		check_equal(_router.input(_camera, motion), PASS, "a motion")
+	check_equal(_session.hovered, -1, "what is hovered before the frame ends")
+	_router.update()
+	check_equal(_session.hovered, id, "what is hovered")
+	check_equal(changes[0], 1, "changes")
+	_session.view.editing = false
+	_router.input(_camera, motion)
+	_router.update()
+	check_equal(_session.hovered, -1, "what is hovered while not editing")
+	_close()
+
+
+func test_no_key_is_taken_twice() -> void:
+	_open(grown_tree(3, 20))
+	var taken: Dictionary[String, StringName] = {}
+	for action: StringName in _shortcuts.get_actions():
+		for event: InputEventKey in _shortcuts.get_shortcut(action).events:
+			var key: String = event.as_text()
+			check(not taken.has(key), "%s is for %s and %s" % [key, taken.get(key), action])
+			taken[key] = action
+			check_equal(_shortcuts.find(_pressed(event)), action, "what %s does" % key)
+	check(taken.size() > 20, "There are %d keys." % taken.size())
+	for id: StringName in _session.tools:
+		check(not _shortcuts.get_key_text(Shortcuts.name_of_tool(id)).is_empty(), "%s: no key" % id)
+	check_equal(_shortcuts.find(_key(KEY_F)), Shortcuts.NONE, "what F does: it is the editor's")
+	_close()
+
+
+func _pressed(like: InputEventKey) -> InputEventKey:
+	var event: InputEventKey = _key(like.keycode)
+	event.ctrl_pressed = like.command_or_control_autoremap
+	return event
+
+
+func test_keys_do_what_they_say() -> void:
+	_open(grown_tree(3))
+	var actions: Actions = Actions.new(_session)
+	_router.asked.connect(func(action: StringName) -> void: actions.run(action, _camera))
+	for action: StringName in Actions.SHOWN:
+		var property: StringName = Actions.SHOWN[action]
+		var before: bool = _session.view.get(property)
+		var event: InputEventKey = _shortcuts.get_shortcut(action).events[0]
+		check_equal(_router.input(_camera, _pressed(event)), STOP, "the answer to %s" % action)
+		check_equal(_session.view.get(property), not before, "%s" % property)
+		_router.input(_camera, _pressed(event))
+		check_equal(_session.view.get(property), before, "%s again" % property)
+	var all: InputEventKey = _key(KEY_A)
+	all.ctrl_pressed = true
+	_router.input(_camera, all)
+	check_equal(_session.selection.size(), _session.tree.get_node_count(), "all selected")
+	check_equal(_router.input(_camera, _key(KEY_ESCAPE)), STOP, "Escape with a selection")
+	check(_session.selection.is_empty(), "Escape left something selected.")
+	check_equal(_router.input(_camera, _key(KEY_ESCAPE)), PASS, "Escape with nothing to cancel")
+	var said: PackedStringArray = []
+	_session.said.connect(func(sentence: String, _kind: int) -> void: said.append(sentence))
+	check_equal(_router.input(_camera, _key(KEY_DELETE)), STOP, "Delete without a selection")
+	check_sentence(said[0], "what is said then")
+	var id: int = _lone_node()
+	_session.select([id])
+	_router.input(_camera, _key(KEY_DELETE))
+	check(not _session.tree.has_node(id), "Delete left the node.")
+	check_equal(_undo.get_history_count(), 1, "steps")
+	_undo.undo()
+	check(_session.tree.has_node(id), "Undo did not bring it back.")
+	_router.input(_camera, _key(KEY_TAB))
+	check(not _session.view.editing, "Tab does not end editing.")
+	_router.input(_camera, _key(KEY_TAB))
+	check(_session.view.editing, "Tab does not begin editing.")
+	_close()
+
+
+func test_only_what_changed_is_built_again() -> void:
+	_open(grown_tree(3))
+	var view: SkeletonView = SkeletonView.new(_session)
+	view.update_tree()
+	view.update_selection()
+	var lines: ArrayMesh = view.layers[0].mesh
+	var count: int = _session.tree.get_node_count()
+	check_equal(lines.surface_get_array_len(0), 4 * (count - 1), "corners")
+	var surfaces: Array[int] = [0]
+	lines.changed.connect(func() -> void: surfaces[0] += 1)
+	view.update_tree()
+	_session.select([5])
+	view.update_selection()
+	_session.tree.leaf_size = 0.4
+	view.update_tree()
+	check_equal(surfaces[0], 0, "changes of the lines without an edit")
+	_session.run("Cut", "remove nodes=%d" % _session.tree.get_leaves()[0])
+	view.update_tree()
+	check(surfaces[0] > 0, "An edit doesn't change the lines.")
+	check_equal(lines.surface_get_array_len(0), 4 * (count - 2), "corners after an edit")
+	_session.view.skeleton = false
+	view.update_tree()
+	check(not view.layers[0].shown, "The skeleton is shown.")
+	_close()
+
+
+func test_the_scan_is_drawn_in_three_colours() -> void:
+	_open(grown_tree(3))
+	var view: PointView = PointView.new(_session)
+	view.update()
+	check(not view.layer.shown, "Points are shown that there are none of.")
+	_session.scan.points = [Vector3.ZERO, Vector3(0, 2, 0), Vector3(0, 1, 1)]
+	_session.view.points = true
+	view.update()
+	check(view.layer.shown, "No points are shown.")
+	var material: ShaderMaterial = view.layer.material
+	check(material.get_shader_parameter(&"by_height"), "Points without colours aren't coloured.")
+	check_equal(material.get_shader_parameter(&"high"), 2.0, "the highest point")
+	_session.scan.colors = [Color.RED, Color.GREEN, Color.BLUE]
+	view.rebuild()
+	check(not material.get_shader_parameter(&"by_height"), "The scan's colours aren't used.")
+	check_equal(view.layer.mesh.surface_get_arrays(0)[Mesh.ARRAY_COLOR][1], Color.GREEN, "a colour")
+	_session.view.point_colors = _session.ViewState.PointColors.HEIGHT
+	_session.view.point_size = 5.0
+	view.update()
+	check(material.get_shader_parameter(&"by_height"), "They aren't coloured by height.")
+	check_equal(material.get_shader_parameter(&"size"), 5.0, "their size")
+	_session.scan.points = PackedVector3Array()
+	view.rebuild()
+	check(not view.layer.shown, "Points that went are shown.")
+	_session.view.points = false
+	_close()
+
+
+func test_axes_and_grid_reach_around_the_tree() -> void:
+	_open(grown_tree(3))
+	var view: AxesGrid = AxesGrid.new(_session)
+	_session.view.axes = true
+	_session.view.grid = true
+	view.update()
+	var box: AABB = _session.tree.get_aabb()
+	for layer: RefCounted in view.layers:
+		check(layer.shown and layer.mesh.get_surface_count() == 1, "A layer isn't shown.")
+	var grid: AABB = view.layers[0].mesh.get_aabb()
+	check(grid.position.x <= box.position.x and grid.end.z >= box.end.z, "The grid is too small.")
+	check(view.height >= box.end.y, "The scale ends below the tree's top.")
+	_session.view.axes = false
+	_session.view.grid = false
+	view.update()
+	for layer: RefCounted in view.layers:
+		check(not layer.shown, "A layer is still shown.")
+	_close()
