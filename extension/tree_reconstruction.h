@@ -144,6 +144,9 @@ class TreeReconstruction : public godot::Resource {
     godot::Dictionary preview_edit(const godot::String& p_command) const;
     godot::PackedByteArray draw(int p_size) const;
 
+    // Physics (tree_reconstruction_physics.cpp).
+    godot::TypedArray<godot::Dictionary> build_capsules(int p_maximum, double p_minimum_radius) const;
+
   protected:
     static void _bind_methods();
     void _validate_property(godot::PropertyInfo& p_property) const;
@@ -161,6 +164,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_properties();
     static void _bind_editing();
     static void _bind_grafting();
+    static void _bind_physics();
     static void _bind_viewing();
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);

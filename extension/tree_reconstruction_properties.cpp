@@ -218,6 +218,7 @@ void TreeReconstruction::_bind_methods() {
     _bind_properties();
     _bind_editing();
     _bind_grafting();
+    _bind_physics();
     _bind_viewing();
 
     ClassDB::bind_method(D_METHOD("is_empty"), &TreeReconstruction::is_empty);

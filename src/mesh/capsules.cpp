@@ -104,7 +104,8 @@ struct Step {
     int32_t limb = -1;   // that has none yet, or -1
     int32_t stretch = -1;
 
-    // The largest error comes first; of equal ones the earlier limb, so that the result is the same everywhere.
+    // The largest error comes first; of equal ones the earlier limb, so that the result is the same
+    // everywhere.
     bool operator<(const Step& other) const {
         return std::make_tuple(error, -limb, -stretch) <
                std::make_tuple(other.error, -other.limb, -other.stretch);
@@ -155,8 +156,8 @@ std::vector<Capsule> fit_capsules(const Tree& tree, const CapsuleOptions& option
     std::vector<Capsule> capsules;
     for (const Stretch& stretch : stretches) {
         const Limb& limb = limbs[stretch.limb];
-        capsules.push_back({limb.points[stretch.begin], limb.points[stretch.end], stretch.radius,
-                            limb.nodes[stretch.end]});
+        capsules.push_back(
+            {limb.points[stretch.begin], limb.points[stretch.end], stretch.radius, limb.nodes[stretch.end]});
     }
     return capsules;
 }

@@ -21,11 +21,11 @@ struct CapsuleOptions {
     double tolerance = 0.01;       // metres: wood this near to a capsule's surface needs no better one
 };
 
-// Begins with the trunk as one capsule. Then, while there are fewer than the maximum, goes where most error is
-// left: gives that branch its first capsule, or parts that capsule in two where its wood strays farthest from it.
-// The error of wood is its distance from the capsule's surface, summed along its length; that of wood without a
-// capsule is its diameter. The trunk's capsules come first, those of a branch from its base to its tip. Empty for a
-// lone root. Throws Error for options out of range.
+// Begins with the trunk as one capsule. Then, while there are fewer than the maximum, goes where most error
+// is left: gives that branch its first capsule, or parts that capsule in two where its wood strays farthest
+// from it. The error of wood is its distance from the capsule's surface, summed along its length; that of
+// wood without a capsule is its diameter. The trunk's capsules come first, those of a branch from its base to
+// its tip. Empty for a lone root. Throws Error for options out of range.
 std::vector<Capsule> fit_capsules(const Tree& tree, const CapsuleOptions& options = {});
 
 }  // namespace treerec

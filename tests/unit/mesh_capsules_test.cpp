@@ -39,7 +39,8 @@ double mean_error(const Tree& tree, const std::vector<Capsule>& capsules, double
 TEST(Capsules, AStraightStemIsOne) {
     Tree tree;
     NodeId id = tree.add_root({0, 0, 0}, 0.1);
-    for (int i = 1; i <= 20; ++i) id = tree.add_child(id, {0, 0.25 * i, 0}, 0.1);
+    for (int i = 1; i <= 20; ++i)
+        id = tree.add_child(id, {0, 0.25 * i, 0}, 0.1);
     const std::vector<Capsule> capsules = fit_capsules(tree);
     ASSERT_EQ(capsules.size(), 1u);
     EXPECT_EQ(capsules[0].from, DVec3(0, 0, 0));
@@ -51,8 +52,10 @@ TEST(Capsules, AStraightStemIsOne) {
 TEST(Capsules, ABendIsPartedWhereItBends) {
     Tree tree;
     NodeId id = tree.add_root({0, 0, 0}, 0.1);
-    for (int i = 1; i <= 10; ++i) id = tree.add_child(id, {0, 0.3 * i, 0}, 0.1);
-    for (int i = 1; i <= 10; ++i) id = tree.add_child(id, {0.3 * i, 3, 0}, 0.1);
+    for (int i = 1; i <= 10; ++i)
+        id = tree.add_child(id, {0, 0.3 * i, 0}, 0.1);
+    for (int i = 1; i <= 10; ++i)
+        id = tree.add_child(id, {0.3 * i, 3, 0}, 0.1);
     const std::vector<Capsule> capsules = fit_capsules(tree);
     ASSERT_EQ(capsules.size(), 2u);
     EXPECT_EQ(capsules[0].to, DVec3(0, 3, 0));
@@ -63,7 +66,8 @@ TEST(Capsules, ABendIsPartedWhereItBends) {
 TEST(Capsules, AConeGetsThinner) {
     Tree tree;
     NodeId id = tree.add_root({0, 0, 0}, 0.5);
-    for (int i = 1; i <= 40; ++i) id = tree.add_child(id, {0, 0.25 * i, 0}, 0.5 - 0.01 * i);
+    for (int i = 1; i <= 40; ++i)
+        id = tree.add_child(id, {0, 0.25 * i, 0}, 0.5 - 0.01 * i);
     CapsuleOptions options;
     options.maximum = 4;
     const std::vector<Capsule> capsules = fit_capsules(tree, options);
@@ -94,7 +98,8 @@ TEST(Capsules, MoreFitBetter) {
         const Tree tree = test::random_tree(seed, 400);
         CapsuleOptions options;
         double largest = 0.0;
-        for (const NodeId id : tree.depth_first()) largest = std::max(largest, tree.node(id).radius);
+        for (const NodeId id : tree.depth_first())
+            largest = std::max(largest, tree.node(id).radius);
         options.minimum_radius = 0.3 * largest;
         double before = HUGE_VAL;
         // No capsule tapers, so where radii jump from node to node the rest stays.

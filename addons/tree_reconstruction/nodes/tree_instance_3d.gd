@@ -12,6 +12,7 @@ extends MeshInstance3D
 ## Emitted when the mesh and the leaves match the properties again.
 signal rebuilt
 
+const Collision := preload("tree_collision.gd")
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.15
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
@@ -80,7 +81,41 @@ static var threaded: bool = true
 		leaf_material = value
 		_update_materials()
 
+@export_group("Collision")
+
+## Whether other bodies collide with the trunk and the stout branches. A ray hits a [StaticBody3D]
+## whose parent is this node.
+@export var collision: bool = false:
+	set(value):
+		collision = value
+		rebuild()
+
+## How many capsules the body has at most. They go where they are worth most.
+@export_range(1, 256) var collision_shapes: int = 32:
+	set(value):
+		collision_shapes = value
+		rebuild()
+
+## Branches thinner than this, in metres from their middle, let everything through.
+@export_range(0.0, 1.0, 0.005, "or_greater", "suffix:m") var collision_minimum_radius: float = 0.03:
+	set(value):
+		collision_minimum_radius = value
+		rebuild()
+
+## The layers that the body is in.
+@export_flags_3d_physics var collision_layer: int = 1:
+	set(value):
+		collision_layer = value
+		_update_body()
+
+## The layers that the body looks for. A body that does not move needs none.
+@export_flags_3d_physics var collision_mask: int = 1:
+	set(value):
+		collision_mask = value
+		_update_body()
+
 var _leaves_node: MultiMeshInstance3D
+var _body: StaticBody3D
 var _queued: bool = false
 var _job: BuildJob
 var _height: float = 1.0
@@ -95,6 +130,48 @@ func rebuild() -> void:
 		return
 	_queued = true
 	_start.call_deferred()
+
+
+## Cuts the tree at node [param id] and lets what grows above it fall: it becomes a [RigidBody3D]
+## beside this node, with its own wood, leaves and weight, and is returned. This tree keeps what is
+## below, in a copy of its own of [member reconstruction]; others that share it stay whole.
+## [param density] is that of green wood in kg per cubic metre. Returns [code]null[/code], with an
+## error, where nothing can be cut.
+func fell(id: int, density: float = 800.0) -> RigidBody3D:
+	if reconstruction == null or get_parent() == null:
+		push_error("Only a tree in a scene can be felled.")
+		return null
+	var stump: TreeReconstruction = reconstruction.duplicate() as TreeReconstruction
+	var edit: TreeEdit = stump.edit("cut node=%d" % id)
+	if edit == null:
+		return null
+	# With the leaves, rules and seed of the whole.
+	var top: TreeReconstruction = reconstruction.duplicate() as TreeReconstruction
+	top.skeleton = (edit.get_removed_wood()[0] as TreeReconstruction).skeleton
+	top.edit_log = ""
+	var body: RigidBody3D = RigidBody3D.new()
+	var fallen: TreeInstance3D = TreeInstance3D.new()
+	fallen.lod = lod
+	fallen.leaves = leaves
+	fallen.wind = false
+	fallen.bark_material = bark_material
+	fallen.leaf_material = leaf_material
+	fallen.reconstruction = top
+	# Bodies can't be scaled, so what is in them is.
+	var size: Vector3 = transform.basis.get_scale()
+	var center: Vector3 = top.get_aabb().get_center()
+	fallen.transform = Transform3D(Basis.from_scale(size), -center * size)
+	body.add_child(fallen)
+	Collision.fill(
+		body, top.build_capsules(collision_shapes, collision_minimum_radius), fallen.transform
+	)
+	body.mass = maxf(top.measure()["volume"] * size.x * size.y * size.z * density, 0.1)
+	body.collision_layer = collision_layer
+	body.collision_mask = collision_mask
+	body.transform = Transform3D(transform.basis.orthonormalized(), transform * center)
+	reconstruction = stump
+	add_sibling(body)
+	return body
 
 
 ## Whether a build is waiting or under way.
@@ -152,6 +229,7 @@ func _start() -> void:
 		_bark_of = []
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
+		_apply_collision([])
 		rebuilt.emit()
 		return
 	if _job != null:
@@ -160,6 +238,8 @@ func _start() -> void:
 		return
 	var job: BuildJob = BuildJob.new()
 	job.source = reconstruction
+	job.capsules_wanted = collision_shapes if collision else 0
+	job.capsule_radius = collision_minimum_radius
 	job.lod = lod
 	job.leaves = leaves
 	job.revision = reconstruction.get_bark_revision()
@@ -206,9 +286,30 @@ func _apply(job: BuildJob) -> void:
 			_leaves_node.name = &"Leaves"
 			add_child(_leaves_node, false, Node.INTERNAL_MODE_BACK)
 		_leaves_node.multimesh = _leaf_multimesh(job)
+	_apply_collision(job.capsules)
 	_update_materials()
 	_update_instances()
 	rebuilt.emit()
+
+
+func _apply_collision(capsules: Array[Dictionary]) -> void:
+	if capsules.is_empty():
+		if _body != null:
+			_body.queue_free()
+			_body = null
+		return
+	if _body == null:
+		_body = StaticBody3D.new()
+		_body.name = &"Body"
+		_update_body()
+		add_child(_body, false, Node.INTERNAL_MODE_BACK)
+	Collision.fill(_body, capsules)
+
+
+func _update_body() -> void:
+	if _body != null:
+		_body.collision_layer = collision_layer
+		_body.collision_mask = collision_mask
 
 
 func _apply_bark(job: BuildJob) -> void:
@@ -329,8 +430,13 @@ class BuildJob:
 	var bark: Array
 	var card: Array
 	var buffer: PackedFloat32Array
+	var capsules_wanted: int = 0
+	var capsule_radius: float
+	var capsules: Array[Dictionary] = []
 
 	func run() -> void:
+		if capsules_wanted > 0:
+			capsules = source.build_capsules(capsules_wanted, capsule_radius)
 		if with_bark:
 			bark = source.build_mesh_arrays(lod)
 		if leaves:
