@@ -29,32 +29,29 @@ Array TreeReconstruction::widen_lines(const Array& p_lines) {
     PackedVector3Array directions;
     PackedColorArray new_colors;
     PackedVector2Array places;
-    PackedVector2Array new_radii;
     PackedInt32Array indices;
     points.resize(4 * count);
     directions.resize(4 * count);
     new_colors.resize(colors.is_empty() ? 0 : 4 * count);
     places.resize(4 * count);
-    new_radii.resize(radii.is_empty() ? 0 : 4 * count);
     indices.resize(6 * count);
+    const Vector3* from = ends.ptr();
+    const Color* from_color = colors.ptr();
+    const Vector2* from_radius = radii.ptr();
     Vector3* point = points.ptrw();
     Vector3* direction = directions.ptrw();
     Color* color = new_colors.ptrw();
     Vector2* place = places.ptrw();
-    Vector2* radius = new_radii.ptrw();
     int32_t* index = indices.ptrw();
     for (int64_t i = 0; i < count; ++i) {
-        const Vector3 way = (ends[2 * i + 1] - ends[2 * i]).normalized();
+        const Vector3 way = (from[2 * i + 1] - from[2 * i]).normalized();
         for (int corner = 0; corner < 4; ++corner) {
             const int64_t end = 2 * i + corner / 2;
-            *point++ = ends[end];
+            *point++ = from[end];
             *direction++ = way;
-            *place++ = Vector2(float(corner / 2), corner % 2 == 0 ? -1.0f : 1.0f);
-            if (!colors.is_empty()) {
-                *color++ = colors[end];
-            }
-            if (!radii.is_empty()) {
-                *radius++ = radii[end];
+            *place++ = Vector2(from_radius ? from_radius[end].x : 0.0f, corner % 2 == 0 ? -1.0f : 1.0f);
+            if (from_color) {
+                *color++ = from_color[end];
             }
         }
         for (const int corner : {0, 1, 2, 2, 1, 3}) {
@@ -68,9 +65,6 @@ Array TreeReconstruction::widen_lines(const Array& p_lines) {
         arrays[Mesh::ARRAY_COLOR] = new_colors;
     }
     arrays[Mesh::ARRAY_TEX_UV] = places;
-    if (!radii.is_empty()) {
-        arrays[Mesh::ARRAY_TEX_UV2] = new_radii;
-    }
     arrays[Mesh::ARRAY_INDEX] = indices;
     return arrays;
 }

@@ -8,9 +8,10 @@ extends "tool.gd"
 const NO_NODE: int = TreeReconstruction.NO_NODE
 # In pixels at the editor's scale of 1.
 const _DRAGGED: float = 6.0
-# How far the arrows of the editor's own gizmo reach, and how near a press is on one.
-const _ARROWS: float = 100.0
-const _ARROW_REACH: float = 12.0
+# How far the arrows and rings of the editor's own gizmo reach from the node's origin, and in what
+# height of a viewport they begin to shrink.
+const _ARROWS: float = 115.0
+const _LOW: float = 400.0
 
 ## Called with the events of a click that was not for the tree, to hand it to the editor.
 var give_back: Callable
@@ -145,17 +146,9 @@ func _adds(event: InputEventMouseButton) -> bool:
 	return event.shift_pressed or event.is_command_or_control_pressed()
 
 
-# Whether a press is for the arrows by which the editor moves the whole node.
+# Whether a press is for the arrows and rings by which the editor moves and turns the whole node.
 func _is_on_arrows(camera: Camera3D, position: Vector2) -> bool:
 	var foot: Vector2 = session.picker.project_place(camera, Vector3.ZERO)
-	var scale: float = session.picker.get_scale()
-	if not foot.is_finite() or foot.distance_to(position) > _ARROWS * scale * 1.3:
-		return false
-	for axis: Vector3 in [Vector3.RIGHT, Vector3.UP, Vector3.BACK]:
-		for frame: Basis in [Basis.IDENTITY, session.node.global_basis.orthonormalized()]:
-			var way: Vector3 = camera.global_basis.inverse() * (frame * axis)
-			var tip: Vector2 = foot + Vector2(way.x, -way.y) * _ARROWS * scale
-			var nearest: Vector2 = Geometry2D.get_closest_point_to_segment(position, foot, tip)
-			if nearest.distance_to(position) <= _ARROW_REACH * scale:
-				return true
-	return false
+	# They shrink in low viewports.
+	var low: float = minf(session.picker.get_size(camera).y / _LOW, 1.0)
+	return foot.distance_to(position) <= _ARROWS * session.picker.get_scale() * low

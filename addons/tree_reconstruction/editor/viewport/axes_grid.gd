@@ -13,7 +13,7 @@ const _FIGURE: Shader = preload("figure.gdshader")
 const _X: Color = Color(0.96, 0.25, 0.33)
 const _Y: Color = Color(0.53, 0.84, 0.10)
 const _Z: Color = Color(0.20, 0.55, 0.98)
-const _SQUARES: Color = Color(0.62, 0.62, 0.66)
+const _SQUARES: Color = Color(0.86, 0.88, 0.92)
 const _MAXIMUM_SQUARES: int = 30
 # Half of a person's outline in metres, from the crown of the head to the feet; 1.75 m tall.
 const _OUTLINE: PackedVector2Array = [
@@ -58,7 +58,7 @@ var _box: AABB
 
 func _init(session: Session) -> void:
 	_session = session
-	_grid = _add(_lines(_RIBBON, 1.0, 0.5, 0.55, -2))
+	_grid = _add(_lines(_RIBBON, 1.0, 0.0, 0.7, -2))
 	_figure = _add(ShaderMaterial.new())
 	_figure.material.shader = _FIGURE
 	_figure.material.render_priority = -1
@@ -137,7 +137,7 @@ func _build_grid() -> void:
 	var colors: PackedColorArray = []
 	var reach: int = int(_reach())
 	for i: int in range(-reach, reach + 1):
-		var color: Color = _SQUARES if i % 5 == 0 else _SQUARES.darkened(0.35)
+		var color: Color = _SQUARES if i % 5 == 0 else _SQUARES.darkened(0.45)
 		_line(ends, colors, Vector3(i, 0, -reach), Vector3(i, 0, reach), color)
 		_line(ends, colors, Vector3(-reach, 0, i), Vector3(reach, 0, i), color)
 	_show(_grid, ends, colors)

@@ -1,15 +1,171 @@
 @tool
 extends RefCounted
-## Moves the editor's camera to look at the whole tree from one side.
+## Moves the editor's camera to show the whole tree from one side.
+##
+## The camera follows a cursor of the editor's own, which scripts cannot reach: a direction, a place
+## and a distance. So it is led there as a user would lead it, all within one frame: the viewport's
+## menu turns it to a side and centres it on the node, and a pinch of the touchpad sets the
+## distance. Where that is missed, as where another engine has other limits, a second pinch mends
+## it as soon as the camera rests.
 
 const Session: GDScript = preload("../session.gd")
 
+## The item of the viewport's menu by the action, as the editor names its shortcut.
+const _ITEMS: Dictionary[StringName, String] = {
+	&"view_front": "spatial_editor/front_view",
+	&"view_rear": "spatial_editor/rear_view",
+	&"view_right": "spatial_editor/right_view",
+	&"view_left": "spatial_editor/left_view",
+	&"view_top": "spatial_editor/top_view",
+	&"view_bottom": "spatial_editor/bottom_view",
+	&"view_home": "spatial_editor/front_view",
+}
+const _CENTRE: String = "spatial_editor/focus_selection"
+const _PERSPECTIVE: String = "spatial_editor/switch_perspective_orthogonal"
+# How the home view turns from the front: each is 15 degrees.
+const _HOME: Dictionary[String, int] = {
+	"spatial_editor/orbit_view_right": 2,
+	"spatial_editor/orbit_view_up": 1,
+}
+# How much of the picture stays free around the tree.
+const _MARGIN: float = 1.12
+# Seconds after which the camera is left where it is.
+const _PATIENCE: float = 3.0
+
 var _session: Session
+# Called with the events for the viewport's surface, past our own keys: (surface, events).
+var _send: Callable
+var _camera: Camera3D
+var _distance: float
+var _last: Transform3D
+var _left: float = 0.0
 
 
 func _init(session: Session) -> void:
 	_session = session
 
 
-func look(_action: StringName, _camera: Camera3D) -> void:
-	pass
+## Sets what events for the editor go through.
+func set_sender(send: Callable) -> void:
+	_send = send
+
+
+## Looks at the tree from the side that [param action] names (see actions.gd).
+func look(action: StringName, camera: Camera3D) -> void:
+	var editor: Control = camera.get_viewport().get_parent().get_parent() as Control
+	var menu: PopupMenu = _find_menu(editor)
+	if menu == null:
+		_session.say(
+			tr("This version of the editor has no menu of views that could be used."),
+			Session.Kind.WARNING
+		)
+		return
+	_choose(menu, _ITEMS[action])
+	if action == &"view_home":
+		_turn_home(menu, camera)
+	_centre(menu)
+	var orthogonal: bool = camera.projection == Camera3D.PROJECTION_ORTHOGONAL
+	_distance = _distance_for(action, camera, orthogonal)
+	# As near as the editor lets it, which is known, and out again from there.
+	_pinch(camera, 1e6)
+	_pinch(camera, maxf(camera.near * 4.0, 0.01) / _distance)
+	_camera = camera
+	_last = Transform3D()
+	_left = _PATIENCE
+
+
+## To be called once a frame.
+func update(delta: float) -> void:
+	if _left <= 0.0:
+		return
+	_left -= delta
+	if not is_instance_valid(_camera) or _session.tree == null:
+		_left = 0.0
+		return
+	var now: Transform3D = _camera.global_transform
+	if not now.is_equal_approx(_last):
+		_last = now
+		return
+	_left = 0.0
+	var reached: float = now.origin.distance_to(_get_box().get_center())
+	if _camera.projection == Camera3D.PROJECTION_ORTHOGONAL:
+		reached = _camera.size / (2.0 * tan(deg_to_rad(_camera.fov) * 0.5))
+	if absf(reached / _distance - 1.0) > 0.02:
+		_pinch(_camera, reached / _distance)
+
+
+## Nothing more is to be mended: the user moves the camera.
+func stop() -> void:
+	_left = 0.0
+
+
+# How far off the camera must be for the whole tree to be seen.
+func _distance_for(action: StringName, camera: Camera3D, orthogonal: bool) -> float:
+	var size: Vector3 = _get_box().size
+	var seen: Vector3 = size
+	match action:
+		&"view_right", &"view_left":
+			seen = Vector3(size.z, size.y, size.x)
+		&"view_top", &"view_bottom":
+			seen = Vector3(size.x, size.z, size.y)
+		&"view_home":
+			seen = Vector3(maxf(size.x, size.z), size.y, maxf(size.x, size.z))
+	var shape: Vector2 = camera.get_viewport().get_visible_rect().size
+	var half: float = 0.5 * maxf(seen.y, seen.x * shape.y / shape.x) * _MARGIN
+	var distance: float = half / tan(deg_to_rad(camera.fov) * 0.5)
+	return maxf(distance if orthogonal else distance + 0.5 * seen.z, 0.1)
+
+
+# The tree's box in the scene.
+func _get_box() -> AABB:
+	return _session.node.global_transform * _session.tree.get_aabb()
+
+
+func _turn_home(menu: PopupMenu, camera: Camera3D) -> void:
+	var settings: EditorSettings = EditorInterface.get_editor_settings()
+	for path: String in _HOME:
+		var shortcut: Shortcut = settings.get_shortcut(path)
+		if shortcut == null or not shortcut.has_valid_event():
+			continue
+		for i: int in _HOME[path]:
+			var event: InputEvent = shortcut.events[0].duplicate()
+			event.set(&"pressed", true)
+			_send.call(camera, [event] as Array[InputEvent])
+	if camera.projection == Camera3D.PROJECTION_ORTHOGONAL:
+		_choose(menu, _PERSPECTIVE)
+
+
+# The editor centres on the node's origin, which is the tree's foot: so the node is lifted while it
+# does. Nobody sees it.
+func _centre(menu: PopupMenu) -> void:
+	var node: TreeInstance3D = _session.node
+	var before: Transform3D = node.transform
+	node.global_position = _get_box().get_center()
+	_choose(menu, _CENTRE)
+	node.transform = before
+
+
+func _pinch(camera: Camera3D, factor: float) -> void:
+	var event: InputEventMagnifyGesture = InputEventMagnifyGesture.new()
+	event.factor = factor
+	event.position = camera.get_viewport().get_visible_rect().size * 0.5
+	_send.call(camera, [event] as Array[InputEvent])
+
+
+static func _choose(menu: PopupMenu, path: String) -> void:
+	var shortcut: Shortcut = EditorInterface.get_editor_settings().get_shortcut(path)
+	for i: int in menu.item_count:
+		if shortcut != null and menu.get_item_shortcut(i) == shortcut:
+			menu.id_pressed.emit(menu.get_item_id(i))
+			return
+
+
+# The menu in the viewport's corner that says 'Perspective'.
+static func _find_menu(editor: Control) -> PopupMenu:
+	var wanted: Shortcut = EditorInterface.get_editor_settings().get_shortcut(_CENTRE)
+	for button: Node in editor.find_children("*", "MenuButton", true, false):
+		var menu: PopupMenu = (button as MenuButton).get_popup()
+		for i: int in menu.item_count:
+			if menu.get_item_shortcut(i) == wanted:
+				return menu
+	return null

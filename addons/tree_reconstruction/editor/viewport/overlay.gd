@@ -33,10 +33,11 @@ func draw(overlay: Control, camera: Camera3D, picker: Picker, mouse_in: bool) ->
 	overlay.draw_arc(at, ring, 0.0, TAU, 48, Color(0, 0, 0, 0.6), 4.0 * scale, true)
 	overlay.draw_arc(at, ring, 0.0, TAU, 48, _RING, 2.0 * scale, true)
 	if mouse_in:
-		_draw_label(overlay, at + Vector2(ring + 6.0 * scale, -ring), scale)
+		_draw_label(overlay, at, ring * 0.8 + 2.0 * scale, scale)
 
 
-func _draw_label(overlay: Control, at: Vector2, scale: float) -> void:
+# Beside the ring around [param at], so that it hides neither the node nor what is next to it.
+func _draw_label(overlay: Control, at: Vector2, off: float, scale: float) -> void:
 	var text: String = _describe()
 	var font: Font = overlay.get_theme_default_font()
 	var size: int = overlay.get_theme_default_font_size()
@@ -44,8 +45,12 @@ func _draw_label(overlay: Control, at: Vector2, scale: float) -> void:
 	var box: Rect2 = Rect2(
 		at, font.get_string_size(text, HORIZONTAL_ALIGNMENT_LEFT, -1, size) + margin * 2.0
 	)
-	# Inside of the viewport.
-	box.position = box.position.min(overlay.size - box.size).max(Vector2.ZERO)
+	box.position += Vector2(off, -off - box.size.y)
+	if box.end.x > overlay.size.x:
+		box.position.x = at.x - off - box.size.x
+	if box.position.y < 0.0:
+		box.position.y = at.y + off
+	box.position = box.position.max(Vector2.ZERO)
 	overlay.draw_rect(box, Color(0.08, 0.09, 0.1, 0.82))
 	overlay.draw_string(
 		font,

@@ -85,6 +85,8 @@ func input(camera: Camera3D, event: InputEvent) -> int:
 		if event is InputEventKey:
 			_take_key(camera)
 			return EditorPlugin.AFTER_GUI_INPUT_STOP
+	if not event is InputEventMouseMotion and event.is_pressed():
+		_actions.views.stop()
 	var answer: int = _router.input(camera, event)
 	if answer == EditorPlugin.AFTER_GUI_INPUT_STOP and event is InputEventKey:
 		_take_key(camera)
@@ -139,6 +141,7 @@ func _make_input() -> void:
 	_shortcuts = Shortcuts.new(_session, settings)
 	_router = InputRouter.new(_session, _shortcuts)
 	_actions = Actions.new(_session)
+	_actions.views.set_sender(_send)
 	_router.asked.connect(func(action: StringName) -> void: _actions.run(action, _get_camera()))
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.connect(_on_tool_wants)
@@ -181,6 +184,7 @@ func _update() -> void:
 	_router.update()
 	_visibility.update()
 	_actions.turntable.update(delta)
+	_actions.views.update(delta)
 	_strip.update(delta)
 
 
@@ -229,6 +233,7 @@ func _on_view_changed() -> void:
 func _on_scan_changed() -> void:
 	_points.rebuild()
 	_points.update()
+	_strip.update_view()
 	_redraw()
 
 
@@ -248,9 +253,14 @@ func _get_camera() -> Camera3D:
 
 
 func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:
-	var surface: Control = _surfaces.get(_router.camera.get_viewport())
+	_send(_router.camera, [press, release])
+
+
+# Sends events to the editor, past our own keys and tools.
+func _send(camera: Camera3D, events: Array[InputEvent]) -> void:
+	var surface: Control = _surfaces.get(camera.get_viewport())
 	if surface != null:
-		_router.give_back(surface, [press, release])
+		_router.give_back(surface, events)
 
 
 # The engine would look for the key among the shortcuts of its own.

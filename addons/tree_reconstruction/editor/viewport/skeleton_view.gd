@@ -55,7 +55,9 @@ func update_tree() -> void:
 	var lines: Array = tree.build_skeleton_lines()
 	_lines.set_arrays(Mesh.PRIMITIVE_TRIANGLES, TreeReconstruction.widen_lines(lines))
 	_joints.set_arrays(Mesh.PRIMITIVE_POINTS, _points(tree.get_positions()))
-	_joints.material.set_shader_parameter(&"spacing", _mean_length(lines))
+	var spacing: float = _mean_length(lines)
+	for material: Material in [_joints.material, _lines.material, _lines.material.next_pass]:
+		(material as ShaderMaterial).set_shader_parameter(&"spacing", spacing)
 
 
 ## Other nodes are selected, or they stand elsewhere.

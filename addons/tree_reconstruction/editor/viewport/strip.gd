@@ -23,8 +23,15 @@ var _left: float = 0.0
 func _init(session: Session) -> void:
 	_session = session
 	name = &"TreeStrip"
+	theme_type_variation = &"PanelForeground"
+	var margin: MarginContainer = MarginContainer.new()
+	for side: String in ["left", "right"]:
+		margin.add_theme_constant_override("margin_" + side, int(8 * Picker.get_scale()))
+	for side: String in ["top", "bottom"]:
+		margin.add_theme_constant_override("margin_" + side, int(3 * Picker.get_scale()))
+	add_child(margin)
 	var rows: VBoxContainer = VBoxContainer.new()
-	add_child(rows)
+	margin.add_child(rows)
 	_place = HFlowContainer.new()
 	_place.add_theme_constant_override(&"h_separation", int(10 * Picker.get_scale()))
 	rows.add_child(_place)
@@ -52,10 +59,10 @@ func update_tool() -> void:
 		_settings.queue_free()
 		_settings = null
 	var tool: RefCounted = _session.tool
-	_title.text = "" if tool == null or not _session.view.editing else tool.call(&"get_title")
-	_title.visible = not _title.text.is_empty()
 	if tool != null and _session.view.editing:
 		_settings = tool.call(&"make_settings")
+		_title.text = tool.call(&"get_title")
+	_title.visible = _settings != null
 	if _settings != null:
 		_place.add_child(_settings)
 		_place.move_child(_settings, 1)
@@ -68,6 +75,10 @@ func update_view() -> void:
 	_points.visible = _session.view.points
 	_size.set_value_no_signal(_session.view.point_size)
 	_colors.select(_session.view.point_colors)
+	var colorless: bool = _session.scan.colors.is_empty() and not _session.scan.points.is_empty()
+	_colors.set_item_disabled(ViewState.PointColors.SCAN, colorless)
+	if colorless and _session.view.point_colors == ViewState.PointColors.SCAN:
+		_colors.select(ViewState.PointColors.HEIGHT)
 
 
 ## Shows a sentence for a while.
@@ -89,7 +100,9 @@ func update(delta: float) -> void:
 func _show_hint() -> void:
 	var hint: String = tr("Press Tab or switch 'Edit skeleton' on to edit the tree's wood.")
 	if _session.view.editing:
-		hint = "" if _session.tool == null else _session.tool.call(&"get_tooltip")
+		hint = ""
+		if _session.tool != null:
+			hint = "%s: %s" % [_session.tool.call(&"get_title"), _session.tool.call(&"get_tooltip")]
 	_status.text = hint
 	_status.tooltip_text = hint
 	_status.add_theme_color_override(&"font_color", _color_of(Session.Kind.INFO))
