@@ -120,6 +120,9 @@ static func _write(tree: TreeReconstruction, path: String) -> Error:
 		error = DirAccess.rename_absolute(part, path)
 	if error != OK and FileAccess.file_exists(part):
 		DirAccess.remove_absolute(part)
+	if Engine.is_editor_hint():
+		# The engine lists what is saved.
+		EditorInterface.get_resource_filesystem().update_file(part)
 	return error
 
 

@@ -15,7 +15,11 @@ const PRESET_VALUES: Array[Dictionary] = [
 	# Thin twigs are easily taken for leaves.
 	{"leaves/tell_leaves": false, "skeleton/complete": true},
 	# The twigs inside of a leafy crown are hardly seen: what is short there is noise.
-	{"leaves/tell_leaves": true, "advanced/minimum_branch": 0.3},
+	{
+		"leaves/tell_leaves": true,
+		"skeleton/complete": true,
+		"advanced/minimum_branch": 0.3,
+	},
 	{"skeleton/spacing": 0.03, "cleaning/remove_outliers": false},
 ]
 const _UNITS: String = (

@@ -198,14 +198,18 @@ static func _load_fresh(path: String) -> TreeReconstruction:
 
 # As it is in memory, saved or not. The last few are kept.
 static func _back_up(local: TreeReconstruction, path: String) -> Error:
-	var part: String = path.get_basename() + ".saving." + path.get_extension()
+	var part: String = path.get_base_dir().path_join(".saving_" + path.get_file())
 	var error: Error = ResourceSaver.save(local, part, ResourceSaver.FLAG_COMPRESS)
 	if error != OK:
 		return error
 	for i: int in range(_BACKUPS - 1, 0, -1):
 		if FileAccess.file_exists(_backup(path, i)):
 			DirAccess.rename_absolute(_backup(path, i), _backup(path, i + 1))
-	return DirAccess.rename_absolute(part, _backup(path, 1))
+	error = DirAccess.rename_absolute(part, _backup(path, 1))
+	if Engine.is_editor_hint():
+		# The engine lists what is saved.
+		EditorInterface.get_resource_filesystem().update_file(part)
+	return error
 
 
 static func _backup(path: String, number: int) -> String:

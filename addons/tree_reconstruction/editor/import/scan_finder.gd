@@ -16,7 +16,10 @@ const _SECTION: String = "tree_reconstruction"
 const _TEXTS: PackedStringArray = ["txt", "csv"]
 # Names of folders that say nothing about the scan in them.
 const _PLAIN_FOLDERS: PackedStringArray = ["sparse", "dense", "colmap"]
+# The end of an import is followed by that of the look that found what to import.
+const _QUIET_FRAMES: int = 3
 
+var _importing: bool = false
 var _task: int = -1
 var _again: bool = false
 # By path: [time of the last change, whether it is a scan].
@@ -31,14 +34,20 @@ func enter() -> void:
 	_seen = _remembered("seen_texts")
 	_stand_ins = _remembered("stand_ins")
 	_times = _remembered("scan_times")
-	EditorInterface.get_resource_filesystem().filesystem_changed.connect(look)
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+	files.resources_reimporting.connect(_on_reimporting)
+	files.resources_reimported.connect(_on_reimported)
+	files.filesystem_changed.connect(look)
 	EditorInterface.get_file_system_dock().files_moved.connect(_on_file_moved)
 	look()
 
 
 func exit() -> void:
 	EditorInterface.get_file_system_dock().files_moved.disconnect(_on_file_moved)
-	EditorInterface.get_resource_filesystem().filesystem_changed.disconnect(look)
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+	files.filesystem_changed.disconnect(look)
+	files.resources_reimported.disconnect(_on_reimported)
+	files.resources_reimporting.disconnect(_on_reimporting)
 	if _task >= 0:
 		WorkerThreadPool.wait_for_task_completion(_task)
 		_task = -1
@@ -115,18 +124,32 @@ func _import_changed(look_at: Look) -> void:
 
 
 func _scan_files() -> void:
-	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
-	if files.is_scanning():
-		# It may have passed the new file.
-		await files.filesystem_changed
-	files.scan()
+	await _wait_for_engine()
+	EditorInterface.get_resource_filesystem().scan()
 
 
 func _reimport(paths: PackedStringArray) -> void:
-	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
-	if files.is_scanning():
-		await files.filesystem_changed
-	files.reimport_files(paths)
+	await _wait_for_engine()
+	EditorInterface.get_resource_filesystem().reimport_files(paths)
+
+
+# A look of the engine's that is under way may have passed the new files, and no other one begins
+# meanwhile. One that begins during an import loses what it finds, since that import's end clears
+# the list; and none may begin while deferred calls are made.
+func _wait_for_engine() -> void:
+	var quiet: int = 0
+	while quiet < _QUIET_FRAMES:
+		await (Engine.get_main_loop() as SceneTree).process_frame
+		var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+		quiet = 0 if _importing or files.is_scanning() else quiet + 1
+
+
+func _on_reimporting(_paths: PackedStringArray) -> void:
+	_importing = true
+
+
+func _on_reimported(_paths: PackedStringArray) -> void:
+	_importing = false
 
 
 # The engine takes every .csv file for translations. A scan is left alone, and not exported.

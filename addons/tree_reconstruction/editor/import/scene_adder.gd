@@ -20,9 +20,15 @@ func _init(undo_redo: EditorUndoRedoManager) -> void:
 
 ## Whether the file is a tree, or a scan that was imported as one. Does not load it.
 static func is_tree_file(path: String) -> bool:
-	if path.ends_with("/"):
+	if path.is_empty() or path.ends_with("/"):
 		return false
-	return EditorInterface.get_resource_filesystem().get_file_type(path) == "TreeReconstruction"
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+	if files.get_file_type(path) != "TreeReconstruction":
+		return false
+	# A scan that could not be imported has the type all the same.
+	var folder: EditorFileSystemDirectory = files.get_filesystem_path(path.get_base_dir())
+	var index: int = -1 if folder == null else folder.find_file_index(path.get_file())
+	return index < 0 or folder.get_file_import_is_valid(index)
 
 
 ## Those of the files that are trees.
