@@ -14,6 +14,7 @@ const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 const _PARTS: PackedStringArray = [
 	"import/part.gd",
 	"viewport/part.gd",
+	"dock/part.gd",
 ]
 
 var _session: RefCounted

@@ -121,6 +121,8 @@ var _job: BuildJob
 var _height: float = 1.0
 # The reconstruction, its revision and the level that the mesh was built of.
 var _bark_of: Array = []
+var _bark_time: float = 0.0
+var _leaf_time: float = 0.0
 
 
 ## Builds the tree again, once, before the next frame is drawn or as soon as a build that is under
@@ -189,6 +191,16 @@ func get_leaf_count() -> int:
 	if _leaves_node == null or _leaves_node.multimesh == null:
 		return 0
 	return _leaves_node.multimesh.instance_count
+
+
+## The milliseconds that the bark took when it was built last.
+func get_bark_build_time() -> float:
+	return _bark_time
+
+
+## The milliseconds that the leaves took when they grew last.
+func get_leaf_build_time() -> float:
+	return _leaf_time
 
 
 func _notification(what: int) -> void:
@@ -277,6 +289,8 @@ func _drop_job() -> void:
 func _apply(job: BuildJob) -> void:
 	if job.with_bark:
 		_apply_bark(job)
+		_bark_time = job.bark_time
+	_leaf_time = job.leaf_time
 	if job.buffer.is_empty():
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
@@ -433,12 +447,18 @@ class BuildJob:
 	var capsules_wanted: int = 0
 	var capsule_radius: float
 	var capsules: Array[Dictionary] = []
+	var bark_time: float
+	var leaf_time: float
 
 	func run() -> void:
 		if capsules_wanted > 0:
 			capsules = source.build_capsules(capsules_wanted, capsule_radius)
+		var started: int = Time.get_ticks_usec()
 		if with_bark:
 			bark = source.build_mesh_arrays(lod)
+		var barked: int = Time.get_ticks_usec()
 		if leaves:
 			buffer = source.build_leaf_buffer(lod)
 			card = source.build_leaf_form_arrays(lod)
+		bark_time = (barked - started) / 1000.0
+		leaf_time = (Time.get_ticks_usec() - barked) / 1000.0

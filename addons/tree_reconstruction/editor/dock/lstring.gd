@@ -1,0 +1,228 @@
+@tool
+extends "section.gd"
+## The tree, or the branch that begins at the selected node, as a string that can be edited.
+
+## A longer string is not shown until the user asks: a text field is slow with it.
+const MOST: int = 200_000
+const _DIALECTS: PackedStringArray = ["turtle", "paper"]
+
+var text: CodeEdit = CodeEdit.new()
+var apply: Button
+var revert: Button
+var anyway: Button
+var dialect: OptionButton
+
+var _what: Label
+var _error: Label
+var _tree: TreeReconstruction
+var _node: int = -1
+var _log: String
+var _edited: bool = false
+# The user wants the long one.
+var _forced: bool = false
+
+
+func get_id() -> StringName:
+	return &"lstring"
+
+
+func close() -> void:
+	session.string_picked.disconnect(_on_string_picked)
+
+
+func _build() -> void:
+	title = "L-string"
+	tooltip_text = "The selected branch as text: a turtle that walks by it draws the branch."
+	folded = true
+	_what = Widgets.sentence()
+	_what.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	body.add_child(_what)
+	text.custom_minimum_size.y = Widgets.px(160)
+	text.wrap_mode = TextEdit.LINE_WRAPPING_BOUNDARY
+	text.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	text.tooltip_text = "F is wood, ! its radius, + - & ^ / \\ turn, [ and ] enclose a branch."
+	text.text_changed.connect(_on_text_changed)
+	text.add_theme_font_override(&"font", _code_font())
+	text.delimiter_comments = ["#"]
+	body.add_child(text)
+	_error = Widgets.sentence()
+	_error.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	_error.visible = false
+	body.add_child(_error)
+	dialect = Widgets.choice(PackedStringArray(["Turtle", "Paper"]), Array(_DIALECTS) as Array)
+	dialect.tooltip_text = "Turtle: angles from the wood below. Paper: absolute angles, no radii."
+	dialect.item_selected.connect(_on_dialect_selected)
+	apply = Widgets.button(
+		"Apply", "Puts the branch that this text draws in the selected one's place.", &"ImportCheck"
+	)
+	apply.pressed.connect(_on_apply_pressed)
+	revert = Widgets.button("Revert", "Shows the branch as it is again.", &"Reload")
+	revert.pressed.connect(_on_revert_pressed)
+	anyway = Widgets.button("Show it anyway", "Shows the whole text. Typing in it may be slow.")
+	anyway.pressed.connect(_on_anyway_pressed)
+	body.add_child(buttons([dialect, apply, revert, anyway]))
+	session.string_picked.connect(_on_string_picked)
+
+
+func _refresh() -> void:
+	var tree: TreeReconstruction = session.tree
+	if tree == null or tree.is_empty():
+		_tree = null
+		text.text = ""
+		text.editable = false
+		return
+	var gone: bool = _node != tree.get_root() and not tree.has_node(_node)
+	# What the user types stays until it is applied, unless its branch is no more.
+	if _edited and tree == _tree and not gone:
+		_show_edited()
+		return
+	var node: int = session.get_active()
+	if node == session.NO_NODE:
+		node = tree.get_root()
+	if tree == _tree and node == _node and tree.edit_log == _log and not _edited:
+		return
+	_forced = _forced and node == _node
+	_show_branch(node)
+
+
+func _show_branch(node: int) -> void:
+	_tree = session.tree
+	_node = node
+	_log = _tree.edit_log
+	_edited = false
+	var lstring: String = LSystem.write_string(_tree, node, dialect.selected)
+	var long: bool = lstring.length() > MOST and not _forced
+	anyway.visible = long
+	if long:
+		_what.text = (
+			tr("This branch is a text of %s characters. Select a smaller one.")
+			% Widgets.grouped(lstring.length())
+		)
+		text.text = ""
+	else:
+		_what.text = (
+			tr("The whole tree:")
+			if node == _tree.get_root()
+			else tr("The branch at node %d:") % node
+		)
+		text.text = broken_into_lines(lstring)
+	text.editable = not long
+	_show_edited()
+	_show_error("", -1)
+
+
+func _show_edited() -> void:
+	apply.disabled = not _edited
+	revert.disabled = not _edited
+
+
+## An L-string with each of its branches on lines of its own. Blanks mean nothing in it.
+static func broken_into_lines(lstring: String) -> String:
+	var parts: PackedStringArray = lstring.split("[")
+	var lines: PackedStringArray = [parts[0]]
+	var depth: int = 0
+	for part: String in parts.slice(1):
+		depth += 1
+		var ends: PackedStringArray = part.split("]")
+		lines.append("  ".repeat(depth) + "[" + ends[0] + ("]" if ends.size() > 1 else ""))
+		for i: int in range(1, ends.size()):
+			depth -= 1
+			if i + 1 < ends.size() or not ends[i].is_empty():
+				lines.append("  ".repeat(depth) + ends[i] + ("]" if i + 1 < ends.size() else ""))
+	return "\n".join(lines)
+
+
+## The text on one line, each character at its place, and without comments.
+static func on_one_line(lines: String) -> String:
+	var flat: PackedStringArray = []
+	for line: String in lines.split("\n"):
+		var code: String = line.get_slice("#", 0)
+		flat.append(code.rpad(line.length()))
+	return " ".join(flat).replace("\t", " ").replace("\r", " ").replace('"', " ")
+
+
+func _on_text_changed() -> void:
+	_edited = true
+	_show_error("", -1)
+	_show_edited()
+
+
+func _on_dialect_selected(_index: int) -> void:
+	if _tree != null and _tree == session.tree and _tree.has_node(_node):
+		_show_branch(_node)
+
+
+func _on_apply_pressed() -> void:
+	if session.tree == null or not session.tree.has_node(_node):
+		return
+	var flat: String = on_one_line(text.text)
+	var words: String = "root" if _node == session.tree.get_root() else str(_node)
+	var command: String = 'lstring node=%s string="%s"' % [words, flat]
+	if dialect.selected == LSystem.DIALECT_PAPER:
+		command += " dialect=paper"
+	var sentence: String = session.tree.check_edit(command)
+	if not sentence.is_empty():
+		_show_error(sentence, _column_in(sentence))
+		return
+	var edit: TreeEdit = session.run(tr("Edit L-string"), command)
+	if edit == null:
+		return
+	_edited = false
+	var made: PackedInt32Array = edit.get_result_nodes()
+	if not made.is_empty():
+		session.select([made[0]])
+	elif not session.tree.has_node(_node):
+		session.clear_selection()
+	_show_branch(session.get_active() if session.get_active() != -1 else session.tree.get_root())
+
+
+func _on_revert_pressed() -> void:
+	_edited = false
+	_tree = null
+	invalidate()
+	update()
+
+
+func _on_anyway_pressed() -> void:
+	_forced = true
+	_show_branch(_node)
+
+
+func _on_string_picked(_lstring: String, id: int) -> void:
+	if session.tree != null and session.tree.has_node(id):
+		folded = false
+		_show_branch(id)
+
+
+# Where an error of a text on one line is.
+static func _column_in(sentence: String) -> int:
+	var place: RegEx = RegEx.create_from_string("line 1, column (\\d+)")
+	var found: RegExMatch = place.search(sentence)
+	return -1 if found == null else found.get_string(1).to_int() - 1
+
+
+func _show_error(sentence: String, offset: int) -> void:
+	_error.visible = not sentence.is_empty()
+	_error.text = sentence
+	if sentence.is_empty():
+		return
+	if has_theme_color(&"error_color", &"Editor"):
+		_error.add_theme_color_override(&"font_color", get_theme_color(&"error_color", &"Editor"))
+	if offset < 0:
+		return
+	# The user's text has lines.
+	var before: PackedStringArray = text.text.left(offset).split("\n")
+	var row: int = before.size() - 1
+	var column: int = before[-1].length()
+	_error.text = sentence.replace(
+		"line 1, column %d" % (offset + 1), "line %d, column %d" % [row + 1, column + 1]
+	)
+	text.set_caret_line(row)
+	text.set_caret_column(column)
+	text.center_viewport_to_caret()
+
+
+static func _code_font() -> Font:
+	if Engine.is_editor_hint():
+		return EditorInterface.get_editor_theme().get_font(&"source", &"EditorFonts")
+	return ThemeDB.fallback_font
