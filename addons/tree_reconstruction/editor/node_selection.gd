@@ -34,8 +34,9 @@ func select(ids: PackedInt32Array, how: How = How.REPLACE) -> void:
 	if how != How.REPLACE:
 		for id: int in selection:
 			kept[id] = true
+	var of: TreeReconstruction = tree
 	for id: int in ids:
-		if tree == null or not tree.has_node(id):
+		if of == null or not of.has_node(id):
 			continue
 		var take_off: bool = how == How.REMOVE or (how == How.TOGGLE and kept.has(id))
 		# Taken out first, so that what is selected again is the last.

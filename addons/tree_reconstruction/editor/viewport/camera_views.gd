@@ -29,6 +29,8 @@ const _HOME: Dictionary[String, int] = {
 }
 # How much of the picture stays free around the tree.
 const _MARGIN: float = 1.12
+# Where the editor's camera stands in a scene in which nobody has moved it yet.
+const _UNTOUCHED: Vector3 = Vector3(1.682942, 1.917702, 3.080605)
 # Seconds after which the camera is left where it is.
 const _PATIENCE: float = 3.0
 
@@ -48,6 +50,12 @@ func _init(session: Session) -> void:
 ## Sets what events for the editor go through.
 func set_sender(send: Callable) -> void:
 	_send = send
+
+
+## Whether nobody has moved a camera of the editor since its scene was made: a tree is mostly above
+## what it sees then.
+static func is_untouched(camera: Camera3D) -> bool:
+	return camera.global_position.distance_to(_UNTOUCHED) < 0.01
 
 
 ## Looks at the tree from the side that [param action] names (see actions.gd).

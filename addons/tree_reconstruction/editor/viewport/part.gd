@@ -37,6 +37,8 @@ var _menu: ViewMenu
 var _strip: Strip
 # By the camera's viewport: what the editor takes its events from.
 var _surfaces: Dictionary[Viewport, Control] = {}
+# Whether the camera may have to be led to the tree as soon as its viewport is drawn.
+var _home_due: bool = false
 
 
 func enter(plugin: EditorPlugin, session: Session) -> void:
@@ -186,12 +188,15 @@ func _update() -> void:
 	_actions.turntable.update(delta)
 	_actions.views.update(delta)
 	_strip.update(delta)
+	if _home_due:
+		_look_home()
 
 
 func _on_node_changed() -> void:
 	_actions.turntable.stop()
 	for control: Control in [_strip, _menu, _toolbar]:
 		control.visible = _session.node != null
+	_home_due = _session.tree != null
 	_visibility.take(_session.node)
 	_gizmo.take(_session.node, _session.view.editing)
 	_on_tree_changed()
@@ -254,6 +259,18 @@ func _get_camera() -> Camera3D:
 
 func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:
 	_send(_router.camera, [press, release])
+
+
+# A tree that is edited in a new scene is shown wholly; elsewhere the camera stays where the user
+# has left it.
+func _look_home() -> void:
+	var camera: Camera3D = EditorInterface.get_editor_viewport_3d(0).get_camera_3d()
+	if _session.tree == null or camera == null or not camera.is_visible_in_tree():
+		_home_due = false
+	elif _surfaces.has(camera.get_viewport()):
+		_home_due = false
+		if Actions.CameraViews.is_untouched(camera):
+			_actions.views.look(&"view_home", camera)
 
 
 # Sends events to the editor, past our own keys and tools.

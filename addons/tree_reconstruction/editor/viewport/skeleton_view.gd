@@ -56,7 +56,9 @@ func update_tree() -> void:
 	_lines.set_arrays(Mesh.PRIMITIVE_TRIANGLES, TreeReconstruction.widen_lines(lines))
 	_joints.set_arrays(Mesh.PRIMITIVE_POINTS, _points(tree.get_positions()))
 	var spacing: float = _mean_length(lines)
-	for material: Material in [_joints.material, _lines.material, _lines.material.next_pass]:
+	for material: Material in [
+		_joints.material, _lines.material, _lines.material.next_pass, _selected.material
+	]:
 		(material as ShaderMaterial).set_shader_parameter(&"spacing", spacing)
 
 

@@ -62,7 +62,8 @@ func _fill() -> void:
 	_colors.set_item_tooltip(
 		2, tr("Blue points lie on the bark, red ones lie off it: there the tree misses something.")
 	)
-	get_popup().add_submenu_node_item(tr("Point Colors"), _colors)
+	# With an id that is no action's.
+	get_popup().add_submenu_node_item(tr("Point Colors"), _colors, 1000)
 	_add(&"show_skeleton", tr("Skeleton"), true, tr("The lines and joints that are edited."))
 	_add(&"show_mesh", tr("Bark"), true, tr("The mesh of trunk and branches."))
 	_add(&"show_leaves", tr("Leaves"), true, tr("The leaves of the tree, if it bears any."))
