@@ -41,17 +41,21 @@ EditOutcome run_lighten(Tree& tree, const EditArguments& given) {
     if (given.has("nodes") && given.has("share"))
         throw Error("Give the number of nodes or their share, not both.");
     if (given.has("nodes")) options.nodes = static_cast<size_t>(given.whole("nodes"));
-    if (given.has("share"))
+    if (given.has("below")) options.below = given.node("below");
+    if (given.has("share")) {
+        const size_t there = options.below == kNoNode ? tree.size() : tree.depth_first(options.below).size();
         options.nodes = std::max<size_t>(
-            2, static_cast<size_t>(std::lround(given.number("share") * static_cast<double>(tree.size()))));
+            2, static_cast<size_t>(std::lround(given.number("share") * static_cast<double>(there))));
+    }
     const Tree before = tree;
     return outcome_of(before, lighten(tree, options, given.progress()));
 }
 
 EditOutcome run_merge(Tree& tree, const EditArguments& given) {
     const Tree before = tree;
-    return outcome_of(
-        before, merge_branches(tree, given.number("angle"), given.number("distance"), given.progress()));
+    const NodeId below = given.has("below") ? given.node("below") : kNoNode;
+    return outcome_of(before, merge_branches(tree, given.number("angle"), given.number("distance"),
+                                             given.progress(), below));
 }
 
 }  // namespace
@@ -62,6 +66,8 @@ std::vector<EditCommand> lighten_commands() {
                                       "how many nodes to leave, whatever angle, distance and deviation say")
                           .slider(2, 5000);
     nodes.standard.clear();
+    const Parameter below =
+        node_parameter("below", "only what grows from this node becomes lighter").optional();
     return {
         {"lighten",
          "lighten",
@@ -76,7 +82,8 @@ std::vector<EditCommand> lighten_commands() {
               .slider(0.0, 0.2),
           nodes,
           number_parameter("share", NAN, 0.0, 1.0, "the same as a share of the nodes that there are")
-              .optional()},
+              .optional(),
+          below},
          run_lighten},
         {"merge",
          "lighten",
@@ -85,7 +92,8 @@ std::vector<EditCommand> lighten_commands() {
          {number_parameter("angle", 15.0, 0.0, 180.0, "degrees; a node goes where the wood turns by less")
               .slider(0.0, 90.0),
           length_parameter("distance", 0.05, 0.0, 1e6, "metres; two tips of one fork so near become one")
-              .slider(0.0, 1.0)},
+              .slider(0.0, 1.0),
+          below},
          run_merge},
     };
 }

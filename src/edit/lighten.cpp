@@ -33,10 +33,18 @@ class Lightener {
           options_(options),
           bounded_(options.nodes == 0),
           least_cosine_(std::cos(options.angle * std::numbers::pi / 180.0)),
-          state_(net_.nodes.size()) {}
+          state_(net_.nodes.size()) {
+        if (options.below == kNoNode) return;
+        const std::vector<NodeId> branch = tree.depth_first(options.below);
+        left_ = branch.size();
+        stays_.assign(net_.nodes.size(), 1);
+        for (NodeId id : branch)
+            stays_[id] = 0;
+        stays_[options.below] = 1;
+    }
 
     Lightened run() {
-        size_t left = tree_.size();
+        size_t left = left_;
         std::vector<Step> first;
         first.reserve(left);
         for (NodeId id = 0; id < tree_.id_end(); id++)
@@ -120,6 +128,7 @@ class Lightener {
     std::optional<Step> step_at(NodeId id) {
         const Node& node = net_.nodes[id];
         if (node.parent == kNoNode || node.child_count > 1) return std::nullopt;
+        if (!stays_.empty() && stays_[id]) return std::nullopt;
         if (node.child_count == 0) return leaf_step(id);
         if (node.is_trunk() && !net_.nodes[node.first_child].is_trunk()) return std::nullopt;
         if (bounded_ && net_.turn_cosine(id) <= least_cosine_) return std::nullopt;
@@ -217,6 +226,8 @@ class Lightener {
     const bool bounded_;
     const double least_cosine_;
     std::vector<State> state_;
+    std::vector<uint8_t> stays_;  // by id; empty: any node may go
+    size_t left_ = tree_.size();  // nodes of what becomes lighter
     Steps steps_;
     uint32_t count_ = 0;
 };

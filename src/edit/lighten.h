@@ -37,8 +37,9 @@ Lightened merge_turns(Tree& tree, double angle, const Progress* progress = nullp
 // the first. Throws Error for a distance that is negative or not finite, or Cancelled.
 Lightened merge_tips(Tree& tree, double distance, const Progress* progress = nullptr);
 
-// Both in turns until neither finds anything (6.2.3).
-Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress = nullptr);
+// Both in turns until neither finds anything (6.2.3); in what grows from `below` alone, if that is a node.
+Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress = nullptr,
+                         NodeId below = kNoNode);
 
 // A level of detail. With `nodes` at 0: what the three bounds allow. Else as many nodes go as that asks,
 // whatever the bounds.
@@ -46,7 +47,8 @@ struct LightenOptions {
     double angle = 60.0;      // degrees: a node goes where the wood turns by less
     double distance = 0.1;    // metres: a leaf goes that ends so near other wood on its fork
     double deviation = 0.01;  // metres: the bark does not move farther
-    size_t nodes = 0;         // how many to leave, at least 2
+    size_t nodes = 0;         // how many to leave, at least 2; with `below` of that and what grows from it
+    NodeId below = kNoNode;   // if a node: only what grows from it becomes lighter; itself it stays
 };
 
 // Takes away, the least visible first, nodes of runs and leaves of forks, where least visible is the least

@@ -19,8 +19,9 @@ constexpr size_t kFewTips = 48;
 
 class Merger {
   public:
-    Merger(Tree& tree, const Progress* progress)
-        : tree_(tree), net_(tree), progress_(progress), reach_(net_.nodes.size(), 0.0) {}
+    // top: only what grows from it is merged.
+    Merger(Tree& tree, NodeId top, const Progress* progress)
+        : tree_(tree), top_(top), net_(tree), progress_(progress), reach_(net_.nodes.size(), 0.0) {}
 
     // Runs everything and hands the result over to the tree.
     Lightened run(double angle, double distance) {
@@ -28,9 +29,9 @@ class Merger {
         distance_ = distance;
         const bool turns = angle > 0.0;
         std::vector<NodeId> forks;
-        const std::vector<NodeId> order = tree_.depth_first();
-        for (NodeId id : order)
-            if (id == tree_.root() || net_.nodes[id].child_count > 1) forks.push_back(id);
+        if (!tree_.empty())
+            for (NodeId id : tree_.depth_first(top_))
+                if (id == top_ || net_.nodes[id].child_count > 1) forks.push_back(id);
         if (turns)
             for (NodeId fork : forks)
                 for (NodeId at = net_.nodes[fork].first_child; at != kNoNode;) {
@@ -44,8 +45,7 @@ class Merger {
             for (NodeId fork : forks) {
                 check();
                 const bool merged = merge_leaves_of(fork);
-                if (merged && net_.nodes[fork].child_count == 1 && fork != tree_.root())
-                    joined.push_back(fork);
+                if (merged && net_.nodes[fork].child_count == 1 && fork != top_) joined.push_back(fork);
             }
             if (!turns) break;
             for (NodeId fork : joined) {
@@ -72,7 +72,7 @@ class Merger {
 
     bool starts_run(NodeId id) const {
         const NodeId parent = net_.nodes[id].parent;
-        return parent == tree_.root() || net_.nodes[parent].child_count > 1;
+        return parent == top_ || net_.nodes[parent].child_count > 1;
     }
 
     // Returns the node that stands at the run's beginning now.
@@ -183,6 +183,7 @@ class Merger {
     }
 
     Tree& tree_;
+    const NodeId top_;
     LooseTree net_;
     const Progress* progress_;
     std::vector<double> reach_;  // of a leaf: how far those lay that it stands for
@@ -212,10 +213,10 @@ Lightened merge_tips(Tree& tree, double distance, const Progress* progress) {
     return merge_branches(tree, 0.0, distance, progress);
 }
 
-Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress) {
+Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress, NodeId below) {
     require_angle(angle);
     require_distance(distance);
-    return Merger(tree, progress).run(angle, distance);
+    return Merger(tree, below != kNoNode ? below : tree.root(), progress).run(angle, distance);
 }
 
 }  // namespace treerec

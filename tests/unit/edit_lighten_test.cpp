@@ -242,6 +242,54 @@ TEST(Lighten, ALevelIsPartOfTheNextFinerOne) {
     }
 }
 
+// What grows from a node alone: the rest of the tree stays as it is, node by node.
+TEST(Lighten, ABranchAloneBecomesLighter) {
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        const Tree tree = seed % 2 ? test::random_tree(seed, 300) : test::wild_tree(seed, 300);
+        const std::vector<NodeId> order = tree.depth_first();
+        const NodeId below = order[seed * 7 % order.size()];
+        std::vector<NodeId> branch = tree.depth_first(below);
+        std::sort(branch.begin(), branch.end());
+        for (bool merged : {false, true}) {
+            Tree light = tree;
+            LightenOptions options;
+            options.below = below;
+            if (seed % 3 == 0) options.nodes = std::max<size_t>(2, branch.size() / 3);
+            const Lightened result =
+                merged ? merge_branches(light, 40.0, 0.3, nullptr, below) : lighten(light, options);
+            EXPECT_EQ(light.check().value_or("sound"), "sound");
+            EXPECT_TRUE(light.contains(below));
+            EXPECT_TRUE(
+                std::includes(branch.begin(), branch.end(), result.removed.begin(), result.removed.end()));
+            for (NodeId id : order) {
+                if (id != below && std::binary_search(branch.begin(), branch.end(), id)) continue;
+                ASSERT_TRUE(light.contains(id));
+                EXPECT_EQ(light.node(id).parent, tree.node(id).parent);
+                EXPECT_EQ(light.node(id).position, tree.node(id).position);
+                EXPECT_EQ(light.node(id).radius, tree.node(id).radius);
+            }
+            Tree whole = tree, from_root = tree;
+            options.below = kNoNode;
+            merged ? merge_branches(whole, 40.0, 0.3) : lighten(whole, options);
+            options.below = tree.root();
+            merged ? merge_branches(from_root, 40.0, 0.3, nullptr, tree.root()) : lighten(from_root, options);
+            expect_same(whole, from_root);
+        }
+    }
+}
+
+TEST(Lighten, ABranchOfItsOwnReachesItsOwnNumberOfNodes) {
+    const Tree tree = grow_tree({Habit::kBroadleaf, 8.0, 3});
+    const NodeId below = tree.node(tree.root()).first_child;
+    const size_t there = tree.depth_first(below).size();
+    Tree light = tree;
+    LightenOptions options;
+    options.below = below;
+    options.nodes = there / 4;
+    lighten(light, options);
+    EXPECT_EQ(light.depth_first(below).size(), there / 4);
+}
+
 TEST(Lighten, NoTwigOfATrunkSwallowsIt) {
     // A thin trunk's tip beside a stout leaf.
     Tree tree;
