@@ -95,6 +95,9 @@ class TreeReconstruction : public godot::Resource {
 #ifdef TREEREC_EDITOR
     godot::Dictionary measure_fidelity(const godot::PackedVector3Array& p_points, double p_tolerance) const;
     // tree_completion.cpp
+    godot::Dictionary preview_completion(const godot::PackedVector3Array& p_points, int p_id,
+                                         const godot::Vector3& p_direction,
+                                         const godot::Dictionary& p_options) const;
     godot::Ref<TreeEdit> complete_branch(const godot::PackedVector3Array& p_points, int p_id,
                                          const godot::Vector3& p_direction,
                                          const godot::Dictionary& p_options);

@@ -254,6 +254,8 @@ void TreeReconstruction::_bind_methods() {
 #ifdef TREEREC_EDITOR
     ClassDB::bind_method(D_METHOD("measure_fidelity", "points", "tolerance"),
                          &TreeReconstruction::measure_fidelity, DEFVAL(0.02));
+    ClassDB::bind_method(D_METHOD("preview_completion", "points", "id", "direction", "options"),
+                         &TreeReconstruction::preview_completion, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("complete_branch", "points", "id", "direction", "options"),
                          &TreeReconstruction::complete_branch, DEFVAL(Dictionary()));
 #endif

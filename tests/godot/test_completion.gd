@@ -17,7 +17,16 @@ func test_finds_what_was_cut_away() -> void:
 	var without: float = tree.measure_fidelity(points)["explained"]
 	check(without < whole, "Nothing was lost with the branch.")
 	var before: Dictionary = tree.skeleton
+	var preview: Dictionary = tree.preview_completion(points, joint, direction)
+	check_equal(preview["error"], "", "the preview's error")
+	check_equal(tree.skeleton, before, "the tree after a preview")
+	var same: TreeEdit = tree.run_script(preview["script"])
+	var foreseen: Dictionary = tree.skeleton
+	tree.revert_edit(same)
 	var edit: TreeEdit = tree.complete_branch(points, joint, direction)
+	check_equal(tree.skeleton, foreseen, "what the preview foresaw")
+	check_equal(preview["message"], edit.get_message(), "the preview's message")
+	check_equal(preview["added"].size(), 2 * edit.get_added_nodes().size(), "the preview's ends")
 	check(edit != null, "The branch was not found again.")
 	if edit == null:
 		return
@@ -43,6 +52,9 @@ func test_says_what_is_wrong() -> void:
 	check(tree.complete_branch(points, tree.get_root(), Vector3.ZERO) == null, "No direction.")
 	expect_error("No points that the tree does not explain")
 	check(tree.complete_branch(points, tree.get_root(), Vector3.DOWN) == null, "Nothing is there.")
+	var preview: Dictionary = tree.preview_completion(points, tree.get_root(), Vector3.DOWN)
+	check_sentence(preview["error"], "the preview's refusal")
+	check_equal(preview["script"], "", "the script of nothing")
 	expect_error("no points of wood")
 	check(tree.complete_branch([], tree.get_root(), Vector3.UP) == null, "An empty cloud.")
 	expect_error("a completion knows")
