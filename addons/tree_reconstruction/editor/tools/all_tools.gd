@@ -2,10 +2,24 @@
 extends RefCounted
 ## The tools, in the order of the toolbar.
 
-const Session: GDScript = preload("../session.gd")
-const Tool: GDScript = preload("tool.gd")
+const Session := preload("../session.gd")
+const Tool := preload("tool.gd")
 const _TOOLS: Array[GDScript] = [
 	preload("select.gd"),
+	preload("move.gd"),
+	preload("prune.gd"),
+	preload("cut.gd"),
+	preload("slice.gd"),
+	preload("grow.gd"),
+	preload("twig_left.gd"),
+	preload("twig_right.gd"),
+	preload("pick.gd"),
+	preload("graft.gd"),
+	preload("smooth.gd"),
+	preload("simplify.gd"),
+	preload("leaf_rule.gd"),
+	preload("complete.gd"),
+	preload("doubt.gd"),
 ]
 
 

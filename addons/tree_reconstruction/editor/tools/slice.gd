@@ -1,0 +1,205 @@
+@tool
+extends "wood_tool.gd"
+## Cuts along a line that is drawn over the view, or takes what a rectangle of it shows.
+
+enum Shape { LINE, RECTANGLE }
+
+# While the mouse draws: where it began; INF otherwise.
+var _from: Vector2 = Vector2.INF
+# What was drawn, to be looked at before it is done: two places of the plane and its normal, towards
+# what goes, in the tree's space; or the command of a rectangle.
+var _ends: PackedVector3Array = []
+var _normal: Vector3
+var _command: String = ""
+var _rect: Rect2
+
+
+func get_id() -> StringName:
+	return &"slice"
+
+
+func get_title() -> String:
+	return tr("Cut along a line")
+
+
+func get_tooltip() -> String:
+	return tr(
+		(
+			"Drag a line over the tree to cut off what lies beyond it, seen from the foot, or a rectangle"
+			+ " around what shall go. It is shown in red; Enter cuts it, Escape lets it be."
+		)
+	)
+
+
+func get_icon() -> String:
+	return "res://addons/tree_reconstruction/icons/tools/slice.svg"
+
+
+func get_key() -> Key:
+	return KEY_B
+
+
+func get_defaults() -> Dictionary[StringName, Variant]:
+	return {&"shape": int(Shape.LINE), &"exact": true}
+
+
+func make_settings() -> Control:
+	_restore()
+	var strip: Strip = Strip.new()
+	(
+		strip
+		. add_choice(
+			"",
+			tr(
+				(
+					"A line cuts through the whole tree as the view sees it. A rectangle takes the nodes in it,"
+					+ " and what grows from them."
+				)
+			),
+			[tr("Line"), tr("Rectangle")],
+			values[&"shape"],
+			_on_shape_chosen
+		)
+	)
+	strip.add_switch(
+		tr("Right at the line"),
+		tr("Branches end right at the line; otherwise at their last node before it."),
+		values[&"exact"],
+		set_setting.bind(&"exact")
+	)
+	strip.add_button(tr("Cut"), tr("Cuts the red wood away."), accept)
+	return strip
+
+
+func is_busy() -> bool:
+	return is_held() or not get_command().is_empty()
+
+
+func is_held() -> bool:
+	return _from != Vector2.INF
+
+
+func cancel() -> void:
+	_from = Vector2.INF
+	_ends = []
+	_command = ""
+	_queue()
+
+
+func _press(button: InputEventMouseButton) -> bool:
+	# Wherever it begins: lines begin beside the tree.
+	cancel()
+	_from = button.position
+	return true
+
+
+func _move(motion: InputEventMouseMotion) -> bool:
+	if not is_held():
+		return false
+	if not motion.button_mask & MOUSE_BUTTON_MASK_LEFT:
+		_from = Vector2.INF
+		return false
+	if motion.position.distance_to(_from) >= DRAG_FROM * get_scale():
+		_queue()
+	return true
+
+
+func _release(_button: InputEventMouseButton) -> bool:
+	if not is_held():
+		return false
+	if _pointer.distance_to(_from) >= DRAG_FROM * get_scale():
+		_take_shape()
+	_from = Vector2.INF
+	_queue()
+	return true
+
+
+## Does what is drawn.
+func accept() -> bool:
+	var command: String = get_command()
+	if command.is_empty() or session.tree == null:
+		return false
+	var edit: TreeEdit = session.run(get_title(), command)
+	if edit != null:
+		cancel()
+	return true
+
+
+## What is drawn, as an edit command; empty if nothing is.
+func get_command() -> String:
+	if _ends.is_empty():
+		return _command
+	return (
+		"prune_side place=%s towards=%s exact=%s"
+		% [words_of(_ends[0]), words_of(_normal), "yes" if values[&"exact"] else "no"]
+	)
+
+
+func _look_again() -> void:
+	if is_held():
+		_take_shape()
+	show_command(get_command())
+
+
+func draw(overlay: Control) -> void:
+	super(overlay)
+	if not is_seen_on(overlay):
+		return
+	var width: float = 2.0 * get_scale()
+	if not _ends.is_empty():
+		_draw_line(overlay, width)
+	elif not _command.is_empty() or (is_held() and values[&"shape"] == Shape.RECTANGLE):
+		overlay.draw_rect(_rect, Color(GONE, 0.12))
+		overlay.draw_rect(_rect, GONE, false, width)
+
+
+func _draw_line(overlay: Control, width: float) -> void:
+	var from: Vector2 = seen_at(_ends[0])
+	var to: Vector2 = seen_at(_ends[1])
+	if not from.is_finite() or not to.is_finite() or from.distance_to(to) < 1.0:
+		return
+	overlay.draw_line(from, to, GONE, width, true)
+	# Arrows towards what goes.
+	var middle: Vector3 = (_ends[0] + _ends[1]) / 2.0
+	var away: Vector2 = seen_at(middle + _normal * _ends[0].distance_to(_ends[1]) * 0.05)
+	away = (away - seen_at(middle)).limit_length(1.0) * 16.0 * get_scale()
+	for share: float in [0.25, 0.5, 0.75]:
+		var at: Vector2 = from.lerp(to, share)
+		var side: Vector2 = away.orthogonal() * 0.35
+		overlay.draw_line(at, at + away, GONE, width, true)
+		overlay.draw_colored_polygon([at + away * 1.5, at + away + side, at + away - side], GONE)
+
+
+func _take_shape() -> void:
+	_ends = []
+	_command = ""
+	if session.tree == null or _pointer.distance_to(_from) < 1.0:
+		return
+	if values[&"shape"] == Shape.RECTANGLE:
+		_take_rectangle()
+		return
+	var middle: Vector3 = session.tree.get_aabb().get_center()
+	_ends = [place_at(_from, middle), place_at(_pointer, middle)]
+	var sight: Vector3 = view_direction(Vector3.FORWARD)
+	if _eye.projection != Camera3D.PROJECTION_ORTHOGONAL:
+		sight = _ends[0] - session.node.global_transform.affine_inverse() * _eye.global_position
+	_normal = (_ends[1] - _ends[0]).cross(sight).normalized()
+	if _normal == Vector3.ZERO:
+		_ends = []
+		return
+	# The foot stays: what lies on its side of the line can't go.
+	var foot: Vector3 = session.tree.get_node_position(session.tree.get_root())
+	if _normal.dot(foot - _ends[0]) > 0.0:
+		_normal = -_normal
+
+
+func _take_rectangle() -> void:
+	_rect = Rect2(_from, _pointer - _from).abs()
+	var ids: PackedInt32Array = session.picker.call(&"pick_rect", _eye, _rect)
+	if not ids.is_empty():
+		_command = "remove nodes=%s" % words_of_nodes(get_lowest_of(ids))
+
+
+func _on_shape_chosen(index: int) -> void:
+	values[&"shape"] = index
+	cancel()
