@@ -23,6 +23,16 @@ func dialog(part: String) -> AcceptDialog:
 	return null
 
 
+## The menu that is open, or null.
+func open_menu() -> PopupMenu:
+	for node: Node in EditorInterface.get_base_control().get_window().find_children(
+		"*", "PopupMenu", true, false
+	):
+		if (node as PopupMenu).visible:
+			return node as PopupMenu
+	return null
+
+
 ## The control of a class below `root` that can be seen and whose text or tooltip begins so.
 func find_control(type: String, text: String, root: Node = null) -> Control:
 	if root == null:

@@ -66,6 +66,12 @@ func expect_error(part: String) -> void:
 	_expected.append(part)
 
 
+## Whether an announced error has come.
+func has_seen(part: String) -> bool:
+	_sort_errors()
+	return part in _seen
+
+
 ## Waits until `condition` holds. Fails the step, with a picture, where that takes too long.
 func until(condition: Callable, what: String) -> bool:
 	var end: int = Time.get_ticks_msec() + 1000 * patience()
@@ -93,10 +99,11 @@ func press(control: Control, button: int = User.LEFT, times: int = 1) -> void:
 		await user.click(middle(control), button, "", times)
 
 
-## Takes an entry of a menu that is open, as a mouse finds it: by going down until it is lit.
-func choose(menu: PopupMenu, text: String) -> bool:
-	if not await until(func() -> bool: return menu.visible, "a menu opens"):
+## Takes an entry of the menu that opens, as a mouse finds it: by going down until it is lit.
+func choose(text: String) -> bool:
+	if not await until(func() -> bool: return open_menu() != null, "a menu opens"):
 		return false
+	var menu: PopupMenu = open_menu()
 	var wanted: int = -1
 	for i: int in menu.item_count:
 		if menu.get_item_text(i).begins_with(text):
@@ -141,16 +148,7 @@ func bytes(of: Resource) -> PackedByteArray:
 func _judge() -> void:
 	if _step.is_empty():
 		return
-	for error: String in errors.take():
-		var known: bool = false
-		for part: String in _expected:
-			if part in error:
-				known = true
-				_seen.append(part)
-		for part: String in _NOISE:
-			known = known or part in error
-		if not known:
-			_failures.append("The editor reported: " + error)
+	_sort_errors()
 	for part: String in _expected:
 		if not part in _seen:
 			_failures.append("No error said '%s'." % part)
@@ -163,3 +161,17 @@ func _judge() -> void:
 	_failures = []
 	_expected = []
 	_seen = []
+
+
+# Those that were announced, and those that fail the step.
+func _sort_errors() -> void:
+	for error: String in errors.take():
+		var known: bool = false
+		for part: String in _expected:
+			if part in error:
+				known = true
+				_seen.append(part)
+		for part: String in _NOISE:
+			known = known or part in error
+		if not known:
+			_failures.append("The editor reported: " + error)

@@ -1,0 +1,82 @@
+@tool
+extends "../../test_plugin/garden.gd"
+## A scan is dropped into the project, and stands as a tree in a scene.
+
+const SCAN: String = "res://sample.ply"
+
+
+func run() -> void:
+	await step("a scan that is copied into the project imports by itself")
+	await drop_file(sample, SCAN)
+	var made: TreeReconstruction = await imported(SCAN)
+	if made == null:
+		return
+	check(made.get_node_count() > 100, "It has %d nodes only." % made.get_node_count())
+	check_equal(made.provenance.get("source"), SCAN, "the source")
+	if not await until(func() -> bool: return file_item(SCAN) != null, "the file is in the dock"):
+		return
+	await picture("imported")
+
+	await step("its menu adds it to a scene that is begun for it")
+	await user.click(await item_place(file_list(), file_item(SCAN)), User.RIGHT)
+	await user.frames(10)
+	await picture("menu-of-a-scan")
+	if not await choose("Add Tree to Scene"):
+		return
+	if not await until(func() -> bool: return _tree_in_scene() != null, "the tree is in the scene"):
+		return
+	var node: TreeInstance3D = _tree_in_scene()
+	check_equal(node.reconstruction, made, "the node's tree")
+	check_equal(node.name, &"Sample", "the node's name")
+	await until(func() -> bool: return not node.is_rebuilding(), "the tree is built")
+	check(node.get_triangle_count() > 1000, "It has no bark.")
+	await picture("added-to-scene")
+
+	await step("that is one step of the scene's history")
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("ctrl+z")
+	await until(func() -> bool: return _tree_in_scene() == null, "the tree is gone again")
+	await user.key("ctrl+shift+z")
+	await until(func() -> bool: return _tree_in_scene() != null, "the tree is back")
+	check_equal(_tree_in_scene(), node, "the node that came back")
+
+	await step("it is taken to the 3D view with the mouse")
+	var from: Vector2 = await item_place(file_list(), file_item(SCAN))
+	var to: Vector2 = middle(view().get_parent() as Control) + Vector2(200.0, 60.0)
+	await user.drag([from, from + Vector2(30.0, 5.0), to])
+	await until(func() -> bool: return _trees().size() == 2, "there is a second tree")
+	if _trees().size() == 2:
+		var place: Vector3 = _trees()[1].global_position
+		check(on_screen(place).distance_to(to) < 12.0, "It does not stand where the mouse was.")
+	await picture("dragged-into-view")
+	await _save_scene_as("res://first.tscn")
+
+	await step("a real scan imports")
+	var scan: String = real_scan("vezy_A1B2.asc")
+	if scan.is_empty():
+		await user.say("        Skipped: there are no real scans here.")
+		return
+	await drop_file(scan, "res://vezy.asc")
+	var real: TreeReconstruction = await imported("res://vezy.asc")
+	check(real != null and real.get_node_count() > 100, "It has too few nodes.")
+	scan = real_scan("wytham_Tf18_birch.txt")
+	await drop_file(scan, "res://birch.txt")
+	real = await imported("res://birch.treescan")
+	check(real != null and real.get_node_count() > 100, "It has too few nodes.")
+	await picture("real-scans")
+
+
+func _save_scene_as(path: String) -> void:
+	# The file dialog is the engine's own matter.
+	EditorInterface.save_scene_as(path)
+	await until(func() -> bool: return scene_path() == path and not is_unsaved(), "it is saved")
+
+
+func _trees() -> Array[Node]:
+	var root: Node = EditorInterface.get_edited_scene_root()
+	return [] if root == null else root.find_children("*", "TreeInstance3D", false, false)
+
+
+func _tree_in_scene() -> TreeInstance3D:
+	var found: Array[Node] = _trees()
+	return null if found.is_empty() else found[0] as TreeInstance3D
