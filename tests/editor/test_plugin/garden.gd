@@ -9,7 +9,7 @@ var sample: String = OS.get_environment("TREE_EDITOR_SAMPLE")
 ## A path of real scans, or empty where there are none here.
 func real_scan(file: String) -> String:
 	var folder: String = OS.get_environment("TREEREC_SCANS")
-	var path: String = folder.path_join(file)
+	var path: String = folder.path_join("clouds").path_join(file)
 	return path if not folder.is_empty() and FileAccess.file_exists(path) else ""
 
 
@@ -93,10 +93,10 @@ func click_node(node: Node) -> bool:
 	)
 
 
-## The F key over the 3D view: brings what is selected into it.
+## The addon's key for the view on the whole tree.
 func frame_view() -> void:
 	await user.move(middle(view().get_parent() as Control))
-	await user.key("f")
+	await user.key("KP_0")
 	await view_rests()
 
 

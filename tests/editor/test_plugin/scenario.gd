@@ -111,13 +111,16 @@ func choose(text: String) -> bool:
 	if not check(wanted >= 0, "The menu has no '%s'." % text):
 		await user.key("Escape")
 		return false
-	var from: Vector2 = Vector2(menu.position) + Vector2(menu.size.x * 0.4, 4.0)
-	while from.y < menu.position.y + menu.size.y:
-		await user.move(from)
-		if menu.get_focused_item() == wanted:
-			await user.click(from)
+	# Entries are about as high as each other: from a guess it is a few of them up or down.
+	var row: float = float(menu.size.y) / menu.item_count
+	var at: Vector2 = Vector2(menu.position) + Vector2(menu.size.x * 0.4, (wanted + 0.5) * row)
+	for attempt: int in 40:
+		await user.move(at)
+		var lit: int = menu.get_focused_item()
+		if lit == wanted:
+			await user.click(at)
 			return true
-		from.y += 9.0
+		at.y += clampf(wanted - lit, -3.0, 3.0) * row * (0.5 if lit >= 0 else 0.1)
 	return check(false, "The mouse finds no '%s' in the menu." % text)
 
 

@@ -89,7 +89,8 @@ func frames(count: int) -> void:
 
 
 func move(to: Vector2) -> void:
-	await _x(["mousemove", str(roundi(to.x)), str(roundi(to.y))])
+	await ask(["x", "mousemove", str(roundi(to.x)), str(roundi(to.y))])
+	await frames(2)
 
 
 ## Clicks. `modifiers` is something like "shift" or "ctrl+alt".

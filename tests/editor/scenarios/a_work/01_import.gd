@@ -47,7 +47,10 @@ func run() -> void:
 	await until(func() -> bool: return _trees().size() == 2, "there is a second tree")
 	if _trees().size() == 2:
 		var place: Vector3 = _trees()[1].global_position
-		check(on_screen(place).distance_to(to) < 12.0, "It does not stand where the mouse was.")
+		check(
+			on_screen(place).distance_to(to) < 12.0,
+			"It stands at %s on the screen instead of %s" % [on_screen(place), to]
+		)
 	await picture("dragged-into-view")
 	await _save_scene_as("res://first.tscn")
 

@@ -1,12 +1,44 @@
 @tool
 extends "../../test_plugin/garden.gd"
-## A tree of one's own is edited, undone, redone and saved.
+## A tree is cut, the cut undone and done again, and saved.
 
 
 func run() -> void:
-	await step("a tree in a scene is edited when its node is selected")
+	await step("Delete cuts the selected branch off")
 	var node: TreeInstance3D = await open_garden("res://edit.tscn", own_tree("res://edit_tree.res"))
 	if node == null:
 		return
-	check(session().get(&"node") == node, "The addon does not edit it.")
-	await picture("tree-in-scene")
+	var of: TreeReconstruction = node.reconstruction
+	var before: PackedByteArray = bytes(of)
+	var count: int = of.get_node_count()
+	var branch: int = large_branch(of)
+	await user.click(node_on_screen(node, branch))
+	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
+	await picture("before-delete")
+	await user.key("Delete")
+	if not await until(func() -> bool: return of.get_node_count() < count, "the branch is cut"):
+		return
+	var after: PackedByteArray = bytes(of)
+	check_equal(node.reconstruction, of, "the tree, which was the user's own")
+	check(is_unsaved(), "The scene does not say that it has changes.")
+	await until(func() -> bool: return not node.is_rebuilding(), "the tree is built")
+	await picture("after-delete")
+
+	await step("Ctrl+Z brings it back, Ctrl+Shift+Z takes it again")
+	for i: int in 3:
+		await user.key("ctrl+z")
+		await until(func() -> bool: return bytes(of) == before, "the tree is as before")
+		await user.key("ctrl+shift+z")
+		await until(func() -> bool: return bytes(of) == after, "the tree is cut again")
+
+	await step("Ctrl+S saves the tree's file with the scene")
+	await save_scene()
+	var saved: TreeReconstruction = (
+		ResourceLoader.load("res://edit_tree.res", "", ResourceLoader.CACHE_MODE_IGNORE_DEEP)
+		as TreeReconstruction
+	)
+	check_equal(bytes(saved), after, "the saved tree")
+	check(
+		FileAccess.get_file_as_string("res://edit.tscn").length() < 2000,
+		"The scene's file holds more than the node."
+	)
