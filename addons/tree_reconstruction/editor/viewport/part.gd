@@ -184,12 +184,24 @@ func _remove_controls() -> void:
 func _update() -> void:
 	var delta: float = _plugin.get_process_delta_time()
 	_router.update()
+	_let_hovered_go()
 	_visibility.update()
 	_actions.turntable.update(delta)
 	_actions.views.update(delta)
 	_strip.update(delta)
 	if _home_due:
 		_look_home()
+
+
+# The mouse has left the viewport.
+func _let_hovered_go() -> void:
+	if _session.hovered == _session.NO_NODE or not is_instance_valid(_router.camera):
+		return
+	var surface: Control = _surfaces.get(_router.camera.get_viewport())
+	if surface == null or not surface.is_visible_in_tree():
+		return
+	if not Rect2(Vector2.ZERO, surface.size).has_point(surface.get_local_mouse_position()):
+		_session.hovered = _session.NO_NODE
 
 
 func _on_node_changed() -> void:
@@ -258,7 +270,15 @@ func _get_camera() -> Camera3D:
 
 
 func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:
+	var node: TreeInstance3D = _session.node
 	_send(_router.camera, [press, release])
+	var selected: EditorSelection = EditorInterface.get_selection()
+	if selected.get_selected_nodes().is_empty() and is_instance_valid(node):
+		# There was nothing at all. To lose the tree by a click beside a thin twig would be a
+		# nuisance, so that only what was selected of it is let go.
+		selected.add_node(node)
+		EditorInterface.edit_node(node)
+		_session.clear_selection()
 
 
 # A tree that is edited in a new scene is shown wholly; elsewhere the camera stays where the user
