@@ -20,6 +20,10 @@
 
 class TreeEdit;
 
+namespace treerec {
+class VariantMaker;
+}
+
 // A reconstructed tree: its skeleton, where it comes from, and the rules by which it gets bark and leaves.
 // The builders may run on any thread, also while another thread changes the tree: they see it as it was when
 // they began.
@@ -149,6 +153,8 @@ class TreeReconstruction : public godot::Resource {
 
     // Physics (tree_reconstruction_physics.cpp).
     godot::TypedArray<godot::Dictionary> build_capsules(int p_maximum, double p_minimum_radius) const;
+    // tree_reconstruction_variants.cpp
+    godot::Ref<TreeReconstruction> make_variant(int64_t p_seed, double p_amount) const;
 
   protected:
     static void _bind_methods();
@@ -169,6 +175,8 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_grafting();
     static void _bind_physics();
     static void _bind_viewing();
+    static void _bind_variants();
+    std::shared_ptr<const treerec::VariantMaker> _get_variant_maker() const;
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
     void _log(const godot::Ref<TreeEdit>& p_edit);
@@ -188,6 +196,11 @@ class TreeReconstruction : public godot::Resource {
     mutable std::weak_ptr<const treerec::Foliage> revised_foliage_;
     mutable bool revised_followed_ = false;
     mutable int64_t revision_ = 0;
+
+    // What its variants are made with, and of.
+    mutable std::shared_ptr<const treerec::VariantMaker> variant_maker_;
+    mutable std::weak_ptr<const treerec::Tree> varied_tree_;
+    mutable std::weak_ptr<const treerec::Foliage> varied_foliage_;
 
     treerec::EditLog edit_log_;
     godot::String leaf_preset_ = "generic";

@@ -1,0 +1,34 @@
+// Sine and cosine that are the same to the last bit on every platform; the standard library's are not.
+#pragma once
+
+#include <cmath>
+
+namespace treerec {
+
+struct SineCosine {
+    double sine = 0.0;
+    double cosine = 1.0;
+};
+
+// Of `radians`, up to some thousand; to 1e-15. Taylor series about the nearest quarter turn, from additions
+// and multiplications alone (the build forbids fused ones).
+inline SineCosine portable_sine_cosine(double radians) {
+    // pi/2 in two parts, so that the rest keeps its digits.
+    constexpr double kQuarter = 1.5707963267341256, kQuarterRest = 6.077100506506192e-11;
+    const double quarters = std::floor(radians * (1.0 / 1.5707963267948966) + 0.5);
+    const double x = (radians - quarters * kQuarter) - quarters * kQuarterRest;
+    const double y = x * x;
+    double s = 1.0, c = 1.0;
+    for (int n = 18; n >= 2; n -= 2) {
+        s = 1.0 - y / (n * (n + 1.0)) * s;
+        c = 1.0 - y / (n * (n - 1.0)) * c;
+    }
+    s *= x;
+    const double turn = quarters - 4.0 * std::floor(quarters * 0.25);
+    if (turn == 1.0) return {c, -s};
+    if (turn == 2.0) return {-s, -c};
+    if (turn == 3.0) return {-c, s};
+    return {s, c};
+}
+
+}  // namespace treerec
