@@ -12,6 +12,7 @@ const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 # In the order in which they come; they go in the opposite one. Each has enter(plugin, session)
 # and exit().
 const _PARTS: PackedStringArray = [
+	"translations/part.gd",
 	"import/part.gd",
 	"viewport/part.gd",
 	"dock/part.gd",

@@ -35,13 +35,17 @@ func enter(plugin: EditorPlugin, session: RefCounted) -> void:
 		thumbnails.of_scripts = of_scripts
 		EditorInterface.get_resource_previewer().add_preview_generator(thumbnails)
 		_thumbnails.append(thumbnails)
+	var domain: StringName = get_translation_domain()
 	adder = SceneAdder.new(plugin.get_undo_redo())
+	adder.set_translation_domain(domain)
 	_menu = ContextMenu.new()
+	_menu.set_translation_domain(domain)
 	_menu.adder = adder
 	plugin.add_context_menu_plugin(EditorContextMenuPlugin.CONTEXT_SLOT_FILESYSTEM, _menu)
 	for i: int in _VIEWPORTS:
 		_add_area(EditorInterface.get_editor_viewport_3d(i))
 	reimport = Reimport.new(session)
+	reimport.set_translation_domain(domain)
 	reimport.enter()
 	finder = ScanFinder.new()
 	finder.found.connect(_on_found)

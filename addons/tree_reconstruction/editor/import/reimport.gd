@@ -6,6 +6,7 @@ extends RefCounted
 ## A tree in an open scene changes as one step of its undo history, another one in its file.
 ## Before, the tree as it was is kept beside it, as [code]oak_tree.res.bak[/code].
 
+const ScanFiles: GDScript = preload("./scan_files.gd")
 const SceneAdder: GDScript = preload("./scene_adder.gd")
 
 const _BACKUPS: int = 5
@@ -31,18 +32,16 @@ func exit() -> void:
 
 ## Does the edits of all trees that were made of these imported ones again. Returns their paths.
 func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
+	var imported_by_scan: Dictionary[String, String] = {}
+	for path: String in SceneAdder.tree_files(imported_paths):
+		if FileAccess.file_exists(path + ".import"):
+			imported_by_scan[_scan_of(path)] = path
 	var updated: PackedStringArray = []
 	var report: PackedStringArray = []
-	for path: String in SceneAdder.tree_files(imported_paths):
-		if not FileAccess.file_exists(path + ".import"):
-			continue
-		var fresh: TreeReconstruction = _load_fresh(path)
-		if fresh == null:
-			continue
-		for local_path: String in local_trees_of(path, fresh.provenance.get("source", path)):
-			var local: TreeReconstruction = load(local_path) as TreeReconstruction
-			if local != null and _update(local, fresh, report):
-				updated.append(local_path)
+	for local: TreeReconstruction in _local_trees_of(imported_by_scan):
+		var fresh: TreeReconstruction = _load_fresh(imported_by_scan[local.provenance["source"]])
+		if fresh != null and _update(local, fresh, report):
+			updated.append(local.resource_path)
 	if not report.is_empty():
 		_show(report)
 	elif not updated.is_empty():
@@ -50,26 +49,32 @@ func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
 	return updated
 
 
-## The files beside an imported tree, or beside its scan, that hold edited copies of it.
-static func local_trees_of(imported_path: String, source: String) -> PackedStringArray:
-	var folders: PackedStringArray = [imported_path.get_base_dir()]
-	if source.begins_with("res://") and source.get_base_dir() not in folders:
-		folders.append(source.get_base_dir())
-	var paths: PackedStringArray = []
+# The edited copies of imported trees: in files beside these, or beside their scans.
+static func _local_trees_of(
+	imported_by_scan: Dictionary[String, String]
+) -> Array[TreeReconstruction]:
+	var folders: Dictionary[String, bool] = {}
+	for scan: String in imported_by_scan:
+		folders[imported_by_scan[scan].get_base_dir()] = true
+		if scan.begins_with("res://"):
+			folders[scan.get_base_dir()] = true
+	var trees: Array[TreeReconstruction] = []
 	for folder: String in folders:
 		for name: String in DirAccess.get_files_at(folder):
 			var path: String = folder.path_join(name)
-			if name.get_extension() not in ["res", "tres"] or name.contains(".saving."):
-				continue
-			if FileAccess.file_exists(path + ".import"):
-				continue
-			# The name tells nearly always; a file that was renamed is looked into.
-			if not SceneAdder.is_tree_file(path):
+			if name.get_extension() not in ["res", "tres"] or not SceneAdder.is_tree_file(path):
 				continue
 			var tree: TreeReconstruction = load(path) as TreeReconstruction
-			if tree != null and tree.provenance.get("source", "") == source:
-				paths.append(path)
-	return paths
+			if tree != null and imported_by_scan.has(tree.provenance.get("source", "")):
+				trees.append(tree)
+	return trees
+
+
+# Where the imported tree says that it comes from, without loading it.
+static func _scan_of(imported_path: String) -> String:
+	if imported_path.get_extension().to_lower() != ScanFiles.STAND_IN:
+		return imported_path
+	return ScanFiles.read_stand_in(imported_path).get("scan", imported_path)
 
 
 ## A copy of the user's tree on the new import, with its edits, and what of them did not fit.

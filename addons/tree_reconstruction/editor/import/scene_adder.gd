@@ -66,7 +66,7 @@ func add(trees: Array[TreeReconstruction], place: Vector3) -> Array[TreeInstance
 		EditorInterface.add_root_node(made)
 		root = made
 	var parent: Node = _parent_for(root)
-	var title: String = "Add Tree to Scene" if trees.size() == 1 else "Add Trees to Scene"
+	var title: String = tr("Add Tree to Scene") if trees.size() == 1 else tr("Add Trees to Scene")
 	_undo_redo.create_action(title, UndoRedo.MERGE_DISABLE, root)
 	var offsets: PackedVector3Array = side_by_side(trees)
 	for i: int in trees.size():

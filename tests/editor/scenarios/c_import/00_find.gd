@@ -122,6 +122,7 @@ func _reimport_edited() -> void:
 	check_equal(path, "res://scans/shrub_tree.res", "the user's file")
 	var log_before: String = local.edit_log
 	var edited: PackedByteArray = bytes(local)
+	var tips_before: int = local.measure()["tips"]
 	check(not log_before.is_empty(), "Nothing was edited.")
 	_write(SCAN, _limbs(5))
 	await _look()
@@ -155,6 +156,25 @@ func _reimport_edited() -> void:
 		bytes(local),
 		"the tree in the file"
 	)
+	await step("a tree that no scene shows gets its edits again in its file")
+	EditorInterface.close_scene()
+	node = null
+	local = null
+	await user.frames(4)
+	_write(SCAN, _limbs(4))
+	await _look()
+	await until(
+		func() -> bool: return FileAccess.get_md5(path) != FileAccess.get_md5(path + ".bak"),
+		"the file is written"
+	)
+	# It is tried again, in vain again.
+	if await until(
+		func() -> bool: return dialog("No Longer Fit") != null, "a dialog lists the edits"
+	):
+		await user.key("Escape")
+	local = load(path) as TreeReconstruction
+	check("prune_order" in local.edit_log, "The log of edits is lost.")
+	check_equal(local.measure()["tips"], tips_before, "the number of tips of the first edit")
 
 
 # --- means ----------------------------------------------------------------------------------------

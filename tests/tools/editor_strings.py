@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Gathers the words that the editor's part of the addon shows, for its translations.
+
+    editor_strings.py            writes tree_reconstruction.pot and brings the .po files up to date: new words come
+                                 without a translation, words that are gone go
+    editor_strings.py --check    says what is out of date, missing, or translated with other placeholders; 1 if any is
+    editor_strings.py --missing LANGUAGE    prints the words without a translation, one JSON string per line
+
+A word is found where it is written out: in tr("…"), in a control's text, title or tooltip, and in what is added to a
+menu or list. Parts that are joined by + are one.
+"""
+import json
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ADDON = ROOT / "addons/tree_reconstruction"
+FOLDER = ADDON / "editor/translations"
+POT = FOLDER / "tree_reconstruction.pot"
+LANGUAGES = ("zh_CN", "zh_TW", "ja")
+SHOWN = r"text|title|tooltip_text|placeholder_text|dialog_text|ok_button_text|cancel_button_text"
+ADDED = r"add_item|add_check_item|add_radio_check_item|add_icon_item|add_icon_check_item|add_separator|add_submenu_node_item"
+BEGIN = re.compile(r"(?<![\w.])tr\(|(?<![\w])(?:%s)\s*=\s*(?!=)|\.(?:%s)\(" % (SHOWN, ADDED))
+STRING = re.compile(r'"""(.*?)"""|"((?:[^"\\\n]|\\.)*)"|\'((?:[^\'\\\n]|\\.)*)\'', re.S)
+PLACEHOLDER = re.compile(r"%[-+0-9.*]*[sdfxcv%]|\{\w*\}")
+ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "'": "'", "\\": "\\"}
+
+
+def unescape(text):
+    return re.sub(r"\\(.)", lambda m: ESCAPES.get(m[1], m[1]), text, flags=re.S)
+
+
+def expression(source, at):
+    """The text of the literals joined by + from `at`; none where something else stands there."""
+    parts, wanted = [], True
+    while at < len(source):
+        if source[at] in " \t\n(":
+            at += 1
+        elif source[at] == "+" and not wanted:
+            wanted, at = True, at + 1
+        elif wanted and source[at] in "\"'":
+            match = STRING.match(source, at)
+            if not match:
+                return None
+            parts.append(unescape(next(group for group in match.groups() if group is not None)))
+            wanted, at = False, match.end()
+        else:
+            break
+    return None if wanted or not parts else "".join(parts)
+
+
+def without_comments(source):
+    """Comments made blank; a # in a string is none."""
+    return re.sub(
+        r'"""(?s:.*?)"""|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'|#[^\n]*',
+        lambda m: " " * len(m[0]) if m[0][0] == "#" else m[0],
+        source,
+    )
+
+
+def find_words():
+    """Words in the order in which they are found, and where."""
+    words = {}
+    for path in sorted([ADDON / "plugin.gd", *(ADDON / "editor").rglob("*.gd")]):
+        source = without_comments(path.read_text(encoding="utf-8"))
+        for match in BEGIN.finditer(source):
+            word = expression(source, match.end())
+            if word is None or not re.search(r"[A-Za-z]{2}", word):
+                continue
+            words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
+    return words
+
+
+def quoted(text):
+    return '"%s"' % text.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t").replace("\n", "\\n")
+
+
+def file_text(words, language, translations):
+    head = [
+        "Project-Id-Version: Tree Reconstruction\\n",
+        "MIME-Version: 1.0\\n",
+        "Content-Type: text/plain; charset=UTF-8\\n",
+        "Content-Transfer-Encoding: 8bit\\n",
+    ]
+    if language:
+        head += ["Language: %s\\n" % language, "Plural-Forms: nplurals=1; plural=0;\\n"]
+    lines = ["# Words of the Tree Reconstruction editor. tests/tools/editor_strings.py keeps this file up to date.", 'msgid ""', 'msgstr ""']
+    lines += ['"%s"' % line for line in head]
+    for word, places in words.items():
+        lines += ["", "#: " + " ".join(sorted(set(places))), "msgid " + quoted(word), "msgstr " + quoted(translations.get(word, ""))]
+    return "\n".join(lines) + "\n"
+
+
+def read(path):
+    """The translations in a .po file; several quoted lines are one text."""
+    pairs, key, texts = {}, None, {}
+    if not path.exists():
+        return pairs
+    for line in path.read_text(encoding="utf-8").splitlines() + [""]:
+        match = re.match(r'(msgid|msgstr)?\s*"(.*)"$', line)
+        if match:
+            key = match[1] or key
+            texts[key] = (texts.get(key, "") if not match[1] else "") + unescape(match[2])
+        elif texts:
+            if texts.get("msgid"):
+                pairs[texts["msgid"]] = texts.get("msgstr", "")
+            key, texts = None, {}
+    return pairs
+
+
+def problems(words):
+    found = []
+    if not POT.exists() or POT.read_text(encoding="utf-8") != file_text(words, "", {}):
+        found.append("%s is out of date: run tests/tools/editor_strings.py" % POT.name)
+    for language in LANGUAGES:
+        pairs = read(FOLDER / (language + ".po"))
+        if list(pairs) != list(words):
+            found.append("%s.po is out of date: run tests/tools/editor_strings.py" % language)
+        for word in words:
+            translated = pairs.get(word, "")
+            if not translated:
+                found.append("%s.po: no translation of %s" % (language, quoted(word)))
+            elif PLACEHOLDER.findall(word) != PLACEHOLDER.findall(translated):
+                found.append("%s.po: other placeholders in the translation of %s" % (language, quoted(word)))
+    return found
+
+
+def main():
+    words = find_words()
+    if sys.argv[1:] == ["--check"]:
+        found = problems(words)
+        print("\n".join(found + ["%d words" % len(words)]))
+        return 1 if found or not words else 0
+    if len(sys.argv) == 3 and sys.argv[1] == "--missing":
+        pairs = read(FOLDER / (sys.argv[2] + ".po"))
+        print("\n".join(json.dumps(word, ensure_ascii=False) for word in words if not pairs.get(word)))
+        return 0
+    FOLDER.mkdir(exist_ok=True)
+    POT.write_text(file_text(words, "", {}), encoding="utf-8")
+    for language in LANGUAGES:
+        path = FOLDER / (language + ".po")
+        path.write_text(file_text(words, language, read(path)), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
