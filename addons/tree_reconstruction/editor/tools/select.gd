@@ -15,6 +15,8 @@ const _LOW: float = 400.0
 
 ## Called with the events of a click that was not for the tree, to hand it to the editor.
 var give_back: Callable
+## Tells whether the editor shows its own arrows and rings at the node's origin.
+var are_arrows_shown: Callable
 
 var _pressed: InputEventMouseButton
 var _camera: Camera3D
@@ -148,6 +150,8 @@ func _adds(event: InputEventMouseButton) -> bool:
 
 # Whether a press is for the arrows and rings by which the editor moves and turns the whole node.
 func _is_on_arrows(camera: Camera3D, position: Vector2) -> bool:
+	if are_arrows_shown.is_valid() and not are_arrows_shown.call():
+		return false
 	var foot: Vector2 = session.picker.project_place(camera, Vector3.ZERO)
 	# They shrink in low viewports.
 	var low: float = minf(session.picker.get_size(camera).y / _LOW, 1.0)

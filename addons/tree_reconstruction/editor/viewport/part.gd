@@ -13,6 +13,7 @@ const Picker: GDScript = preload("picker.gd")
 const Shortcuts: GDScript = preload("shortcuts.gd")
 const InputRouter: GDScript = preload("input_router.gd")
 const Actions: GDScript = preload("actions.gd")
+const TransformTools: GDScript = preload("transform_tools.gd")
 const Overlay: GDScript = preload("overlay.gd")
 const Toolbar: GDScript = preload("toolbar.gd")
 const ViewMenu: GDScript = preload("view_menu.gd")
@@ -32,6 +33,7 @@ var _shortcuts: Shortcuts
 var _router: InputRouter
 var _actions: Actions
 var _overlay: Overlay
+var _transform_tools: TransformTools = TransformTools.new()
 var _toolbar: Toolbar
 var _menu: ViewMenu
 var _strip: Strip
@@ -150,11 +152,13 @@ func _make_input() -> void:
 	var select: SelectTool = _session.tools.get(&"select") as SelectTool
 	if select != null:
 		select.give_back = _give_back
+		select.are_arrows_shown = _transform_tools.are_shown
 	if _session.tool == null:
 		_session.choose(&"select")
 
 
 func _remove_input() -> void:
+	_transform_tools.bring_back()
 	_actions.turntable.stop()
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.disconnect(_on_tool_wants)
@@ -210,7 +214,7 @@ func _on_node_changed() -> void:
 		control.visible = _session.node != null
 	_home_due = _session.tree != null
 	_visibility.take(_session.node)
-	_gizmo.take(_session.node, _session.view.editing)
+	_take_in_hand()
 	_on_tree_changed()
 
 
@@ -238,13 +242,24 @@ func _on_tool_changed() -> void:
 
 
 func _on_view_changed() -> void:
-	_gizmo.take(_session.node, _session.view.editing)
+	_take_in_hand()
 	_visibility.update()
 	_toolbar.update()
 	_menu.update()
 	_strip.update_tool()
 	_strip.update_view()
 	_on_tree_changed()
+
+
+# What of the editor's own changes while a skeleton is edited.
+func _take_in_hand() -> void:
+	var editing: bool = _session.node != null and _session.view.editing
+	_gizmo.take(_session.node, editing)
+	_transform_tools.find(EditorInterface.get_editor_viewport_3d(0))
+	if editing:
+		_transform_tools.put_away()
+	else:
+		_transform_tools.bring_back()
 
 
 func _on_scan_changed() -> void:

@@ -4,7 +4,7 @@ extends ScrollContainer
 
 const Session: GDScript = preload("../session.gd")
 const Shortcuts: GDScript = preload("shortcuts.gd")
-const Picker: GDScript = preload("picker.gd")
+const Icons: GDScript = preload("icons.gd")
 
 var _session: Session
 var _shortcuts: Shortcuts
@@ -80,11 +80,4 @@ func _make_button(id: StringName, icon_name: String, tooltip: String) -> Button:
 func _set_icons() -> void:
 	for child: Node in _column.get_children():
 		if child is Button:
-			(child as Button).icon = find_icon(self, child.get_meta(&"icon_name"))
-
-
-## An icon of the editor's theme, or a picture in a file.
-static func find_icon(control: Control, icon_name: String) -> Texture2D:
-	if icon_name.begins_with("res://"):
-		return load(icon_name) as Texture2D
-	return control.get_theme_icon(icon_name, &"EditorIcons")
+			(child as Button).icon = Icons.find(self, child.get_meta(&"icon_name"))

@@ -8,6 +8,7 @@ signal asked(action: StringName)
 const Session: GDScript = preload("../session.gd")
 const ViewState: GDScript = preload("../view_state.gd")
 const Shortcuts: GDScript = preload("shortcuts.gd")
+const Icons: GDScript = preload("icons.gd")
 const Actions: GDScript = preload("actions.gd")
 
 var _session: Session
@@ -119,4 +120,4 @@ func _on_pressed(id: int) -> void:
 
 func _notification(what: int) -> void:
 	if what == NOTIFICATION_THEME_CHANGED:
-		icon = load("res://addons/tree_reconstruction/icons/TreeInstance3D.svg") as Texture2D
+		icon = Icons.find(self, "res://addons/tree_reconstruction/icons/TreeInstance3D.svg")
