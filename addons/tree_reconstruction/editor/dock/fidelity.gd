@@ -166,6 +166,8 @@ func _add(id: StringName, title: String, tip: String) -> void:
 	_figures[id] = value
 	_before[id] = old
 	var line: HBoxContainer = Widgets.line(title, tip, old)
+	(line.get_child(0) as Control).size_flags_stretch_ratio = 1.2
+	old.size_flags_stretch_ratio = 0.75
 	line.add_child(value)
 	body.add_child(line)
 

@@ -257,11 +257,11 @@ func _add_slider(
 	var number: Label = Widgets.words("", tip)
 	number.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	number.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
-	number.size_flags_stretch_ratio = 0.6
+	number.size_flags_stretch_ratio = 0.75
 	_numbers[property] = number
 	_formats[property] = format
 	var line: HBoxContainer = Widgets.line(title, tip, slider)
-	(line.get_child(0) as Control).size_flags_stretch_ratio = 0.8
+	(line.get_child(0) as Control).size_flags_stretch_ratio = 1.1
 	line.add_child(number)
 	body.add_child(line)
 

@@ -37,7 +37,6 @@ var _running: bool = false
 func _init(title: String, tip: String, run_tip: String) -> void:
 	_head = Widgets.button(title, tip, &"GuiTreeArrowRight")
 	_head.flat = true
-	_head.text_overrun_behavior = TextServer.OVERRUN_NO_TRIMMING
 	_head.toggle_mode = true
 	_head.alignment = HORIZONTAL_ALIGNMENT_LEFT
 	_head.size_flags_horizontal = Control.SIZE_EXPAND_FILL

@@ -11,8 +11,8 @@ func _init() -> void:
 	icon_mode = ItemList.ICON_MODE_TOP
 	max_columns = 0
 	same_column_width = true
-	fixed_column_width = Widgets.px(72)
-	fixed_icon_size = Vector2i.ONE * Widgets.px(64)
+	fixed_column_width = Widgets.px(62)
+	fixed_icon_size = Vector2i.ONE * Widgets.px(56)
 	auto_height = true
 	auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 

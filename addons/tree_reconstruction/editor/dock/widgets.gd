@@ -65,7 +65,6 @@ static func button(words: String, tip: String, icon: StringName = &"") -> IconBu
 	made.icon_name = icon
 	if words.is_empty():
 		made.theme_type_variation = &"FlatButton"
-	made.text_overrun_behavior = TextServer.OVERRUN_TRIM_ELLIPSIS
 	return made
 
 

@@ -1,0 +1,85 @@
+@tool
+extends RefCounted
+## Copies of the addon's materials that need no file of the addon.
+
+const _ADDON: String = "res://addons/tree_reconstruction/"
+const _QUALITY: float = 0.9
+
+
+## A copy of [param material] with its shader and textures in itself, and with [param values] set
+## where its shader has them. A material that has nothing of the addon is returned as it is.
+static func plain(material: Material, values: Dictionary[StringName, Variant]) -> Material:
+	var shaded: ShaderMaterial = material as ShaderMaterial
+	if shaded == null or shaded.shader == null or not _is_addons(shaded.shader):
+		return material
+	var made: ShaderMaterial = ShaderMaterial.new()
+	made.resource_name = material.resource_path.get_file().get_basename()
+	made.shader = Shader.new()
+	made.shader.code = _code_of(shaded.shader)
+	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
+		var value: Variant = shaded.get_shader_parameter(uniform.name)
+		if value is Texture2D and _is_addons(value):
+			value = _plain_texture(value, "normal" in String(uniform.name))
+		if value != null:
+			made.set_shader_parameter(uniform.name, value)
+	for name: StringName in values:
+		made.set_shader_parameter(name, values[name])
+	return made
+
+
+# Its code with all that it includes, for a tree without a TreeInstance3D.
+static func _code_of(shader: Shader) -> String:
+	var include: RegEx = RegEx.create_from_string('#include\\s+"([^"]+)"')
+	var code: String = shader.code
+	var found: RegExMatch = include.search(code)
+	while found != null:
+		var path: String = found.get_string(1)
+		if not path.begins_with("res://"):
+			path = shader.resource_path.get_base_dir().path_join(path)
+		code = (
+			code.left(found.get_start())
+			+ (load(path) as ShaderInclude).code
+			+ code.substr(found.get_end())
+		)
+		found = include.search(code)
+	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
+	var end: int = type.search(code).get_end()
+	return code.left(end) + "\n#define TREE_BAKED\n" + code.substr(end)
+
+
+static func _plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:
+	var image: Image = _image_of(texture)
+	if image == null:
+		return texture
+	if not image.has_mipmaps():
+		image.generate_mipmaps()
+	var made: PortableCompressedTexture2D = PortableCompressedTexture2D.new()
+	made.keep_compressed_buffer = true
+	made.create_from_image(
+		image,
+		(
+			PortableCompressedTexture2D.COMPRESSION_MODE_LOSSLESS
+			if is_normal
+			else PortableCompressedTexture2D.COMPRESSION_MODE_LOSSY
+		),
+		is_normal,
+		_QUALITY
+	)
+	made.resource_name = texture.resource_path.get_file().get_basename()
+	return made
+
+
+# The picture that it was imported from, if that is there: what the graphics card has is less.
+static func _image_of(texture: Texture2D) -> Image:
+	if FileAccess.file_exists(texture.resource_path) and texture.resource_path.ends_with(".png"):
+		var source: Image = Image.new()
+		if source.load_png_from_buffer(FileAccess.get_file_as_bytes(texture.resource_path)) == OK:
+			return source
+	var image: Image = texture.get_image()
+	if image != null and image.is_compressed() and image.decompress() != OK:
+		return null
+	return image
+
+
+static func _is_addons(resource: Resource) -> bool:
+	return resource.resource_path.begins_with(_ADDON)

@@ -1,0 +1,210 @@
+@tool
+class_name TreeBaker
+extends RefCounted
+## Turns trees into plain scenes and meshes that need neither this addon nor its library.
+##
+## A baked scene holds a mesh for each level of detail, of a surface of bark and one of leaves, that
+## take turns by their distance; its materials, with the wind; and a body of capsules. Share it,
+## use it in a project without the addon, or give the meshes to a tool that scatters them.
+## [codeblock]
+## var baker := TreeBaker.new()
+## baker.levels = 3
+## ResourceSaver.save(baker.bake(tree), "res://trees/oak.scn")
+## [/codeblock]
+## The numbers of a tree's leaves are its vertices then, so it needs more memory than a
+## [TreeInstance3D], and no longer follows its scan, its rules or its edits.
+
+const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+const _MOST_LEVELS: int = 5
+# How many times its height a tree is away where the next level takes over.
+const _SWITCH: PackedFloat32Array = [2.5, 6.0, 14.0, 30.0]
+# A level gives way a little later than the next one comes, so that it doesn't flicker there.
+const _MARGIN: float = 0.05
+# How far the wind moves a tree beyond its box, over its height.
+const _SWAY: float = 0.15
+const JoinedLeaves := preload("joined_leaves.gd")
+const PlainMaterials := preload("plain_materials.gd")
+const Collision := preload("../nodes/tree_collision.gd")
+
+## How many levels of detail there are, the finest first: 1 to 5.
+var levels: int = 4:
+	set(value):
+		levels = clampi(value, 1, _MOST_LEVELS)
+
+## The distances in metres from which on the next level is shown, one less than there are levels.
+## Empty: chosen by the tree's height.
+var distances: PackedFloat32Array = []
+
+## Whether the tree bears its leaves.
+var leaves: bool = true
+
+## Whether the wind moves it.
+var wind: bool = true
+
+## Whether there is a [StaticBody3D] of capsules along its stout wood.
+var collision: bool = true
+
+## The bark's material; without one, that of the tree's leaf preset.
+var bark_material: Material
+
+## The leaves' material; without one, that of the tree's leaf preset.
+var leaf_material: Material
+
+
+## What was built of a tree, before it becomes nodes.
+class Parts:
+	extends RefCounted
+	## The surface arrays of the bark of each level.
+	var bark: Array[Array] = []
+	## The surface arrays of the leaves of each level; empty without leaves.
+	var leaves: Array[Array] = []
+	## See [method TreeReconstruction.build_capsules].
+	var capsules: Array[Dictionary] = []
+	## The box around all levels, at rest.
+	var box: AABB
+	## How high the finest level's wood reaches, in metres.
+	var height: float = 0.0
+
+
+## Returns the tree as a scene.
+func bake(tree: TreeReconstruction) -> PackedScene:
+	return make_scene(tree, build(tree))
+
+
+## Builds what [method make_scene] needs. This is the long part, and may run on any thread; it ends
+## early, with [code]null[/code], when [param cancelled] returns [code]true[/code].
+func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
+	var parts: Parts = Parts.new()
+	for level: int in levels:
+		if cancelled.is_valid() and cancelled.call():
+			return null
+		parts.bark.append(tree.build_mesh_arrays(level))
+		var joined: Array = []
+		if leaves:
+			joined = JoinedLeaves.join(
+				tree.build_leaf_buffer(level), tree.build_leaf_form_arrays(level), cancelled
+			)
+		parts.leaves.append(joined)
+	if collision:
+		parts.capsules = tree.build_capsules()
+	for place: Vector3 in _places(parts.bark[0]):
+		parts.height = maxf(parts.height, place.y)
+	var first: bool = true
+	for arrays: Array in parts.bark + parts.leaves:
+		for place: Vector3 in _places(arrays):
+			parts.box = AABB(place, Vector3.ZERO) if first else parts.box.expand(place)
+			first = false
+	return parts
+
+
+## Makes a scene of what [method build] returned for the same tree, on the main thread.
+func make_scene(tree: TreeReconstruction, parts: Parts) -> PackedScene:
+	var root: Node3D = make_nodes(tree, parts)
+	var scene: PackedScene = PackedScene.new()
+	scene.pack(root)
+	root.free()
+	return scene
+
+
+## As [method make_scene], but returns the nodes, which belong to the caller.
+func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
+	var root: Node3D = Node3D.new()
+	root.name = _name_of(tree)
+	var meshes: Array[ArrayMesh] = make_meshes(tree, parts)
+	var switches: PackedFloat32Array = _distances(parts.height)
+	for level: int in meshes.size():
+		var part: MeshInstance3D = MeshInstance3D.new()
+		part.name = "Level%d" % level
+		part.mesh = meshes[level]
+		if level > 0:
+			part.visibility_range_begin = switches[level - 1]
+			part.visibility_range_begin_margin = _MARGIN * switches[level - 1]
+		if level + 1 < meshes.size():
+			part.visibility_range_end = switches[level]
+			part.visibility_range_end_margin = _MARGIN * switches[level]
+		root.add_child(part)
+		part.owner = root
+	if not parts.capsules.is_empty():
+		var body: StaticBody3D = StaticBody3D.new()
+		body.name = "Wood"
+		root.add_child(body)
+		body.owner = root
+		Collision.fill(body, parts.capsules)
+		# Its shapes are the scene's own, seen and saved.
+		for shape: Node in body.get_children(true):
+			body.remove_child(shape)
+			body.add_child(shape)
+			shape.owner = root
+	return root
+
+
+## The meshes of all levels, the finest first, each with a surface of bark and one of leaves. They
+## share their materials and their box.
+func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
+	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
+	var look: String = tree.get_leaf_look()
+	var bark: Material = PlainMaterials.plain(_chosen(bark_material, look, "bark"), values)
+	var leaf: Material = PlainMaterials.plain(
+		_chosen(leaf_material, look, "blade" if tree.are_leaves_single() else "leaf"), values
+	)
+	var meshes: Array[ArrayMesh] = []
+	for level: int in parts.bark.size():
+		var mesh: ArrayMesh = ArrayMesh.new()
+		if not parts.bark[level].is_empty():
+			mesh.add_surface_from_arrays(
+				Mesh.PRIMITIVE_TRIANGLES, parts.bark[level], [], {}, TreeReconstruction.MESH_FLAGS
+			)
+			mesh.surface_set_name(mesh.get_surface_count() - 1, "bark")
+			mesh.surface_set_material(mesh.get_surface_count() - 1, bark)
+		if not parts.leaves[level].is_empty():
+			mesh.add_surface_from_arrays(
+				Mesh.PRIMITIVE_TRIANGLES, parts.leaves[level], [], {}, JoinedLeaves.FLAGS
+			)
+			mesh.surface_set_name(mesh.get_surface_count() - 1, "leaves")
+			mesh.surface_set_material(mesh.get_surface_count() - 1, leaf)
+		mesh.custom_aabb = parts.box.grow(_SWAY * maxf(parts.height, 0.1))
+		meshes.append(mesh)
+	return meshes
+
+
+func _distances(height: float) -> PackedFloat32Array:
+	var chosen: PackedFloat32Array = []
+	for level: int in levels - 1:
+		if level < distances.size():
+			chosen.append(distances[level])
+		else:
+			chosen.append(_SWITCH[level] * maxf(height, 0.5))
+	return chosen
+
+
+# What a TreeInstance3D sets for its instance.
+func _shader_values(tree: TreeReconstruction, height: float) -> Dictionary[StringName, Variant]:
+	var values: Dictionary[StringName, Variant] = {
+		&"tree_height": maxf(height, 0.1), &"tree_wind": 1.0 if wind else 0.0
+	}
+	if tree.leaf_rule != null:
+		var tints: PackedColorArray = tree.leaf_rule.get_season_tints()
+		var names: Array[StringName] = [&"season_early", &"season_late"]
+		for i: int in 2:
+			var tint: Color = tints[i].srgb_to_linear()
+			values[names[i]] = Vector4(tint.r, tint.g, tint.b, tint.a)
+	return values
+
+
+func _chosen(material: Material, look: String, part: String) -> Material:
+	if material != null:
+		return material
+	var path: String = _PRESETS % [look, part]
+	return load(path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]) as Material
+
+
+static func _places(arrays: Array) -> PackedVector3Array:
+	return PackedVector3Array() if arrays.is_empty() else arrays[Mesh.ARRAY_VERTEX]
+
+
+static func _name_of(tree: TreeReconstruction) -> String:
+	var name: String = tree.resource_name
+	if name.is_empty() and not tree.resource_path.contains("::"):
+		name = tree.resource_path.get_file().get_basename()
+	name = name.to_pascal_case().validate_node_name()
+	return "Tree" if name.is_empty() else name
