@@ -118,6 +118,12 @@ PackedFloat64Array TreeReconstruction::get_node_scan_position(int p_id) const {
     return PackedFloat64Array{scan.x, scan.y, scan.z};
 }
 
+Vector3 TreeReconstruction::get_position_in_tree(const PackedFloat64Array& p_scan_position) const {
+    ERR_FAIL_COND_V_MSG(p_scan_position.size() != 3, Vector3(), "A place in a scan has three coordinates.");
+    return to_godot(
+        get_tree()->frame().to_tree({p_scan_position[0], p_scan_position[1], p_scan_position[2]}));
+}
+
 double TreeReconstruction::get_node_radius(int p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? node->radius : 0.0;

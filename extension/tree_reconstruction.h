@@ -73,6 +73,7 @@ class TreeReconstruction : public godot::Resource {
     bool has_node(int p_id) const;
     godot::Vector3 get_node_position(int p_id) const;
     godot::PackedFloat64Array get_node_scan_position(int p_id) const;
+    godot::Vector3 get_position_in_tree(const godot::PackedFloat64Array& p_scan_position) const;
     double get_node_radius(int p_id) const;
     int get_node_parent(int p_id) const;
     godot::PackedInt32Array get_node_children(int p_id) const;
@@ -95,6 +96,7 @@ class TreeReconstruction : public godot::Resource {
     bool has_foliage() const;
     godot::PackedVector3Array get_foliage_positions() const;
     godot::PackedColorArray get_foliage_colors() const;
+    godot::PackedInt32Array find_wood_points(const godot::PackedVector3Array& p_points) const;
     godot::Dictionary measure() const;
 #ifdef TREEREC_EDITOR
     godot::Dictionary measure_fidelity(const godot::PackedVector3Array& p_points, double p_tolerance) const;

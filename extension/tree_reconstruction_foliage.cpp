@@ -24,6 +24,16 @@ std::shared_ptr<const treerec::Foliage> TreeReconstruction::get_leaf_density() c
     return foliage_;
 }
 
+PackedInt32Array TreeReconstruction::find_wood_points(const PackedVector3Array& p_points) const {
+    std::vector<treerec::Vec3> points;
+    points.reserve(size_t(p_points.size()));
+    for (int64_t i = 0; i < p_points.size(); i++) {
+        const Vector3& point = p_points[i];
+        points.emplace_back(point.x, point.y, point.z);
+    }
+    return to_godot(treerec::points_outside(*get_leaf_density(), points));
+}
+
 void TreeReconstruction::set_foliage(const Dictionary& p_foliage) {
     treerec::Foliage foliage;
     Dictionary newer;

@@ -229,6 +229,8 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_node_position", "id"), &TreeReconstruction::get_node_position);
     ClassDB::bind_method(D_METHOD("get_node_scan_position", "id"),
                          &TreeReconstruction::get_node_scan_position);
+    ClassDB::bind_method(D_METHOD("get_position_in_tree", "scan_position"),
+                         &TreeReconstruction::get_position_in_tree);
     ClassDB::bind_method(D_METHOD("get_node_radius", "id"), &TreeReconstruction::get_node_radius);
     ClassDB::bind_method(D_METHOD("get_node_parent", "id"), &TreeReconstruction::get_node_parent);
     ClassDB::bind_method(D_METHOD("get_node_children", "id"), &TreeReconstruction::get_node_children);
@@ -249,6 +251,7 @@ void TreeReconstruction::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_leaf_look"), &TreeReconstruction::get_leaf_look);
     ClassDB::bind_method(D_METHOD("are_leaves_single"), &TreeReconstruction::are_leaves_single);
     ClassDB::bind_method(D_METHOD("has_foliage"), &TreeReconstruction::has_foliage);
+    ClassDB::bind_method(D_METHOD("find_wood_points", "points"), &TreeReconstruction::find_wood_points);
     ClassDB::bind_method(D_METHOD("get_foliage_positions"), &TreeReconstruction::get_foliage_positions);
     ClassDB::bind_method(D_METHOD("get_foliage_colors"), &TreeReconstruction::get_foliage_colors);
     ClassDB::bind_method(D_METHOD("measure"), &TreeReconstruction::measure);

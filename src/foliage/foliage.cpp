@@ -76,6 +76,29 @@ Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<
     return foliage;
 }
 
+std::vector<int32_t> points_outside(const Foliage& foliage, std::span<const Vec3> points) {
+    std::vector<int32_t> outside;
+    const auto before = [](const FoliageCell& cell, const std::array<int64_t, 3>& place) {
+        return std::array<int64_t, 3>{cell.x, cell.y, cell.z} < place;
+    };
+    for (size_t i = 0; i < points.size(); i++) {
+        if (!foliage.empty()) {
+            const DVec3 at = glm::floor((DVec3(points[i]) - foliage.origin) / foliage.edge);
+            // Far away or not a number: no cell is there.
+            if (at.x >= 0.0 && at.x < 65536.0 && at.y >= 0.0 && at.y < 65536.0 && at.z >= 0.0 && at.z < 65536.0) {
+                const std::array<int64_t, 3> place{int64_t(at.x), int64_t(at.y), int64_t(at.z)};
+                const auto cell = std::lower_bound(foliage.cells.begin(), foliage.cells.end(), place, before);
+                if (cell != foliage.cells.end() &&
+                    std::array<int64_t, 3>{cell->x, cell->y, cell->z} == place) {
+                    continue;
+                }
+            }
+        }
+        outside.push_back(int32_t(i));
+    }
+    return outside;
+}
+
 void check_foliage(const Foliage& foliage) {
     const std::string damaged = "The saved foliage is damaged: ";
     const std::string advice = ". Reconstruct the tree again.";

@@ -56,6 +56,23 @@ TEST(Foliage, CountsEveryPointInItsCellWhateverTheOrder) {
     EXPECT_EQ(gather_foliage(points, colors), foliage);
 }
 
+TEST(Foliage, KnowsWhichPointsLieOutside) {
+    const std::vector<Vec3> leaves = ball({1.0, 8.0, -2.0}, 2.0, 20000, 2);
+    const Foliage foliage = gather_foliage(leaves, {});
+    std::vector<Vec3> points;
+    for (size_t i = 0; i < 5000; i++) {
+        points.push_back(leaves[i]);
+        points.emplace_back(0.0F, 0.001F * static_cast<float>(i), 0.0F);  // below and beside it
+    }
+    points.emplace_back(1e30F, 0.0F, 0.0F);
+    points.emplace_back(std::nanf(""), 8.0F, -2.0F);
+    std::vector<int32_t> wanted;
+    for (int32_t i = 0; i < static_cast<int32_t>(points.size()); i++)
+        if (i % 2 == 1 || i >= 10000) wanted.push_back(i);
+    EXPECT_EQ(points_outside(foliage, points), wanted);
+    EXPECT_EQ(points_outside(Foliage(), points).size(), points.size());
+}
+
 TEST(Foliage, StaysSmall) {
     for (const double size : {0.5, 20.0, 500.0}) {
         const Foliage foliage = gather_foliage(ball({0.0, size, 0.0}, size, 200000, 2), {});

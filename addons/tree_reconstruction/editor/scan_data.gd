@@ -12,10 +12,13 @@ const Jobs := preload("jobs.gd")
 
 ## At most so many points are shown and measured against.
 const MAXIMUM_POINTS: int = 1_000_000
+const _LEAF_COLOR: Color = Color(0.5, 0.5, 0.5)
 
 var points: PackedVector3Array
 ## As many as points, or none.
 var colors: PackedColorArray
+## The points that are wood: what [member fidelity] measures, and its indices count.
+var wood: PackedVector3Array
 ## Measured, or [code]null[/code].
 var fidelity: TreeFidelity
 
@@ -28,6 +31,8 @@ var _measuring: Jobs.Job
 var _wanted: bool = false
 var _watching: bool = false
 var _outdated: bool = false
+# Indices of wood in points; empty where all are.
+var _wood_indices: PackedInt32Array
 
 
 func _init(jobs: Jobs, say: Callable) -> void:
@@ -66,7 +71,7 @@ func request() -> void:
 	var tree: TreeReconstruction = _tree
 	_loading = _jobs.start(
 		tr("Reading the scan"),
-		func(_job: Jobs.Job) -> bool: return reader.load_cloud(tree, MAXIMUM_POINTS),
+		func(_job: Jobs.Job) -> Variant: return _load(reader, tree),
 		_on_loaded.bind(reader),
 		reader
 	)
@@ -75,6 +80,22 @@ func request() -> void:
 ## Whether the points are on their way.
 func is_loading() -> bool:
 	return _loading != null
+
+
+## Colours for all points: the heat map of [member fidelity], and grey for leaves. Empty while it isn't
+## measured.
+func get_heat_colors() -> PackedColorArray:
+	if fidelity == null:
+		return []
+	var heat: PackedColorArray = fidelity.get_point_colors()
+	if _wood_indices.is_empty():
+		return heat
+	var all: PackedColorArray = []
+	all.resize(points.size())
+	all.fill(_LEAF_COLOR)
+	for i: int in _wood_indices.size():
+		all[_wood_indices[i]] = heat[i]
+	return all
 
 
 ## Measures the tree against its scan, now and after every edit until [method stop_measuring].
@@ -113,21 +134,38 @@ func _drop() -> void:
 	var had: bool = not points.is_empty()
 	points = PackedVector3Array()
 	colors = PackedColorArray()
+	wood = PackedVector3Array()
+	_wood_indices = PackedInt32Array()
 	fidelity = null
 	_outdated = true
 	if had:
 		changed.emit()
 
 
-func _on_loaded(success: bool, job: Jobs.Job, reader: TreeReconstructor) -> void:
+# On a thread: the indices of the wood in the points, or null.
+static func _load(reader: TreeReconstructor, tree: TreeReconstruction) -> Variant:
+	if not reader.load_cloud(tree, MAXIMUM_POINTS):
+		return null
+	return tree.find_wood_points(reader.get_cloud_points())
+
+
+func _on_loaded(wooden: Variant, job: Jobs.Job, reader: TreeReconstructor) -> void:
 	if job != _loading:
 		return
 	_loading = null
-	if not success:
+	if wooden == null:
 		_say.call(reader.get_error_message())
 		return
 	points = reader.get_cloud_points()
 	colors = reader.get_cloud_colors()
+	wood = points
+	var indices: PackedInt32Array = wooden
+	# Where leaves are everywhere they can't be left out.
+	if not indices.is_empty() and indices.size() < points.size():
+		_wood_indices = indices
+		wood = PackedVector3Array()
+		for i: int in indices:
+			wood.append(points[i])
 	changed.emit()
 	if _watching:
 		_measure()
@@ -139,7 +177,7 @@ func _measure() -> void:
 	_outdated = false
 	var measured: TreeFidelity = fidelity
 	var tree: TreeReconstruction = _tree
-	var cloud: PackedVector3Array = points
+	var cloud: PackedVector3Array = wood
 	var work: Callable = func(_job: Jobs.Job) -> TreeFidelity:
 		if measured == null:
 			measured = TreeFidelity.new()
