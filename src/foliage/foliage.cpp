@@ -85,7 +85,8 @@ std::vector<int32_t> points_outside(const Foliage& foliage, std::span<const Vec3
         if (!foliage.empty()) {
             const DVec3 at = glm::floor((DVec3(points[i]) - foliage.origin) / foliage.edge);
             // Far away or not a number: no cell is there.
-            if (at.x >= 0.0 && at.x < 65536.0 && at.y >= 0.0 && at.y < 65536.0 && at.z >= 0.0 && at.z < 65536.0) {
+            if (at.x >= 0.0 && at.x < 65536.0 && at.y >= 0.0 && at.y < 65536.0 && at.z >= 0.0 &&
+                at.z < 65536.0) {
                 const std::array<int64_t, 3> place{int64_t(at.x), int64_t(at.y), int64_t(at.z)};
                 const auto cell = std::lower_bound(foliage.cells.begin(), foliage.cells.end(), place, before);
                 if (cell != foliage.cells.end() &&

@@ -43,8 +43,8 @@ inline constexpr size_t kMostFoliageCells = 20000;
 Foliage gather_foliage(std::span<const Vec3> points, std::span<const std::array<uint8_t, 3>> colors,
                        const Progress* progress = nullptr);
 
-// The indices of the points (metres, tree space) that lie in none of its cells: those of the wood, as far as the
-// scan's leaves hide none.
+// The indices of the points (metres, tree space) that lie in none of its cells: those of the wood, as far as
+// the scan's leaves hide none.
 std::vector<int32_t> points_outside(const Foliage& foliage, std::span<const Vec3> points);
 
 // Throws Error unless the foliage is as described above: for what comes out of files.

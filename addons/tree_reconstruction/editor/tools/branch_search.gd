@@ -38,7 +38,7 @@ func find(title: String, id: int, direction: Vector3, options: Dictionary) -> vo
 	var tree: TreeReconstruction = _session.tree
 	_job = _session.jobs.start(
 		tr("Looking for the missing branch"),
-		_search.bind(tree, _session.scan.points, id, direction, options),
+		_search.bind(tree, _session.scan.wood, id, direction, options),
 		_on_found.bind(tree, tree.get_bark_revision())
 	)
 

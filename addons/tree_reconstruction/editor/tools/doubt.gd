@@ -279,7 +279,7 @@ func _lines_of_missing(place: Place) -> PackedVector3Array:
 		arm = 4.0 * get_scale() / maxf(pixels_per_metre(place.at), 1e-6)
 	var step: int = maxi(place.points.size() / _DRAWN_POINTS, 1)
 	for i: int in range(0, place.points.size(), step):
-		var at: Vector3 = session.scan.points[place.points[i]]
+		var at: Vector3 = session.scan.wood[place.points[i]]
 		for axis: Vector3 in [Vector3.RIGHT, Vector3.UP]:
 			lines.append(at - axis * arm)
 			lines.append(at + axis * arm)

@@ -70,7 +70,7 @@ func rebuild() -> void:
 		ViewState.PointColors.SCAN:
 			arrays[Mesh.ARRAY_COLOR] = _session.scan.colors
 		ViewState.PointColors.FIDELITY:
-			arrays[Mesh.ARRAY_COLOR] = _session.scan.fidelity.get_point_colors()
+			arrays[Mesh.ARRAY_COLOR] = _session.scan.get_heat_colors()
 	layer.set_arrays(Mesh.PRIMITIVE_POINTS, arrays)
 	var box: AABB = layer.mesh.get_aabb()
 	_material.set_shader_parameter(&"low", box.position.y)
