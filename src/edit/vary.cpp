@@ -138,6 +138,8 @@ void VariantMaker::look_at_limbs() {
             way += steps_[k];
         limb.way = normalized_or(way, normalized_or(from - start, DVec3(0, 1, 0)));
         limb.reach = from - start;
+        limb.axes = standing_axes(limb.way);
+        limb.reach_in_axes = limb.reach * limb.axes;
         if (b == 0) continue;
         const Limb& parent = limbs_[limb.parent];
         const int32_t joint = parent.begin + limb.attach;
@@ -234,11 +236,10 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
     const bool trunk = slot.limb == 0;
     Random random(slot.key);
     // Bends are small: a tilt across the way does for a turn, and needs no angles.
-    const DMat3 axes = standing_axes(limb.way);
     const double bend = work.amount * (trunk ? kTrunkBend : kBend);
     const double wave = work.amount * (trunk ? kTrunkBend : kWave);
-    const DVec3 arc = (axes[0] * bell(random) + axes[2] * bell(random)) * (0.7 * bend);
-    const DVec3 swing = (axes[0] * bell(random) + axes[2] * bell(random)) * (0.7 * wave);
+    const DVec3 arc = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * bend);
+    const DVec3 swing = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * wave);
     const double over_length = limb.length > 0.0 ? 1.0 / limb.length : 0.0;
     const auto first = static_cast<NodeId>(work.positions.size());
     const size_t count = static_cast<size_t>(limb.end - limb.begin);
@@ -364,9 +365,10 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
                     : child;
     const Limb& shape = limbs_[next.limb];
     const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
-    if (next.limb != child) turn = standing_axes(way) * glm::transpose(standing_axes(shape.way));
+    const DMat3 axes = next.limb != child || mirrored ? standing_axes(way) : DMat3(1.0);
+    if (next.limb != child) turn = axes * glm::transpose(shape.axes);
     if (mirrored) {
-        const DVec3 right = standing_axes(way)[0];
+        const DVec3& right = axes[0];
         turn = turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
                             2.0 * right * glm::dot(right, turn[2]));
     }
@@ -422,11 +424,11 @@ int32_t VariantMaker::choose_shape(Work& work, int32_t child, const DMat3& turn,
         if (!(shape.length < kShapeLength * own.length && own.length < kShapeLength * shape.length)) continue;
         if (!(shape.radius < kShapeRadius * own.radius && own.radius < kShapeRadius * shape.radius)) continue;
         if (std::abs(shape.way.y - way.y) > kShapeRise) continue;
-        const DVec3 there = axes * (shape.reach * standing_axes(shape.way)) * (own.length / shape.length);
-        if (glm::distance(tip, there) > kShapeTip * own.length) continue;
         const double nodes = shape.nodes - own.nodes, wood = shape.wood - own.wood;
         if (!fits(work.more_nodes, kBalance * limbs_[0].nodes, nodes)) continue;
         if (!fits(work.more_wood, kBalance * limbs_[0].wood, wood)) continue;
+        const DVec3 there = axes * shape.reach_in_axes * (own.length / shape.length);
+        if (glm::distance(tip, there) > kShapeTip * own.length) continue;
         work.more_nodes += nodes;
         work.more_wood += wood;
         return other;

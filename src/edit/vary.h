@@ -52,6 +52,8 @@ class VariantMaker {
         DVec3 way{0.0, 1.0, 0.0};   // unit, from the foot to the middle
         DVec3 axis{0.0, 1.0, 0.0};  // unit, of the parent at the foot
         DVec3 reach{0.0};           // from the foot to the tip
+        DMat3 axes{1.0};            // to the right of the way, along it, up
+        DVec3 reach_in_axes{0.0};
     };
     struct Range {
         double least = 1e300, most = -1e300;

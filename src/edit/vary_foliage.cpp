@@ -11,7 +11,7 @@ namespace treerec {
 
 namespace {
 
-constexpr int64_t kMostCellsPerAxis = 64;
+constexpr int64_t kMostCellsPerAxis = 24;
 
 // The nodes of a tree in a grid over it.
 class NodeGrid {
