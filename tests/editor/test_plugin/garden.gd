@@ -93,6 +93,16 @@ func click_node(node: Node) -> bool:
 	)
 
 
+## Chooses a tool of the viewport by its key.
+func take_tool(id: StringName, key: String) -> bool:
+	await user.move(middle(view().get_parent() as Control))
+	await user.key(key)
+	return await until(
+		func() -> bool: return session().get(&"tool") == session().get(&"tools")[id],
+		"the tool '%s' is chosen" % id
+	)
+
+
 ## The addon's key for the view on the whole tree.
 func frame_view() -> void:
 	await user.move(middle(view().get_parent() as Control))
@@ -116,26 +126,34 @@ func node_on_screen(of: TreeInstance3D, id: int) -> Vector2:
 	return on_screen(of.global_transform * of.reconstruction.get_node_position(id))
 
 
-## A node in the middle of the trunk's way, which can be seen and clicked.
-func trunk_node(of: TreeReconstruction) -> int:
-	var trunk: PackedInt32Array = of.select_nodes("trunk")
-	@warning_ignore("integer_division")
-	return trunk[trunk.size() / 2]
+## Those of the nodes that the mouse finds at their own place, nothing else being nearer. The nodes
+## must have been framed.
+func clear_nodes(
+	of: TreeInstance3D, candidates: PackedInt32Array, most: int = 1
+) -> PackedInt32Array:
+	var picker: RefCounted = session().get(&"picker")
+	var camera: Camera3D = view().get_camera_3d()
+	var found: PackedInt32Array = []
+	for id: int in candidates:
+		var place: Vector3 = of.global_transform * of.reconstruction.get_node_position(id)
+		@warning_ignore("unsafe_method_access")
+		if picker.pick(camera, camera.unproject_position(place)) == id:
+			found.append(id)
+			if found.size() == most:
+				break
+	check(found.size() == most, "Too few nodes can be clicked.")
+	return found
 
 
-## The node where the largest branch off the trunk begins.
-func large_branch(of: TreeReconstruction) -> int:
-	var best: int = TreeReconstruction.NO_NODE
-	var most: int = 0
-	for id: int in of.select_nodes("!trunk"):
-		var parent: int = of.get_node_parent(id)
-		if not of.is_trunk(parent):
-			continue
-		var count: int = of.select_nodes("below:%d" % id).size()
-		if count > most:
-			most = count
-			best = id
-	return best
+## The nodes with most wood above them, outside of the trunk: each begins a branch.
+func large_branches(of: TreeReconstruction) -> PackedInt32Array:
+	var counts: Dictionary[int, int] = {}
+	for id: int in of.select_nodes("order:1..2"):
+		if of.get_node_order(id) > of.get_node_order(of.get_node_parent(id)):
+			counts[id] = of.select_nodes("below:%d" % id).size()
+	var ids: Array = counts.keys()
+	ids.sort_custom(func(a: int, b: int) -> bool: return counts[a] > counts[b])
+	return PackedInt32Array(ids)
 
 
 ## How many objects the 3D view draws, with those that no node owns.

@@ -11,7 +11,7 @@ func run() -> void:
 	var of: TreeReconstruction = node.reconstruction
 	var before: PackedByteArray = bytes(of)
 	var count: int = of.get_node_count()
-	var branch: int = large_branch(of)
+	var branch: int = clear_nodes(node, large_branches(of))[0]
 	await user.click(node_on_screen(node, branch))
 	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
 	await picture("before-delete")
