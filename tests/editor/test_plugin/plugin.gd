@@ -55,7 +55,6 @@ func _run(path: String) -> void:
 	scenario.set(&"errors", _errors)
 	scenario.set(&"title", title)
 	scenario.set(&"tree", get_tree())
-	_errors.take()
 	@warning_ignore("unsafe_method_access")
 	await scenario.run()
 	@warning_ignore("unsafe_method_access")

@@ -3,6 +3,7 @@ extends EditorDock
 ## Where the editor keeps the dock "Tree", and remembers which of its sections are folded.
 
 const Dock := preload("dock.gd")
+const Icons: GDScript = preload("../viewport/icons.gd")
 
 var _dock: Dock
 
@@ -14,7 +15,8 @@ func _init(dock: Dock) -> void:
 	layout_key = "TreeReconstruction"
 	default_slot = EditorDock.DOCK_SLOT_RIGHT_UL
 	available_layouts = EditorDock.DOCK_LAYOUT_VERTICAL | EditorDock.DOCK_LAYOUT_FLOATING
-	dock_icon = load("res://addons/tree_reconstruction/icons/TreeReconstruction.svg")
+	# Not loaded: in a project that was just made it is not imported yet.
+	dock_icon = Icons.find(dock, "res://addons/tree_reconstruction/icons/TreeReconstruction.svg")
 	tooltip_text = "How the edited tree was made, what it measures, its leaves and variants."
 	add_child(dock)
 

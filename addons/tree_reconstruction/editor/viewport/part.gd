@@ -146,7 +146,7 @@ func _make_input() -> void:
 	_router = InputRouter.new(_session, _shortcuts)
 	_actions = Actions.new(_session)
 	_actions.views.set_sender(_send)
-	_router.asked.connect(func(action: StringName) -> void: _actions.run(action, _get_camera()))
+	_router.asked.connect(_on_asked)
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.connect(_on_tool_wants)
 	var select: SelectTool = _session.tools.get(&"select") as SelectTool
@@ -167,7 +167,7 @@ func _remove_input() -> void:
 func _make_controls() -> void:
 	_toolbar = Toolbar.new(_session, _shortcuts)
 	_menu = ViewMenu.new(_session, _shortcuts)
-	_menu.asked.connect(func(action: StringName) -> void: _actions.run(action, _get_camera()))
+	_menu.asked.connect(_on_asked)
 	_strip = Strip.new(_session)
 	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_SIDE_LEFT, _toolbar)
 	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_MENU, _menu)
@@ -282,6 +282,11 @@ func _get_camera() -> Camera3D:
 	if is_instance_valid(_router.camera) and _router.camera.is_visible_in_tree():
 		return _router.camera
 	return EditorInterface.get_editor_viewport_3d(0).get_camera_3d()
+
+
+# A method, since a function made where it is connected would keep all of this alive.
+func _on_asked(action: StringName) -> void:
+	_actions.run(action, _get_camera())
 
 
 func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:

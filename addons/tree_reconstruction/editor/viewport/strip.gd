@@ -64,6 +64,8 @@ func update_tool() -> void:
 		_title.text = tool.call(&"get_title")
 	_title.visible = _settings != null
 	if _settings != null:
+		# As wide as it can be, since it breaks into rows.
+		_settings.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 		_place.add_child(_settings)
 		_place.move_child(_settings, 1)
 	_left = 0.0
