@@ -39,6 +39,8 @@ var _menu: ViewMenu
 var _strip: Strip
 # By the camera's viewport: what the editor takes its events from.
 var _surfaces: Dictionary[Viewport, Control] = {}
+# Whether the skeleton was edited when the editor was last told of it.
+var _was_editing: bool = false
 # Whether the camera may have to be led to the tree as soon as its viewport is drawn.
 var _home_due: bool = false
 
@@ -127,13 +129,15 @@ func _make_views() -> void:
 	_gizmo.layers.append(_points.layer)
 	_gizmo.layers.append_array(_skeleton.layers)
 	_plugin.add_node_3d_gizmo_plugin(_gizmo)
+	_gizmo.join(EditorInterface.get_edited_scene_root())
 
 
 func _remove_views() -> void:
 	_visibility.take(null)
-	_gizmo.take(null, false)
+	_gizmo.take(null)
 	_plugin.remove_node_3d_gizmo_plugin(_gizmo)
 	_gizmo.set_session(null)
+	_gizmo.leave()
 	_gizmo = null
 	_session.picker = null
 	_surfaces.clear()
@@ -242,7 +246,8 @@ func _on_tool_changed() -> void:
 
 
 func _on_view_changed() -> void:
-	_take_in_hand()
+	if _session.view.editing != _was_editing:
+		_take_in_hand()
 	_visibility.update()
 	_toolbar.update()
 	_menu.update()
@@ -253,8 +258,9 @@ func _on_view_changed() -> void:
 
 # What of the editor's own changes while a skeleton is edited.
 func _take_in_hand() -> void:
+	_was_editing = _session.view.editing
 	var editing: bool = _session.node != null and _session.view.editing
-	_gizmo.take(_session.node, editing)
+	_gizmo.take(_session.node)
 	_transform_tools.find(EditorInterface.get_editor_viewport_3d(0))
 	if editing:
 		_transform_tools.put_away()

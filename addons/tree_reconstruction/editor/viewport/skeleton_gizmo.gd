@@ -8,6 +8,8 @@ extends EditorNode3DGizmoPlugin
 ## changes its mesh in place, without the gizmo being drawn anew.
 
 const Session: GDScript = preload("../session.gd")
+# The level of detail that clicks are tested against.
+const _COLLISION_LOD: int = 2
 
 
 ## A mesh in the tree's space, and how it is drawn.
@@ -28,11 +30,13 @@ class Layer:
 var layers: Array[Layer] = []
 
 var _session: Session
-# The node whose gizmos were taken in hand, and our own gizmo of it.
+# The edited node, and our gizmo of it.
 var _node: TreeInstance3D
 var _gizmo: EditorNode3DGizmo
-# Whether our gizmo is to be the only one of the node.
-var _alone: bool = false
+# The ids of the nodes that have our gizmo alone.
+var _alone: Dictionary[int, bool] = {}
+# What clicks on a tree are tested against, by the id of the reconstruction: [bark revision, mesh].
+var _collisions: Dictionary[int, Array] = {}
 
 
 func set_session(session: Session) -> void:
@@ -49,14 +53,21 @@ func _has_gizmo(node: Node3D) -> bool:
 
 func _redraw(gizmo: EditorNode3DGizmo) -> void:
 	gizmo.clear()
-	if _session == null or gizmo.get_node_3d() != _session.node:
+	var node: TreeInstance3D = gizmo.get_node_3d() as TreeInstance3D
+	if _session == null or node == null:
 		return
-	_gizmo = gizmo
-	if _alone and _node == _session.node and _node.get_gizmos().size() > 1:
-		_send_others_away.call_deferred()
-	for layer: Layer in layers:
-		if layer.shown and layer.mesh.get_surface_count() > 0:
-			gizmo.add_mesh(layer.mesh, layer.material)
+	if node.get_gizmos().size() > 1:
+		_send_others_away.call_deferred(node.get_instance_id())
+	if node == _session.node:
+		_gizmo = gizmo
+		for layer: Layer in layers:
+			if layer.shown and layer.mesh.get_surface_count() > 0:
+				gizmo.add_mesh(layer.mesh, layer.material)
+	# Clicks on the wood are the tools' while the skeleton is edited.
+	if node != _session.node or not _session.view.editing:
+		var collision: TriangleMesh = _find_collision(node.reconstruction)
+		if collision != null:
+			gizmo.add_collision_triangles(collision)
 
 
 ## Draws the layers anew: one is shown that was not, or the other way.
@@ -66,24 +77,66 @@ func update_layers() -> void:
 
 
 ## Another node is edited, or its skeleton is edited now or no more.
-##
-## While the skeleton is edited, the bark's own gizmo goes: it makes a search tree of the bark's
-## triangles for clicks after every rebuild, which takes a tenth of a second for a large tree, and
-## clicks on the wood are ours then.
-func take(node: TreeInstance3D, editing: bool) -> void:
-	if is_instance_valid(_node) and _node.is_inside_tree() and _alone:
-		_node.clear_gizmos()
-		_node.update_gizmos()
+func take(node: TreeInstance3D) -> void:
+	var before: TreeInstance3D = _node if is_instance_valid(_node) else null
 	_node = node
-	_alone = editing and node != null
 	_gizmo = null
-	if node != null and node.is_inside_tree():
-		node.update_gizmos()
+	for changed: TreeInstance3D in [before, node]:
+		if changed != null and changed.is_inside_tree():
+			changed.update_gizmos()
 
 
-func _send_others_away() -> void:
-	if not _alone or not is_instance_valid(_node) or not _node.is_inside_tree():
+## The plugin has come while a scene is open already, whose nodes know nothing of this one.
+func join(root: Node) -> void:
+	if root == null:
 		return
-	if _gizmo != null and _node.get_gizmos().size() > 1:
-		_node.clear_gizmos()
-		_node.add_gizmo(_gizmo)
+	var nodes: Array[Node] = root.find_children("*", "MeshInstance3D", true, false)
+	nodes.append(root)
+	for node: Node in nodes:
+		if node is TreeInstance3D and node.is_inside_tree():
+			(node as TreeInstance3D).clear_gizmos()
+			(node as TreeInstance3D).update_gizmos()
+
+
+## The plugin goes, and this one has been removed: the engine's own gizmos come back.
+func leave() -> void:
+	for id: int in _alone:
+		var node: TreeInstance3D = instance_from_id(id) as TreeInstance3D
+		if node != null and node.is_inside_tree():
+			node.clear_gizmos()
+			node.update_gizmos()
+	_alone.clear()
+
+
+# The engine's own gizmo of a mesh makes a search tree of all its triangles for clicks after every
+# rebuild, which takes a tenth of a second for a large tree. A coarse level of detail does as well.
+func _send_others_away(id: int) -> void:
+	var node: TreeInstance3D = instance_from_id(id) as TreeInstance3D
+	if _session == null or node == null or not node.is_inside_tree():
+		return
+	for gizmo: Node3DGizmo in node.get_gizmos():
+		var of_editor: EditorNode3DGizmo = gizmo as EditorNode3DGizmo
+		if of_editor != null and of_editor.get_plugin() == self:
+			_alone[id] = true
+			node.clear_gizmos()
+			node.add_gizmo(of_editor)
+			return
+
+
+func _find_collision(tree: TreeReconstruction) -> TriangleMesh:
+	if tree == null:
+		return null
+	var known: Array = _collisions.get(tree.get_instance_id(), [])
+	if not known.is_empty() and known[0] == tree.get_bark_revision():
+		return known[1]
+	var collision: TriangleMesh = null
+	var arrays: Array = tree.build_mesh_arrays(_COLLISION_LOD)
+	if not arrays.is_empty():
+		var mesh: ArrayMesh = ArrayMesh.new()
+		mesh.add_surface_from_arrays(
+			Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.MESH_FLAGS
+		)
+		collision = TriangleMesh.new()
+		collision.create_from_faces(mesh.get_faces())
+	_collisions[tree.get_instance_id()] = [tree.get_bark_revision(), collision]
+	return collision
