@@ -129,6 +129,7 @@ func _wheel(steps: int, button: InputEventMouseButton) -> bool:
 		_show_value(_roll_box, values[&"roll"])
 	else:
 		_set_seed(values[&"seed"] + steps)
+	_rests = false
 	_queue()
 	return true
 

@@ -16,6 +16,8 @@ var _axis: Vector3
 var _nodes: String
 var _moved: bool = false
 var _was_selected: bool = false
+# The command of the drag so far.
+var _done: String = ""
 
 
 func get_id() -> StringName:
@@ -169,18 +171,19 @@ func _look_again() -> void:
 		# Something else was done meanwhile.
 		_let_go()
 		return
-	session.drag(
-		(
-			"move nodes=%s by=%s with=%s falloff=%s"
-			% [
-				_nodes,
-				words_of(_by if _axis == Vector3.ZERO else _by.project(_axis)),
-				"subtree" if values[&"subtree"] else "alone",
-				String.num(values[&"falloff"], 4)
-			]
-		)
+	var command: String = (
+		"move nodes=%s by=%s with=%s falloff=%s"
+		% [
+			_nodes,
+			words_of(_by if _axis == Vector3.ZERO else _by.project(_axis)),
+			"subtree" if values[&"subtree"] else "alone",
+			String.num(values[&"falloff"], 4)
+		]
 	)
-	changed.emit()
+	if command != _done:
+		_done = command
+		session.drag(command)
+		changed.emit()
 
 
 func draw(overlay: Control) -> void:
@@ -213,6 +216,7 @@ func _let_go() -> void:
 	_moved = false
 	_by = Vector3.ZERO
 	_axis = Vector3.ZERO
+	_done = ""
 	changed.emit()
 
 

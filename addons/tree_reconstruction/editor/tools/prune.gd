@@ -123,6 +123,7 @@ func prune_whole() -> void:
 func _show_whole(shows: bool) -> void:
 	if _shows_whole != shows:
 		_shows_whole = shows
+		_rests = false
 		_queue()
 
 

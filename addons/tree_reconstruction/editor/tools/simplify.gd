@@ -122,6 +122,11 @@ func _look_again() -> void:
 	_show_count()
 
 
+func _finish(edit: TreeEdit) -> void:
+	super(edit)
+	_show_count()
+
+
 func _command() -> String:
 	if values[&"way"] == Way.LIGHTEN:
 		return "lighten share=%s" % String.num(values[&"share"] / 100.0, 4)

@@ -122,6 +122,7 @@ func accept() -> bool:
 	var edit: TreeEdit = session.run(get_title(), command)
 	if edit != null:
 		cancel()
+		_clear()
 	return true
 
 

@@ -2,7 +2,13 @@
 extends HFlowContainer
 ## A tool's settings, in a row below the viewport.
 
-const _SLIDER_WIDTH: float = 90.0
+const _SLIDER_WIDTH: float = 80.0
+
+
+func _init() -> void:
+	# As long a row as there is room for.
+	size_flags_horizontal = Control.SIZE_EXPAND_FILL
+	add_theme_constant_override(&"h_separation", int(10.0 * _scale()))
 
 
 func add_text(text: String, tooltip: String = "") -> Label:

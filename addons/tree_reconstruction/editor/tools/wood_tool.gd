@@ -11,6 +11,9 @@ const _SECTION: String = "tree_reconstruction"
 var values: Dictionary[StringName, Variant] = {}
 
 var _queued: bool = false
+# Since the last edit, and where the mouse was then.
+var _rests: bool = false
+var _rested_at: Vector2
 var _restored: bool = false
 
 
@@ -39,6 +42,7 @@ func get_idle_command() -> String:
 
 func start() -> void:
 	_restore()
+	_rests = false
 	session.hover_changed.connect(_queue)
 	session.selection_changed.connect(_queue)
 	session.tree_changed.connect(_queue)
@@ -65,6 +69,9 @@ func input(camera: Camera3D, event: InputEvent) -> bool:
 		return _on_button(button)
 	var motion: InputEventMouseMotion = event as InputEventMouseMotion
 	if motion != null:
+		if _rests and motion.position.distance_to(_rested_at) >= DRAG_FROM * get_scale():
+			_rests = false
+			_queue()
 		_pointer = motion.position
 		return _move(motion)
 	var key: InputEventKey = event as InputEventKey
@@ -135,9 +142,14 @@ func cancel() -> void:
 	pass
 
 
-## An edit was done, or refused ([code]null[/code]).
-func _finish(_edit: TreeEdit) -> void:
-	_queue()
+## An edit was done, or refused ([code]null[/code]). What was done is looked at, without what would
+## be done next, until the mouse moves.
+func _finish(edit: TreeEdit) -> void:
+	if edit == null:
+		return
+	_rests = true
+	_rested_at = _pointer
+	_clear()
 
 
 ## Does several commands as one step. A single refused one refuses all.
@@ -206,18 +218,19 @@ func _look_again() -> void:
 func set_setting(value: Variant, key: StringName) -> void:
 	if values.get(key) != value:
 		values[key] = value
+		_rests = false
 		_queue()
 
 
 func _queue() -> void:
-	if not _queued:
+	if not _queued and not _rests:
 		_queued = true
 		_look.call_deferred()
 
 
 func _look() -> void:
 	_queued = false
-	if session.tool == self and session.tree != null and session.picker != null:
+	if not _rests and session.tool == self and session.tree != null and session.picker != null:
 		_look_again()
 
 
