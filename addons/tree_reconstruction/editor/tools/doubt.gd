@@ -188,10 +188,31 @@ func _look_again() -> void:
 	_show_count()
 
 
+func draw(overlay: Control) -> void:
+	super(overlay)
+	if get_place() == null or not is_seen_on(overlay):
+		return
+	var middle: Vector2 = overlay.size / 2.0
+	var seen: Vector2 = seen_at(get_place().at)
+	if not seen.is_finite():
+		# Behind the eye.
+		seen = middle + Vector2(0.0, overlay.size.y)
+	if Rect2(Vector2.ZERO, overlay.size).has_point(seen):
+		return
+	# It is out of sight: an arrow points there.
+	var scale: float = get_scale()
+	var way: Vector2 = (seen - middle).normalized()
+	var reach: Vector2 = (middle - Vector2.ONE * 30.0 * scale) / way.abs().max(Vector2.ONE * 1e-6)
+	var tip: Vector2 = middle + way * minf(reach.x, reach.y)
+	var side: Vector2 = way.orthogonal() * 9.0 * scale
+	var back: Vector2 = tip - way * 20.0 * scale
+	overlay.draw_colored_polygon([tip, back + side, back - side], _DOUBTFUL_COLOR)
+
+
 func get_hint_place() -> Vector2:
 	var place: Place = get_place()
 	var seen: Vector2 = seen_at(place.at) if place != null else _pointer
-	return seen if seen.is_finite() else _pointer
+	return seen.max(Vector2.ZERO) if seen.is_finite() else _pointer
 
 
 func _go_to(index: int) -> void:
