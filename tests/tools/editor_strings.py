@@ -6,8 +6,8 @@
     editor_strings.py --check    says what is out of date, missing, or translated with other placeholders; 1 if any is
     editor_strings.py --missing LANGUAGE    prints the words without a translation, one JSON string per line
 
-A word is found where it is written out: in tr("…"), in a control's text, title or tooltip, and in what is added to a
-menu or list. Parts that are joined by + are one.
+A word is found where it is written out: in tr("…"), in a control's text, title or tooltip, in what is added to a menu
+or list, and in calls of what makes the dock's widgets. Parts that are joined by + are one.
 """
 import json
 import pathlib
@@ -21,7 +21,10 @@ POT = FOLDER / "tree_reconstruction.pot"
 LANGUAGES = ("zh_CN", "zh_TW", "ja")
 SHOWN = r"text|title|tooltip_text|placeholder_text|dialog_text|ok_button_text|cancel_button_text"
 ADDED = r"add_item|add_check_item|add_radio_check_item|add_icon_item|add_icon_check_item|add_separator|add_submenu_node_item"
-BEGIN = re.compile(r"(?<![\w.])tr\(|(?<![\w])(?:%s)\s*=\s*(?!=)|\.(?:%s)\(" % (SHOWN, ADDED))
+BEGIN = re.compile(r"(?<!\w)tr\(|(?<![\w])(?:%s)\s*=\s*(?!=)|\.(?:%s)\(" % (SHOWN, ADDED))
+# Their arguments are words, but for names (&"name"), keys, and what has no capital and no blank.
+MAKERS = re.compile(r"(?<!func )\b(?:Widgets\s*\.\s*\w+|_add\w*|_on_choice\.bind)\s*\(")
+WORDS = re.compile(r"[A-Z][a-z]+(?![a-z]*[A-Z])|\S+ \S+")
 STRING = re.compile(r'"""(.*?)"""|"((?:[^"\\\n]|\\.)*)"|\'((?:[^\'\\\n]|\\.)*)\'', re.S)
 PLACEHOLDER = re.compile(r"%[-+0-9.*]*[sdfxcv%]|\{\w*\}")
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r", '"': '"', "'": "'", "\\": "\\"}
@@ -50,6 +53,29 @@ def expression(source, at):
     return None if wanted or not parts else "".join(parts)
 
 
+def arguments(source, at):
+    """The words among the arguments of a call whose parenthesis was opened before `at`."""
+    depth, words = 1, []
+    while depth > 0 and at < len(source):
+        if source[at] in "\"'":
+            match = STRING.match(source, at)
+            named = source[at - 1] in "&^$"
+            word = None if named else expression(source, at)
+            # The parts of a joined word are one: go on behind the last.
+            if word is not None and WORDS.match(word) and re.search("[A-Za-z]{3}", PLACEHOLDER.sub("", word)):
+                words.append(word)
+            while match:
+                at = match.end()
+                joined = re.compile(r"[\s)]*\+[\s(]*").match(source, at)
+                depth -= joined[0].count(")") - joined[0].count("(") if joined else 0
+                match = STRING.match(source, joined.end()) if joined else None
+                at = joined.end() if joined and not match else at
+            continue
+        depth += (source[at] in "([{") - (source[at] in ")]}")
+        at += 1
+    return words
+
+
 def without_comments(source):
     """Comments made blank; a # in a string is none."""
     return re.sub(
@@ -64,11 +90,12 @@ def find_words():
     words = {}
     for path in sorted([ADDON / "plugin.gd", *(ADDON / "editor").rglob("*.gd")]):
         source = without_comments(path.read_text(encoding="utf-8"))
-        for match in BEGIN.finditer(source):
-            word = expression(source, match.end())
-            if word is None or not re.search(r"[A-Za-z]{2}", word):
-                continue
-            words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
+        found = [(match.start(), expression(source, match.end())) for match in BEGIN.finditer(source)]
+        for match in MAKERS.finditer(source):
+            found += [(match.start(), word) for word in arguments(source, match.end())]
+        for _, word in sorted((place, word) for place, word in found if word is not None):
+            if re.search(r"[A-Za-z]{2}", word):
+                words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
     return words
 
 
