@@ -86,6 +86,9 @@ func take_up(node: TreeInstance3D) -> TreeInstance3D:
 func click_node(node: Node) -> bool:
 	if not await until(func() -> bool: return node_item(node) != null, "the node is in the dock"):
 		return false
+	if EditorInterface.get_selection().get_selected_nodes() == [node]:
+		# A second click would begin to rename it.
+		return true
 	await user.click(await item_place(node_list(), node_item(node)))
 	return await until(
 		func() -> bool: return EditorInterface.get_selection().get_selected_nodes() == [node],

@@ -16,8 +16,10 @@ func run() -> void:
 	await _cut(node)
 	var edited: PackedByteArray = bytes(node.reconstruction)
 	await save_scene()
+	var old: int = node.get_instance_id()
+	node = null
 	EditorInterface.reload_scene_from_path("res://reload.tscn")
-	await until(func() -> bool: return not is_instance_valid(node), "the scene is loaded again")
+	await until(func() -> bool: return not is_instance_id_valid(old), "the scene is loaded again")
 	node = EditorInterface.get_edited_scene_root().get_node(^"Tree") as TreeInstance3D
 	check_equal(bytes(node.reconstruction), edited, "the tree")
 	await take_up(node)
