@@ -1,8 +1,8 @@
 @tool
 extends RefCounted
-## Icons for controls: those of the theme, and our own pictures, which are drawn here at the editor's
-## scale and in colours for its theme. They need not be imported before, which they are not when a
-## project is opened for the first time.
+## Icons for controls: those of the theme, and our own pictures, which are drawn here at the
+## editor's scale and in colours for its theme. They need not be imported before, which they are
+## not when a project is opened for the first time.
 
 # The palette of the editor's icons on dark grounds, and what stands for it on bright ones.
 const _ON_BRIGHT: Dictionary[String, String] = {
