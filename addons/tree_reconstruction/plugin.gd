@@ -37,7 +37,8 @@ func _enter_tree() -> void:
 	_export_skip = _load("export_skip.gd").new()
 	add_export_plugin(_export_skip)
 	_session = _load("session.gd").new(get_undo_redo())
-	_session.set_translation_domain(DOMAIN)
+	for speaker: RefCounted in [_session, _session.local_trees, _session.scan]:
+		speaker.set_translation_domain(DOMAIN)
 	_session.view.restore(EditorInterface.get_editor_settings())
 	_session.said.connect(_on_said)
 	for path: String in _PARTS:

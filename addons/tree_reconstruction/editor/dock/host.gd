@@ -11,13 +11,15 @@ var _dock: Dock
 func _init(dock: Dock) -> void:
 	_dock = dock
 	name = &"TreeReconstruction"
-	title = "Tree"
+	title = dock.tr("Tree")
 	layout_key = "TreeReconstruction"
 	default_slot = EditorDock.DOCK_SLOT_RIGHT_UL
 	available_layouts = EditorDock.DOCK_LAYOUT_VERTICAL | EditorDock.DOCK_LAYOUT_FLOATING
 	# Not loaded: in a project that was just made it is not imported yet.
 	dock_icon = Icons.find(dock, "res://addons/tree_reconstruction/icons/TreeReconstruction.svg")
-	tooltip_text = "How the edited tree was made, what it measures, its leaves and variants."
+	tooltip_text = dock.tr(
+		"How the edited tree was made, what it measures, its leaves and variants."
+	)
 	add_child(dock)
 
 

@@ -21,6 +21,7 @@ var _job: Jobs.Job
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 	_session.jobs.changed.connect(_on_jobs_changed)
 

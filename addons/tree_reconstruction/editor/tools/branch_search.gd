@@ -15,6 +15,7 @@ var _job: Session.Jobs.Job
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 
 

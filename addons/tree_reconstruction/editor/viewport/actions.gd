@@ -38,6 +38,7 @@ var _session: Session
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 	views = CameraViews.new(session)
 	turntable = Turntable.new(session)

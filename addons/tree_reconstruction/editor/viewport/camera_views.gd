@@ -44,6 +44,7 @@ var _left: float = 0.0
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 
 

@@ -14,6 +14,7 @@ var _text_of: Array = []
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 
 

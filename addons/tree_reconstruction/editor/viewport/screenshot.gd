@@ -11,6 +11,7 @@ var _session: Session
 
 
 func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 
 

@@ -14,6 +14,7 @@ var _column: VBoxContainer
 
 
 func _init(session: Session, shortcuts: Shortcuts) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 	_shortcuts = shortcuts
 	name = &"TreeTools"

@@ -18,6 +18,7 @@ var _colors: PopupMenu
 
 
 func _init(session: Session, shortcuts: Shortcuts) -> void:
+	set_translation_domain(session.get_translation_domain())
 	_session = session
 	_shortcuts = shortcuts
 	name = &"TreeViewMenu"
