@@ -6,6 +6,8 @@ const Session: GDScript = preload("../session.gd")
 const Picker: GDScript = preload("picker.gd")
 const NO_NODE: int = TreeReconstruction.NO_NODE
 const _RING: Color = Color(1.0, 0.95, 0.4)
+# How far down the viewport's own buttons reach, in pixels at the editor's scale of 1.
+const _BUTTONS: float = 50.0
 
 var _session: Session
 # The figures, and what they are of: they are made once and drawn often.
@@ -46,12 +48,12 @@ func _draw_label(overlay: Control, at: Vector2, off: float, scale: float) -> voi
 	var box: Rect2 = Rect2(
 		at, font.get_string_size(text, HORIZONTAL_ALIGNMENT_LEFT, -1, size) + margin * 2.0
 	)
+	# Above the ring and to the right; further left where that ends outside, and below where the
+	# viewport has its own buttons.
 	box.position += Vector2(off, -off - box.size.y)
-	if box.end.x > overlay.size.x:
-		box.position.x = at.x - off - box.size.x
-	if box.position.y < 0.0:
+	box.position.x = clampf(box.position.x, margin.x, overlay.size.x - box.size.x - margin.x)
+	if box.position.y < _BUTTONS * scale:
 		box.position.y = at.y + off
-	box.position = box.position.max(Vector2.ZERO)
 	overlay.draw_rect(box, Color(0.08, 0.09, 0.1, 0.82))
 	overlay.draw_string(
 		font,

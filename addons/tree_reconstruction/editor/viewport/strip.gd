@@ -8,11 +8,13 @@ const ViewState: GDScript = preload("../view_state.gd")
 const Picker: GDScript = preload("picker.gd")
 # Seconds that a sentence stays before the tool's hint comes back.
 const _STAYS: float = 12.0
+# Always as many lines, so that the viewport above keeps its size.
+const _LINES: int = 2
 
 var _session: Session
 var _title: Label
 var _settings: Control
-var _place: HFlowContainer
+var _place: HBoxContainer
 var _points: HBoxContainer
 var _size: HSlider
 var _colors: OptionButton
@@ -33,8 +35,8 @@ func _init(session: Session) -> void:
 	add_child(margin)
 	var rows: VBoxContainer = VBoxContainer.new()
 	margin.add_child(rows)
-	_place = HFlowContainer.new()
-	_place.add_theme_constant_override(&"h_separation", int(10 * Picker.get_scale()))
+	_place = HBoxContainer.new()
+	_place.add_theme_constant_override(&"separation", int(10 * Picker.get_scale()))
 	rows.add_child(_place)
 	_title = Label.new()
 	_title.theme_type_variation = &"HeaderSmall"
@@ -45,7 +47,7 @@ func _init(session: Session) -> void:
 	_status.name = &"Status"
 	_status.text_overrun_behavior = TextServer.OVERRUN_TRIM_ELLIPSIS
 	_status.autowrap_mode = TextServer.AUTOWRAP_WORD_SMART
-	_status.max_lines_visible = 2
+	_status.max_lines_visible = _LINES
 	_status.mouse_filter = Control.MOUSE_FILTER_PASS
 	_status.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	rows.add_child(_status)
@@ -67,6 +69,7 @@ func update_tool() -> void:
 	if _settings != null:
 		# As wide as it can be, since it breaks into rows.
 		_settings.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+		_settings.size_flags_vertical = Control.SIZE_SHRINK_CENTER
 		_place.add_child(_settings)
 		_place.move_child(_settings, 1)
 	_left = 0.0
@@ -100,6 +103,15 @@ func update(delta: float) -> void:
 			_show_hint()
 
 
+func _notification(what: int) -> void:
+	if what == NOTIFICATION_THEME_CHANGED and _status != null:
+		var line: float = get_theme_font(&"font", &"Label").get_height(
+			get_theme_font_size(&"font_size", &"Label")
+		)
+		var between: int = get_theme_constant(&"line_spacing", &"Label")
+		_status.custom_minimum_size.y = _LINES * (line + between)
+
+
 func _show_hint() -> void:
 	var hint: String = tr("Press Tab or switch 'Edit skeleton' on to edit the tree's wood.")
 	if _session.view.editing:
@@ -113,6 +125,8 @@ func _show_hint() -> void:
 
 func _make_points() -> void:
 	_points = HBoxContainer.new()
+	_points.size_flags_horizontal = Control.SIZE_SHRINK_END | Control.SIZE_EXPAND
+	_points.size_flags_vertical = Control.SIZE_SHRINK_CENTER
 	_points.name = &"Points"
 	var label: Label = Label.new()
 	label.text = tr("Points:")
