@@ -14,6 +14,8 @@ const Fidelity := preload("fidelity.gd")
 const LString := preload("lstring.gd")
 const Twigs := preload("twigs.gd")
 const Leaves := preload("leaf_rule.gd")
+const Variants := preload("variants.gd")
+const Export := preload("export.gd")
 
 # While a tree is dragged or a slider moves, what is shown follows so often.
 const _SECONDS: float = 0.1
@@ -60,6 +62,8 @@ func _init(session: Session) -> void:
 		Leaves.new(session),
 		Twigs.new(session),
 		LString.new(session),
+		Variants.new(session),
+		Export.new(session),
 	]:
 		sections[section.get_id()] = section
 		list.add_child(section)

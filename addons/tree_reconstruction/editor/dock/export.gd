@@ -1,0 +1,214 @@
+@tool
+extends "section.gd"
+## Takes the tree out of the addon: as a plain scene, as meshes, as a file of another program.
+
+const Files := preload("files.gd")
+const _FORMATS: PackedStringArray = ["glb", "gltf", "obj", "ply", "txt", "csv", "lstring"]
+
+var levels: SpinBox
+var collision: CheckBox
+var bake: Button
+var meshes: Button
+var export_button: Button
+var log_button: Button
+
+var _files: Files = Files.new()
+
+
+func get_id() -> StringName:
+	return &"export"
+
+
+func close() -> void:
+	_files.close()
+
+
+## Writes the tree as a scene that needs neither the addon nor its library.
+func bake_to(path: String) -> void:
+	_build_parts(path, _on_built_scene)
+
+
+## Writes the mesh of each level into a file of its own, named after [param path].
+func bake_meshes_to(path: String) -> void:
+	_build_parts(path, _on_built_meshes)
+
+
+## Writes the tree in the format that the extension of [param path] names.
+func export_to(path: String) -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	session.jobs.start(
+		tr("Writing %s") % path.get_file(),
+		_export.bind(worker, session.tree, path),
+		_on_exported.bind(worker, path),
+		worker
+	)
+
+
+## Writes the user's edits as a script of commands.
+func save_log_to(path: String) -> void:
+	var file: FileAccess = FileAccess.open(path, FileAccess.WRITE)
+	var written: bool = file != null and file.store_string(session.tree.edit_log)
+	if file != null:
+		file.close()
+	_tell(path, OK if written else FileAccess.get_open_error())
+
+
+func _build() -> void:
+	title = "Bake and export"
+	tooltip_text = "Takes the tree to games and programs that don't have this addon."
+	folded = true
+	levels = Widgets.number(1, 5, 1)
+	levels.value = 4
+	(
+		body
+		. add_child(
+			(
+				Widgets
+				. line(
+					"Levels of detail",
+					"How many meshes take turns by their distance. Each has about a quarter of the triangles.",
+					levels
+				)
+			)
+		)
+	)
+	collision = CheckBox.new()
+	collision.text = "With collision"
+	collision.tooltip_text = "Adds a body of capsules along the trunk and the stout branches."
+	collision.button_pressed = true
+	body.add_child(collision)
+	bake = Widgets.button(
+		"Bake to scene…",
+		"Writes a plain scene with the tree's meshes and materials. It needs no addon.",
+		&"PackedScene"
+	)
+	bake.pressed.connect(_on_bake_pressed)
+	meshes = Widgets.button(
+		"Bake meshes…",
+		"Writes the mesh of each level, bark and leaves, for tools that scatter meshes.",
+		&"ArrayMesh"
+	)
+	meshes.pressed.connect(_on_meshes_pressed)
+	export_button = Widgets.button(
+		"Export…",
+		"Writes a model (GLB, glTF, OBJ) or the skeleton (PLY, treefile, CSV, L-string).",
+		&"ExternalLink"
+	)
+	export_button.pressed.connect(_on_export_pressed)
+	log_button = Widgets.button(
+		"Save edits…", "Writes all edits as text. It can be done again on another tree.", &"Script"
+	)
+	log_button.pressed.connect(_on_log_pressed)
+	body.add_child(buttons([bake, meshes, export_button, log_button]))
+
+
+func _refresh() -> void:
+	var empty: bool = session.tree == null or session.tree.is_empty()
+	for button: Button in [bake, meshes, export_button]:
+		button.disabled = empty
+	log_button.disabled = empty or session.tree.edit_log.is_empty()
+
+
+func _build_parts(path: String, done: Callable) -> void:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = int(levels.value)
+	baker.collision = collision.button_pressed
+	baker.leaves = session.node.leaves
+	baker.wind = session.node.wind
+	baker.bark_material = session.node.bark_material
+	baker.leaf_material = session.node.leaf_material
+	session.jobs.start(
+		tr("Baking %s") % path.get_file(),
+		_bake.bind(baker, session.tree),
+		done.bind(baker, session.tree, path)
+	)
+
+
+static func _bake(
+	job: Session.Jobs.Job, baker: TreeBaker, tree: TreeReconstruction
+) -> TreeBaker.Parts:
+	return baker.build(tree, func() -> bool: return job.cancelled)
+
+
+func _on_built_scene(
+	parts: TreeBaker.Parts,
+	_job: Session.Jobs.Job,
+	baker: TreeBaker,
+	tree: TreeReconstruction,
+	path: String
+) -> void:
+	var scene: PackedScene = baker.make_scene(tree, parts)
+	_tell(path, ResourceSaver.save(scene, path, ResourceSaver.FLAG_COMPRESS))
+
+
+func _on_built_meshes(
+	parts: TreeBaker.Parts,
+	_job: Session.Jobs.Job,
+	baker: TreeBaker,
+	tree: TreeReconstruction,
+	path: String
+) -> void:
+	var made: Array[ArrayMesh] = baker.make_meshes(tree, parts)
+	for level: int in made.size():
+		var each: String = "%s_level%d.%s" % [path.get_basename(), level, path.get_extension()]
+		_tell(each, ResourceSaver.save(made[level], each, ResourceSaver.FLAG_COMPRESS))
+
+
+static func _export(
+	_job: Session.Jobs.Job, worker: TreeReconstructor, tree: TreeReconstruction, path: String
+) -> Error:
+	return worker.export_file(tree, path)
+
+
+func _on_exported(
+	error: Error, _job: Session.Jobs.Job, worker: TreeReconstructor, path: String
+) -> void:
+	if error == OK:
+		_tell(path, OK)
+	else:
+		session.say(worker.get_error_message(), session.Kind.ERROR)
+
+
+func _tell(path: String, error: Error) -> void:
+	if error == OK:
+		session.say(tr("The tree is in %s.") % path)
+		Files.tell_editor(path)
+	else:
+		session.say(
+			tr("%s can't be written: %s.") % [path, error_string(error)], session.Kind.ERROR
+		)
+
+
+func _on_bake_pressed() -> void:
+	_files.ask(
+		tr("Bake to Scene"),
+		Files.beside(session.tree, "scn").get_basename() + "_baked.scn",
+		PackedStringArray(["*.scn;" + tr("Scene"), "*.tscn;" + tr("Scene as text")]),
+		bake_to
+	)
+
+
+func _on_meshes_pressed() -> void:
+	_files.ask(
+		tr("Bake Meshes"),
+		Files.beside(session.tree, "res").get_basename() + "_mesh.res",
+		PackedStringArray(["*.res;" + tr("Mesh")]),
+		bake_meshes_to
+	)
+
+
+func _on_export_pressed() -> void:
+	var filters: PackedStringArray = []
+	for extension: String in _FORMATS:
+		filters.append("*.%s" % extension)
+	_files.ask(tr("Export Tree"), Files.beside(session.tree, "glb"), filters, export_to, true)
+
+
+func _on_log_pressed() -> void:
+	_files.ask(
+		tr("Save Edits"),
+		Files.beside(session.tree, "edits.txt"),
+		PackedStringArray(["*.txt;" + tr("Text")]),
+		save_log_to,
+		true
+	)

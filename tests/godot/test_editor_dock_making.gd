@@ -1,0 +1,103 @@
+extends "./dock_suite.gd"
+## The dock "Tree": variants, baking and exporting.
+
+const Variants := preload("res://addons/tree_reconstruction/editor/dock/variants.gd")
+const Export := preload("res://addons/tree_reconstruction/editor/dock/export.gd")
+
+
+func _exports() -> Export:
+	return _dock.sections[&"export"] as Export
+
+
+func test_variants_are_drawn_and_put_beside_the_tree() -> void:
+	_begin(grown_tree(6))
+	var shown: Variants = _dock.sections[&"variants"] as Variants
+	shown.draw_pictures()
+	await _finish()
+	var first: Image = (shown.pictures[0].icon as ImageTexture).get_image()
+	var second: Image = (shown.pictures[1].icon as ImageTexture).get_image()
+	check(first.get_data() != second.get_data(), "Two variants look the same.")
+	shown.more.pressed.emit()
+	await _finish()
+	var third: Image = (shown.pictures[0].icon as ImageTexture).get_image()
+	check(first.get_data() != third.get_data(), "More shows the same ones.")
+	var parent: Node = _session.node
+	shown.pictures[0].pressed.emit()
+	shown.pictures[1].pressed.emit()
+	check_equal(parent.get_child_count(), 2, "variants in the scene")
+	check_equal(_undo.get_history_count(), 2, "steps")
+	var one: TreeInstance3D = parent.get_child(0)
+	var other: TreeInstance3D = parent.get_child(1)
+	check_equal(one.owner, parent, "the owner, without which it is not saved")
+	check(one.position.distance_to(other.position) > 0.5, "They stand in one place.")
+	check(one.reconstruction.skeleton != other.reconstruction.skeleton, "They are the same tree.")
+	_undo.undo()
+	check_equal(parent.get_child_count(), 1, "variants after undo")
+	_undo.redo()
+	check_equal(parent.get_child_count(), 2, "variants after redo")
+	check_equal(other.owner, parent, "the owner after redo")
+	_end()
+
+
+func test_pictures_follow_edits_once_the_tree_is_calm() -> void:
+	_begin(grown_tree(6))
+	var shown: Variants = _dock.sections[&"variants"] as Variants
+	shown.draw_pictures()
+	await _finish()
+	var before: Texture2D = shown.pictures[0].icon
+	_session.run("Prune", "prune_order order=1")
+	_frame()
+	check(_session.jobs.get_running().is_empty(), "They are drawn at once.")
+	shown._calm.timeout.emit()
+	await _finish()
+	check(shown.pictures[0].icon != before, "They are not drawn again.")
+	shown._calm.timeout.emit()
+	check(_session.jobs.get_running().is_empty(), "They are drawn without need.")
+	_end()
+
+
+func test_baking_writes_a_scene() -> void:
+	_begin(grown_tree(6))
+	_exports().levels.value = 2
+	_exports().collision.button_pressed = false
+	var path: String = folder.path_join("baked.scn")
+	_exports().bake_to(path)
+	await _finish()
+	check(path in _said[-1], _said[-1])
+	var root: Node = (load(path) as PackedScene).instantiate()
+	check_equal(root.get_child_count(), 2, "levels")
+	root.free()
+	_exports().bake_meshes_to(folder.path_join("oak.res"))
+	await _finish()
+	for level: int in 2:
+		var mesh: Mesh = load(folder.path_join("oak_level%d.res" % level)) as Mesh
+		check_equal(mesh.get_surface_count(), 2, "surfaces of level %d" % level)
+	_end()
+
+
+func test_every_format_is_written_or_says_why_not() -> void:
+	_begin(_scanned())
+	for extension: String in Export._FORMATS:
+		var path: String = folder.path_join("tree." + extension)
+		_exports().export_to(path)
+		await _finish()
+		check(FileAccess.file_exists(path), "%s: %s" % [extension, _said[-1]])
+	var nowhere: String = folder.path_join("no/such/folder/tree.glb")
+	_exports().export_to(nowhere)
+	await _finish()
+	check_sentence(_said[-1], "the failure")
+	_end()
+
+
+func test_edits_are_saved_as_text() -> void:
+	_begin(grown_tree(6))
+	check(_exports().log_button.disabled, "No edits can be saved.")
+	_session.run("Prune", "prune_order order=1")
+	_frame()
+	check(not _exports().log_button.disabled, "Edits can't be saved.")
+	var path: String = folder.path_join("edits.txt")
+	_exports().save_log_to(path)
+	check_equal(FileAccess.get_file_as_string(path), _session.tree.edit_log, "the file")
+	_exports().save_log_to(folder.path_join("no/such/folder/edits.txt"))
+	check_sentence(_said[-1], "the failure")
+	_end()
