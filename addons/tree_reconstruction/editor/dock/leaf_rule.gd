@@ -132,7 +132,7 @@ func _build() -> void:
 			LeafRule.FORM_NEEDLES
 		]
 	)
-	form.item_selected.connect(_on_choice.bind(form, &"form", "Leaf Form"))
+	form.item_selected.connect(_on_choice.bind(form, &"form"))
 	(
 		body
 		. add_child(
@@ -150,9 +150,7 @@ func _build() -> void:
 		PackedStringArray(["Alternate", "Opposite", "Decussate", "Whorled", "Spiral", "Fascicled"]),
 		range(6)
 	)
-	arrangement.item_selected.connect(
-		_on_choice.bind(arrangement, &"arrangement", "Leaf Arrangement")
-	)
+	arrangement.item_selected.connect(_on_choice.bind(arrangement, &"arrangement"))
 	body.add_child(
 		Widgets.line("Stand", "How leaves follow one another along a twig.", arrangement)
 	)
@@ -291,8 +289,9 @@ func _on_slider_changed(value: float, property: StringName) -> void:
 	_change(property, tr("Change Leaves: %s") % property.capitalize(), value, true)
 
 
-func _on_choice(_index: int, list: OptionButton, property: StringName, step: String) -> void:
-	_change(property, tr(step), list.get_selected_metadata(), false)
+func _on_choice(_index: int, list: OptionButton, property: StringName) -> void:
+	var step: String = tr("Leaf Form") if property == &"form" else tr("Leaf Arrangement")
+	_change(property, step, list.get_selected_metadata(), false)
 
 
 func _on_preset_selected(_index: int) -> void:
