@@ -45,12 +45,12 @@ func draw(overlay: Control) -> void:
 	var border: Vector2 = Vector2(8, 5) * scale
 	var origin: Vector2 = get_hint_place()
 	var at: Vector2 = origin + Vector2(18, 24) * scale
-	# It stays inside of the viewport.
-	if at.x + size.x + 2.0 * border.x > overlay.size.x:
-		at.x = origin.x - 18.0 * scale - size.x - 2.0 * border.x
-	at.y = minf(at.y, overlay.size.y - size.y - 2.0 * border.y)
-	at.x = maxf(at.x, 0.0)
-	overlay.draw_rect(Rect2(at, size + 2.0 * border), Color(0.06, 0.06, 0.07, 0.78))
+	# It stays inside of the viewport; at its lower border above the place, which it must not hide.
+	var box: Vector2 = size + 2.0 * border
+	if at.y + box.y > overlay.size.y:
+		at.y = origin.y - 24.0 * scale - box.y
+	at = at.min(overlay.size - box - Vector2.ONE * 4.0 * scale).max(Vector2.ONE * 4.0 * scale)
+	overlay.draw_rect(Rect2(at, box), Color(0.06, 0.06, 0.07, 0.78))
 	var color: Color = Color(1.0, 0.72, 0.6) if _refused else Color(0.95, 0.95, 0.95)
 	text.draw(overlay.get_canvas_item(), at + border, color)
 
