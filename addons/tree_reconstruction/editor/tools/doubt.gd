@@ -22,7 +22,7 @@ class Place:
 	var node: int
 	var at: Vector3
 	var direction: Vector3
-	## Indices of the points that nothing explains.
+	## Indices of the points that nothing explains, in the scan's wood.
 	var points: PackedInt32Array
 	var text: String
 
@@ -146,7 +146,7 @@ func accept() -> bool:
 	if place == null or is_busy():
 		return false
 	if place.kind == Kind.DOUBTFUL:
-		_decide()
+		_decide(true)
 	else:
 		_search.find(tr("Find a missing branch"), place.node, place.direction, {"reach": 0.0})
 	return true
@@ -160,7 +160,7 @@ func reject() -> void:
 	if place.kind == Kind.DOUBTFUL:
 		if session.run(tr("Remove a doubtful branch"), "remove nodes=%d" % place.node) == null:
 			return
-	_decide()
+	_decide(place.kind == Kind.MISSING)
 
 
 ## The place at hand, or [code]null[/code].
@@ -224,9 +224,11 @@ func _go_to(index: int) -> void:
 	_queue()
 
 
-# The place at hand is done with: the next one takes its number.
-func _decide() -> void:
-	_decided[get_place().get_key()] = true
+# The place at hand is done with: the next one takes its number. One that the user wants as it is
+# does not come back; what was removed or found does, if that is undone.
+func _decide(stays: bool) -> void:
+	if stays:
+		_decided[get_place().get_key()] = true
 	_places.remove_at(_at)
 	if _places.is_empty():
 		_at = -1
@@ -314,7 +316,7 @@ func _on_search_ended(added: PackedInt32Array) -> void:
 		# What was said tells why. It stays until the user skips it.
 		_queue()
 	else:
-		_decide()
+		_decide(false)
 		session.select(added)
 
 

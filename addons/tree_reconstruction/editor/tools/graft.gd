@@ -10,6 +10,7 @@ var _library: TwigLibrary
 var _seed_box: Range
 var _roll_box: Range
 var _text: LineEdit
+var _choice: Variant
 
 
 func get_id() -> StringName:
@@ -141,6 +142,20 @@ func _finish(edit: TreeEdit) -> void:
 	super(edit)
 
 
+func _look_again() -> void:
+	super()
+	if not is_instance_valid(_choice):
+		return
+	# The dock chooses twigs, too.
+	var choice: OptionButton = _choice
+	for item: int in choice.item_count:
+		if session.scion == "twig=%s" % choice.get_item_metadata(item):
+			choice.select(item)
+			return
+	if choice.get_item_metadata(choice.selected) != null:
+		choice.select(0)
+
+
 func _words_of_graft(twig_key: String) -> String:
 	var source: String = session.scion
 	if source.begins_with("twig="):
@@ -199,6 +214,7 @@ func _add_source(strip: Strip) -> void:
 	choice.set_item_tooltip(choice.item_count - 1, tr("A branch that you write yourself."))
 	choice.select(chosen)
 	choice.item_selected.connect(_on_source_chosen.bind(choice))
+	_choice = choice
 	_text = LineEdit.new()
 	_text.placeholder_text = "!(0.01) F(0.3) [+(40) F(0.2)] F(0.2)"
 	_text.tooltip_text = tr("The branch as an L-string. Enter takes it.")
