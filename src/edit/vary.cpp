@@ -269,7 +269,7 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
     for (int32_t c = carried_begin_[slot.limb]; c < carried_begin_[slot.limb + 1]; c++) {
         const Carried& one = carried_[c];
         const DVec3 from = one.node < 0 ? slot.foot : work.positions[first + one.node];
-        work.cells.push_back(foliage_.cells[one.cell]);
+        work.cells.push_back(one.cell);
         work.places.push_back(from + slot.turn * one.offset * slot.scale);
     }
 }

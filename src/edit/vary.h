@@ -84,7 +84,7 @@ class VariantMaker {
     void grow(Work& work, const Slot& slot) const;
     void bear(Work& work, const Slot& slot, int32_t child, uint64_t key, bool again) const;
     int32_t choose_shape(Work& work, int32_t child, const DMat3& turn, const DVec3& way, uint64_t key) const;
-    Foliage settle(std::vector<FoliageCell>& cells, const std::vector<DVec3>& places) const;
+    Foliage settle(const std::vector<uint32_t>& cells, const std::vector<DVec3>& places) const;
 
     Tree tree_;
     Foliage foliage_;
@@ -96,7 +96,8 @@ class VariantMaker {
     std::vector<DVec3> steps_;
     std::vector<double> lengths_, along_, radii_;
     std::vector<uint8_t> flags_;
-    std::vector<Carried> carried_;  // by limb
+    std::vector<Carried> carried_;   // by limb
+    std::vector<uint8_t> in_crowd_;  // by cell: others touch it
     std::vector<int32_t> carried_begin_;
 };
 

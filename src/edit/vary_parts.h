@@ -33,7 +33,7 @@ struct VariantMaker::Work {
     double more_nodes = 0.0, more_wood = 0.0;
     // The way along the trunk, 0..1, turns what it bears: a start, an even twist, and a swing.
     double twist_start = 0.0, twist_even = 0.0, twist_swing = 0.0;
-    std::vector<FoliageCell> cells;
+    std::vector<uint32_t> cells;  // of the foliage, and where they went
     std::vector<DVec3> places;
     std::vector<DVec3> tilts;  // by node of the limb at work
 };

@@ -283,6 +283,26 @@ TEST(Vary, LeavesThatTheScanSawGoWithTheirWood) {
     }
 }
 
+TEST(Vary, FoliageOnTreesOfAnyShape) {
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        const Tree tree = seed % 2 ? test::wild_tree(seed, 2 + static_cast<int>(random.below(60)))
+                                   : test::random_tree(seed, 100);
+        std::vector<Vec3> points;
+        const DVec3 middle = tree.bounds().centre();
+        const double reach = std::pow(10.0, random.uniform(-2.0, 2.0));
+        for (uint32_t i = 1 + random.below(300); i > 0; i--)
+            points.emplace_back(middle + reach * random.uniform() * random.direction());
+        const VariantMaker maker(tree, gather_foliage(points, {}));
+        for (const double amount : {1e-9, 0.5, 1.0}) {
+            const TreeVariant variant = maker.make(seed, amount);
+            EXPECT_NO_THROW(check_foliage(variant.foliage));
+            EXPECT_LE(variant.foliage.cells.size(), points.size());
+        }
+    }
+}
+
 TEST(VaryOnScans, VariantsStayOfTheirKind) {
     const char* scans = std::getenv("TREEREC_SCANS");
     if (!scans) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of scans";
