@@ -22,6 +22,8 @@ func run() -> void:
 	for words: Array in [[&"cut", "c"], [&"smooth", "m"], [&"simplify", "i"]]:
 		await step("a click with the tool %s does what was shown" % words[0])
 		await _click_branch(words[0], words[1])
+	await step("a tool's settings are remembered")
+	await _remember_settings()
 	await step("a twig grows at once on the selected node")
 	await _grow_twig()
 	await step("a line is drawn, and what lies beyond it cut away")
@@ -69,6 +71,21 @@ func _click_branch(tool: StringName, key: String) -> void:
 	await user.click(at)
 	await until(func() -> bool: return bytes(_of) != _before, "it is done")
 	await _undo()
+
+
+func _remember_settings() -> void:
+	if not await take_tool(&"cut", "c"):
+		return
+	var cut: RefCounted = session().get(&"tool")
+	cut.call(&"set_setting", 0.125, &"stub")
+	if not await take_tool(&"select", "q"):
+		return
+	# As a new start of the editor makes it.
+	var again: RefCounted = (cut.get_script() as GDScript).new()
+	var strip: Control = again.call(&"make_settings")
+	check_equal((again.get(&"values") as Dictionary)[&"stub"], 0.125, "the stub")
+	strip.free()
+	cut.call(&"set_setting", 0.0, &"stub")
 
 
 func _grow_twig() -> void:
