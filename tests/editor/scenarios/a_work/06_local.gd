@@ -56,8 +56,8 @@ func run() -> void:
 	await save_scene()
 
 
-# The same scan, where every third point is some tenths of a millimetre off. A point of the sample is
-# three doubles and three bytes.
+# The same scan, where every third point is some tenths of a millimetre off. A point of the sample
+# is three doubles and three bytes.
 func _shift_scan(to: String) -> void:
 	var data: PackedByteArray = FileAccess.get_file_as_bytes(sample)
 	var head: int = data.slice(0, 2000).get_string_from_ascii().find("end_header") + 11

@@ -1,0 +1,133 @@
+@tool
+extends "../../test_plugin/garden.gd"
+## The way of docs/first_tree.md, as it is written there. Its pictures are made here:
+## tests/editor/make_pictures.sh cuts them out.
+
+const SCAN: String = "res://trees/my_tree.ply"
+
+var _node: TreeInstance3D
+var _of: TreeReconstruction
+
+
+func run() -> void:
+	await step("a scan in the project is a tree in the scene after two clicks")
+	DirAccess.make_dir_absolute("res://trees")
+	await drop_file(sample, SCAN)
+	var made: TreeReconstruction = await imported(SCAN)
+	if made == null or not await _new_scene():
+		return
+	await until(func() -> bool: return file_item(SCAN) != null, "the file is in the dock")
+	await user.click(await item_place(file_list(), file_item(SCAN)), User.RIGHT)
+	await until(func() -> bool: return open_menu() != null, "a menu opens")
+	await _see_last_entry()
+	await picture("tour-menu")
+	if not await choose("Add Tree to Scene"):
+		return
+	var root: Node = EditorInterface.get_edited_scene_root()
+	if not await until(func() -> bool: return root.get_child_count() == 1, "the tree is there"):
+		return
+	_node = root.get_child(0) as TreeInstance3D
+	if await take_up(_node) == null:
+		return
+	_of = made
+	await _look_at_it()
+	await _work_on_it()
+	await user.key("q")
+	EditorInterface.save_scene()
+	await until(func() -> bool: return not is_unsaved(), "all is saved")
+
+
+func _look_at_it() -> void:
+	await _go_near()
+	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
+	await picture("tour-tree")
+
+	await step("the scan is seen on its tree")
+	await user.key("p")
+	if await until(func() -> bool: return not session().scan.points.is_empty(), "the scan is read"):
+		await user.key("l")
+		await user.key("t")
+		await user.frames(20)
+		await picture("tour-scan")
+		await user.key("t")
+		await user.key("l")
+	await user.key("p")
+
+
+func _work_on_it() -> void:
+	await step("a branch is selected and deleted")
+	var branch: int = clear_nodes(_node, _branches_of_middle_size())[0]
+	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
+	await until(func() -> bool: return session().selection.size() > 5, "a branch is selected")
+	await picture("tour-branch")
+	await user.key("Delete")
+	if not await until(func() -> bool: return _node.reconstruction != _of, "it is cut"):
+		return
+	_of = _node.reconstruction
+
+	await step("a twig of the library is grafted")
+	if not await take_tool(&"graft", "j"):
+		return
+	var tip: int = clear_nodes(_node, _of.select_nodes("leaves&height:3..7"))[0]
+	await user.move(node_on_screen(_node, tip))
+	await until(func() -> bool: return not session().tool.get_ghosts().is_empty(), "it is shown")
+	await picture("tour-graft")
+	await user.click(node_on_screen(_node, tip))
+	await until(func() -> bool: return not _of.get_node_children(tip).is_empty(), "it is grafted")
+
+	await step("the leaves become those of a cherry")
+	if not await take_tool(&"leaf_rule", "F2"):
+		return
+	await press(_with_tooltip("OptionButton", "The kind of leaves"))
+	if await choose("Cherry"):
+		await until(func() -> bool: return _of.get_leaf_look() == "cherry", "they are cherry's")
+	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
+	await until(func() -> bool: return not _node.is_rebuilding(), "the tree is built")
+	await picture("tour-leaves")
+
+
+func _new_scene() -> bool:
+	var root: Node3D = Node3D.new()
+	root.name = "Garden"
+	var packed: PackedScene = PackedScene.new()
+	packed.pack(root)
+	root.free()
+	ResourceSaver.save(packed, "res://trees/garden.tscn")
+	EditorInterface.open_scene_from_path("res://trees/garden.tscn")
+	return await until(
+		func() -> bool: return scene_path() == "res://trees/garden.tscn", "the scene is open"
+	)
+
+
+# The mouse over the entry, for the picture.
+func _see_last_entry() -> void:
+	var menu: PopupMenu = open_menu()
+	var row: float = float(menu.size.y) / menu.item_count
+	await user.move(Vector2(menu.position) + Vector2(menu.size.x * 0.4, menu.size.y - row * 0.6))
+
+
+# The home view has room around the tree, and ground below it: nearer, and up.
+func _go_near() -> void:
+	var at: Vector2 = middle(view().get_parent() as Control)
+	for i: int in 4:
+		await user.click(at, User.WHEEL_UP)
+	await view_rests()
+	await user.drag([at, at + Vector2(0.0, 190.0)], User.MIDDLE, "shift")
+	await view_rests()
+
+
+func _branches_of_middle_size() -> PackedInt32Array:
+	var found: PackedInt32Array = []
+	for id: int in large_branches(_of):
+		var size: int = _of.select_nodes("below:%d" % id).size()
+		if size > 100 and size < 600:
+			found.append(id)
+	return found
+
+
+func _with_tooltip(type: String, words: String) -> Control:
+	for found: Node in EditorInterface.get_base_control().find_children("*", type, true, false):
+		var control: Control = found as Control
+		if control.is_visible_in_tree() and control.tooltip_text.begins_with(words):
+			return control
+	return null
