@@ -111,23 +111,25 @@ func choose(text: String) -> bool:
 	if not check(wanted >= 0, "The menu has no '%s'." % text):
 		await user.key("Escape")
 		return false
-	# Entries are about as high as each other: from a guess it is a few of them up or down.
+	# From a guess, for entries are about as high as each other, down and up.
 	var row: float = float(menu.size.y) / menu.item_count
 	var at: Vector2 = Vector2(menu.position) + Vector2(menu.size.x * 0.4, (wanted + 0.5) * row)
-	for attempt: int in 40:
+	for attempt: int in 80:
+		at.y += 7.0 * attempt * (1.0 if attempt % 2 == 0 else -1.0)
+		if not Rect2(menu.position, menu.size).has_point(at):
+			continue
 		await user.move(at)
-		var lit: int = menu.get_focused_item()
-		if lit == wanted:
+		if menu.get_focused_item() == wanted:
 			await user.click(at)
 			return true
-		at.y += clampf(wanted - lit, -3.0, 3.0) * row * (0.5 if lit >= 0 else 0.1)
 	return check(false, "The mouse finds no '%s' in the menu." % text)
 
 
 ## The place of an entry of a list or tree of the editor on the screen; scrolls to it.
 func item_place(list: Tree, item: TreeItem) -> Vector2:
+	item.uncollapse_tree()
 	list.scroll_to_item(item)
-	await user.frames(2)
+	await user.frames(3)
 	for y: int in range(4, int(list.size.y), 6):
 		for x: float in [0.35, 0.5, 0.2, 0.7]:
 			var at: Vector2 = Vector2(list.size.x * x, y + 4.0)

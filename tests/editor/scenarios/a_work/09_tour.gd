@@ -3,7 +3,7 @@ extends "../../test_plugin/garden.gd"
 ## The way of docs/first_tree.md, as it is written there. Its pictures are made here:
 ## tests/editor/make_pictures.sh cuts them out.
 
-const SCAN: String = "res://trees/my_tree.ply"
+const SCAN: String = "res://my_tree.ply"
 
 var _node: TreeInstance3D
 var _of: TreeReconstruction
@@ -11,7 +11,6 @@ var _of: TreeReconstruction
 
 func run() -> void:
 	await step("a scan in the project is a tree in the scene after two clicks")
-	DirAccess.make_dir_absolute("res://trees")
 	await drop_file(sample, SCAN)
 	var made: TreeReconstruction = await imported(SCAN)
 	if made == null or not await _new_scene():
@@ -92,10 +91,10 @@ func _new_scene() -> bool:
 	var packed: PackedScene = PackedScene.new()
 	packed.pack(root)
 	root.free()
-	ResourceSaver.save(packed, "res://trees/garden.tscn")
-	EditorInterface.open_scene_from_path("res://trees/garden.tscn")
+	ResourceSaver.save(packed, "res://garden.tscn")
+	EditorInterface.open_scene_from_path("res://garden.tscn")
 	return await until(
-		func() -> bool: return scene_path() == "res://trees/garden.tscn", "the scene is open"
+		func() -> bool: return scene_path() == "res://garden.tscn", "the scene is open"
 	)
 
 
