@@ -60,6 +60,21 @@ func check_equal(given: Variant, wanted: Variant, what: String) -> bool:
 	)
 
 
+## Fails the step where something has made the editor larger than its window.
+func check_fits() -> void:
+	var base: Control = EditorInterface.get_base_control()
+	for node: Node in base.find_children("*", "Control", true, false):
+		var control: Control = node as Control
+		if not control.is_visible_in_tree() or not control.get_parent() is Container:
+			continue
+		# What is in a list that scrolls may be larger.
+		if control.get_window() == base.get_window() and not _is_in_scroll(control):
+			var over: Vector2 = control.get_global_rect().end - base.size
+			check(over.y < 4.0, "%s ends %d px below the window" % [control.get_path(), over.y])
+			if over.y >= 4.0:
+				return
+
+
 ## Announces that the editor will report an error containing `part`; the step fails if it does
 ## not.
 func expect_error(part: String) -> void:
@@ -166,6 +181,15 @@ func _judge() -> void:
 	_failures = []
 	_expected = []
 	_seen = []
+
+
+func _is_in_scroll(control: Control) -> bool:
+	var above: Node = control.get_parent()
+	while above != null:
+		if above is ScrollContainer or above is SubViewport:
+			return true
+		above = above.get_parent()
+	return false
 
 
 # Those that were announced, and those that fail the step.

@@ -26,6 +26,7 @@ var sections: Dictionary[StringName, Section] = {}
 
 var _session: Session
 var _hint: Label
+var _welcome: ScrollContainer
 var _scroll: ScrollContainer
 var _timer: Timer = Timer.new()
 
@@ -47,7 +48,13 @@ func _init(session: Session) -> void:
 	)
 	_hint.tooltip_text = "No tree is selected."
 	_hint.mouse_filter = Control.MOUSE_FILTER_PASS
-	add_child(_hint)
+	_hint.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+	# While it has no width yet it would be as high as it has words, and the editor with it.
+	_welcome = ScrollContainer.new()
+	_welcome.size_flags_vertical = Control.SIZE_EXPAND_FILL
+	_welcome.horizontal_scroll_mode = ScrollContainer.SCROLL_MODE_DISABLED
+	_welcome.add_child(_hint)
+	add_child(_welcome)
 	_scroll = ScrollContainer.new()
 	_scroll.size_flags_vertical = Control.SIZE_EXPAND_FILL
 	_scroll.horizontal_scroll_mode = ScrollContainer.SCROLL_MODE_DISABLED
@@ -98,7 +105,7 @@ func close() -> void:
 ## Brings what is seen up to date. That happens by itself, some times a second.
 func update() -> void:
 	var edited: bool = _session.node != null
-	_hint.visible = not edited
+	_welcome.visible = not edited
 	_scroll.visible = edited
 	for section: Section in sections.values():
 		section.update()

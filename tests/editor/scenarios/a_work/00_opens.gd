@@ -8,3 +8,6 @@ func run() -> void:
 	check(ClassDB.class_exists(&"TreeReconstruction"), "The native library did not load.")
 	check(addon() != null, "The addon's plugin is not running.")
 	await picture("first-start")
+
+	await step("the editor is as large as its window")
+	check_fits()

@@ -60,6 +60,7 @@ func run() -> void:
 	await take_up(node)
 	check_equal(session().get(&"node"), node, "the edited node")
 	check_equal(_count_controls(), buttons, "the addon's controls")
+	check_fits()
 	await _cut(node)
 	await user.key("ctrl+z")
 	await user.frames(10)
