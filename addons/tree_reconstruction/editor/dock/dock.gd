@@ -124,6 +124,7 @@ func get_folded() -> PackedStringArray:
 func set_folded(ids: PackedStringArray) -> void:
 	for id: StringName in sections:
 		sections[id].folded = String(id) in ids
+	update()
 
 
 func _on_changed() -> void:

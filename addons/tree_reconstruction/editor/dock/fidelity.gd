@@ -157,17 +157,14 @@ func _on_report_written(
 
 
 func _add(id: StringName, title: String, tip: String) -> void:
-	var value: Label = Widgets.words("-", tip)
-	var old: Label = Widgets.words("", tip)
-	for label: Label in [value, old]:
-		label.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-		label.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
+	var value: Label = Widgets.figure(tip, 76)
+	var old: Label = Widgets.figure(tip)
 	old.modulate.a = 0.7
 	_figures[id] = value
 	_before[id] = old
-	var line: HBoxContainer = Widgets.line(title, tip, old)
-	(line.get_child(0) as Control).size_flags_stretch_ratio = 1.2
-	old.size_flags_stretch_ratio = 0.75
+	var line: HBoxContainer = HBoxContainer.new()
+	line.add_child(Widgets.words(title, tip))
+	line.add_child(old)
 	line.add_child(value)
 	body.add_child(line)
 

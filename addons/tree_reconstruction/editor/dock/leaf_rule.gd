@@ -252,10 +252,7 @@ func _add_slider(
 	slider.value_changed.connect(_on_slider_changed.bind(property))
 	slider.size_flags_vertical = Control.SIZE_SHRINK_CENTER
 	sliders[property] = slider
-	var number: Label = Widgets.words("", tip)
-	number.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	number.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
-	number.size_flags_stretch_ratio = 0.75
+	var number: Label = Widgets.figure(tip, 58)
 	_numbers[property] = number
 	_formats[property] = format
 	var line: HBoxContainer = Widgets.line(title, tip, slider)

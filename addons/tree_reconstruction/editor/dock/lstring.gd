@@ -51,6 +51,7 @@ func _build() -> void:
 	body.add_child(_error)
 	dialect = Widgets.choice(PackedStringArray(["Turtle", "Paper"]), Array(_DIALECTS) as Array)
 	dialect.tooltip_text = "Turtle: angles from the wood below. Paper: absolute angles, no radii."
+	dialect.custom_minimum_size.x = Widgets.px(90)
 	dialect.item_selected.connect(_on_dialect_selected)
 	apply = Widgets.button(
 		"Apply", "Puts the branch that this text draws in the selected one's place.", &"ImportCheck"

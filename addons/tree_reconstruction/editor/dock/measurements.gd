@@ -114,7 +114,7 @@ func _show_selected(tree: TreeReconstruction) -> void:
 		return
 	values[&"selected"].text = Widgets.grouped(session.selection.size())
 	var place: Vector3 = tree.get_node_position(id)
-	values[&"place"].text = "%.2f  %.2f  %.2f m" % [place.x, place.y, place.z]
+	values[&"place"].text = "%.2f %.2f %.2f m" % [place.x, place.y, place.z]
 	values[&"kind"].text = _kind(tree, id)
 	if not radius.get_line_edit().has_focus():
 		radius.set_value_no_signal(100.0 * tree.get_node_radius(id))

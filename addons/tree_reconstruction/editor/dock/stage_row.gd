@@ -42,12 +42,8 @@ func _init(title: String, tip: String, run_tip: String) -> void:
 	_head.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 	_head.size_flags_stretch_ratio = 0.6
 	_head.toggled.connect(_on_toggled)
-	_count = Widgets.words("", "")
-	_count.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
-	_time = Widgets.words("", "")
-	_time.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
-	_time.custom_minimum_size.x = Widgets.px(56)
-	_time.size_flags_horizontal = Control.SIZE_FILL
+	_count = Widgets.figure("", 56)
+	_time = Widgets.figure("", 56)
 	_time.modulate.a = 0.7
 	run = Widgets.button("", run_tip, &"Play")
 	run.flat = true

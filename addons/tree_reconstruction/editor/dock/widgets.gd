@@ -80,6 +80,17 @@ static func words(text: String, tip: String) -> Label:
 	return made
 
 
+## A number or another short value at the right end of a line, shown wholly.
+static func figure(tip: String, width: float = 0.0) -> Label:
+	var made: Label = Label.new()
+	made.tooltip_text = tip
+	made.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	made.mouse_filter = Control.MOUSE_FILTER_PASS
+	made.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
+	made.custom_minimum_size.x = px(width)
+	return made
+
+
 ## A sentence that goes over as many lines as it needs. What it says is made elsewhere.
 static func sentence(text: String = "") -> Label:
 	var made: Label = Label.new()
