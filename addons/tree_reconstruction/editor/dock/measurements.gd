@@ -2,6 +2,9 @@
 extends "section.gd"
 ## What a forester would measure on the tree, and the thickness of the wood at the selected node.
 
+# What may be longer than there is room.
+const _LONG: Array[StringName] = [&"orders", &"place", &"kind"]
+
 var radius: SpinBox
 var values: Dictionary[StringName, Label] = {}
 
@@ -121,12 +124,17 @@ func _show_selected(tree: TreeReconstruction) -> void:
 
 
 func _add(to: Container, id: StringName, title: String, tip: String) -> void:
-	var value: Label = Widgets.words("-", tip)
-	value.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	value.horizontal_alignment = HORIZONTAL_ALIGNMENT_RIGHT
+	var value: Label = Widgets.figure(tip)
+	value.text = "-"
 	values[id] = value
-	var line: HBoxContainer = Widgets.line(title, tip, value)
-	value.size_flags_stretch_ratio = 1.2
+	var line: HBoxContainer = HBoxContainer.new()
+	line.add_child(Widgets.words(title, tip))
+	line.add_child(value)
+	if id in _LONG:
+		value.clip_text = true
+		value.text_overrun_behavior = TextServer.OVERRUN_TRIM_ELLIPSIS
+		value.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+		value.size_flags_stretch_ratio = 2.0
 	to.add_child(line)
 
 
