@@ -7,7 +7,8 @@
     editor_strings.py --missing LANGUAGE    prints the words without a translation, one JSON string per line
 
 A word is found where it is written out: in tr("…"), in a control's text, title or tooltip, in what is added to a menu
-or list, and in calls of what makes the dock's widgets. Parts that are joined by + are one.
+or list, and in calls of what makes the dock's widgets, and in the descriptions of a reconstruction's options. Parts that are joined
+by + are one.
 """
 import json
 import pathlib
@@ -16,6 +17,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addons/tree_reconstruction"
+OPTIONS = ROOT / "extension/reconstruct_options.cpp"
 FOLDER = ADDON / "editor/translations"
 POT = FOLDER / "tree_reconstruction.pot"
 LANGUAGES = ("zh_CN", "zh_TW", "ja")
@@ -96,7 +98,18 @@ def find_words():
         for _, word in sorted((place, word) for place, word in found if word is not None):
             if re.search(r"[A-Za-z]{2}", word):
                 words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
+    for word in option_descriptions():
+        words.setdefault(word, []).append(OPTIONS.relative_to(ROOT).as_posix())
     return words
+
+
+def option_descriptions():
+    """The last text of each entry of kOptions, whose pieces follow each other."""
+    source = OPTIONS.read_text(encoding="utf-8")
+    table = source[source.index("const Option kOptions[]") : source.index("#undef OPTION_MEMBER")]
+    pieces = r'"((?:[^"\\\n]|\\.)*)"'
+    for match in re.finditer(r'((?:%s\s*)+)\}' % pieces, table):
+        yield "".join(unescape(piece) for piece in re.findall(pieces, match[1]))
 
 
 def quoted(text):

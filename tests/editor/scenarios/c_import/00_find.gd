@@ -64,6 +64,12 @@ func _stay_deleted() -> void:
 func _drop() -> void:
 	await step("a tree is dragged into the view, and undone")
 	EditorInterface.set_main_screen_editor("3D")
+	if EditorInterface.get_edited_scene_root() != null:
+		await user.key("ctrl+n")
+		if not await until(
+			func() -> bool: return EditorInterface.get_edited_scene_root() == null, "a new scene"
+		):
+			return
 	EditorInterface.add_root_node(Node3D.new())
 	EditorInterface.save_scene_as("res://garden.tscn", false)
 	await user.frames(10)
