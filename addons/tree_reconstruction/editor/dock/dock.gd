@@ -47,6 +47,8 @@ func _init(session: Session) -> void:
 		)
 	)
 	_hint.tooltip_text = "No tree is selected."
+	# A tab that is not shown has no width yet, and asks for height all the same.
+	_hint.custom_minimum_size.x = Widgets.px(200)
 	_hint.mouse_filter = Control.MOUSE_FILTER_PASS
 	_hint.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 	# While it has no width yet it would be as high as it has words, and the editor with it.
