@@ -29,7 +29,7 @@ func run() -> void:
 		# The one that is kept may be older than the file.
 		previewer.check_for_invalidation(path)
 		previewer.queue_resource_preview(path, self, &"_on_picture", null)
-		if await until(_pictures.has.bind(path), path + " has a picture"):
+		if await until(_has_picture.bind(path), path + " has a picture"):
 			_check_picture(path)
 
 	await step("what is not saved has a picture, too")
@@ -38,18 +38,22 @@ func run() -> void:
 	previewer.queue_edited_resource_preview(rule, self, &"_on_picture", "rule")
 	previewer.queue_edited_resource_preview(library.twigs[1], self, &"_on_picture", "twig")
 	for key: String in ["rule", "twig"]:
-		if await until(_pictures.has.bind(key), key + " has a picture"):
+		if await until(_has_picture.bind(key), key + " has a picture"):
 			_check_picture(key)
 
 	await step("other resources keep their own")
 	ResourceSaver.save(Gradient.new(), "res://gradient.tres")
 	previewer.queue_resource_preview("res://gradient.tres", self, &"_on_picture", null)
-	if await until(_pictures.has.bind("res://gradient.tres"), "the gradient was looked at"):
+	if await until(_has_picture.bind("res://gradient.tres"), "the gradient was looked at"):
 		check(_pictures["res://gradient.tres"] != null, "A gradient has no picture any more.")
 
 
 func _on_picture(path: String, preview: Texture2D, _small: Texture2D, key: Variant) -> void:
 	_pictures[path if key == null else key] = preview
+
+
+func _has_picture(key: String) -> bool:
+	return _pictures.has(key)
 
 
 func _check_picture(key: String) -> void:
