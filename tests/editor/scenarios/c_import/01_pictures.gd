@@ -1,7 +1,9 @@
 @tool
-extends "../../test_plugin/scenario.gd"
+extends "../../test_plugin/garden.gd"
 ## The FileSystem dock's and the inspector's pictures of what the addon makes.
 
+const SCAN: String = "res://pictured.ply"
+const TREE: String = "res://pictured_tree.res"
 const RULE: String = "res://addons/tree_reconstruction/presets/oak_rule.tres"
 const LEAST_COLORS: int = 8
 
@@ -10,22 +12,19 @@ var _pictures: Dictionary = {}
 
 func run() -> void:
 	await step("trees, leaf rules, twigs and collections of twigs have pictures")
+	await drop_file(sample, SCAN)
+	var made: TreeReconstruction = await imported(SCAN)
+	if made == null:
+		return
+	ResourceSaver.save(made.duplicate(), TREE)
 	var library: TwigLibrary = TwigLibrary.presets()
 	for twig: Twig in library.twigs:
 		twig.thumbnail = null
 	ResourceSaver.save(library.twigs[0], "res://twig.tres")
 	ResourceSaver.save(library, "res://twigs.res")
-	var paths: PackedStringArray = [
-		"res://scans/shrub.treescan",
-		"res://scans/shrub_tree.res",
-		RULE,
-		"res://twig.tres",
-		"res://twigs.res"
-	]
+	var paths: PackedStringArray = [SCAN, TREE, RULE, "res://twig.tres", "res://twigs.res"]
 	var previewer: EditorResourcePreview = EditorInterface.get_resource_previewer()
 	for path: String in paths:
-		if not check(ResourceLoader.exists(path), "There is no " + path):
-			continue
 		# The one that is kept may be older than the file.
 		previewer.check_for_invalidation(path)
 		previewer.queue_resource_preview(path, self, &"_on_picture", null)
