@@ -368,6 +368,31 @@ func test_a_rectangle_takes_what_it_shows() -> void:
 	_end()
 
 
+func test_a_box_cuts_at_its_faces() -> void:
+	_begin(grown_tree(18), &"slice")
+	_session.tool.get(&"values")[&"shape"] = 2
+	var middle: Vector2 = _at(_find(_has_two_above))
+	_button(middle - Vector2(60, 60), true)
+	_hover(middle + Vector2(40, 20), true)
+	_button(middle + Vector2(40, 20), false)
+	await _frame()
+	var box: AABB = _session.tool.get(&"_box")
+	check(box.has_volume(), "No box was drawn.")
+	var shown: PackedVector3Array = _session.tool.call(&"get_ghosts")[Mesh.ARRAY_VERTEX]
+	for corner: int in 8:
+		check(shown.has(box.get_endpoint(corner)), "A corner of the box is not shown.")
+	var inside: int = 0
+	for place: Vector3 in _made.get_positions():
+		inside += int(box.has_point(place))
+	check(inside > 3, "The box holds %d nodes." % inside)
+	_check_untouched("drawing a box")
+	check(_key(KEY_ENTER), "Enter was left.")
+	for place: Vector3 in _made.get_positions():
+		check(not box.grow(-1e-4).has_point(place), "%v stays in the box." % place)
+	_check_one_step("a box")
+	_end()
+
+
 func test_leaves_change_while_a_slider_moves() -> void:
 	_begin(grown_tree(17), &"leaf_rule")
 	var tool: RefCounted = _session.tool
@@ -400,7 +425,8 @@ func test_random_hands_can_be_undone() -> void:
 	for random_seed: int in range(1, 9):
 		var random: RandomNumberGenerator = RandomNumberGenerator.new()
 		random.seed = random_seed
-		_begin(grown_tree(random_seed, 400), &"select")
+		_begin(grown_tree(random_seed, 400), &"slice")
+		_session.tool.get(&"values")[&"shape"] = random_seed % 3
 		for i: int in 70:
 			await _act_at_random(random)
 		_session.choose(&"")

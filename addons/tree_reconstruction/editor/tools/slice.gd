@@ -1,16 +1,19 @@
 @tool
 extends "wood_tool.gd"
-## Cuts along a line that is drawn over the view, or takes what a rectangle of it shows.
+## Cuts along a line that is drawn over the view, takes what a rectangle of it shows, or what lies
+## in a box.
 
-enum Shape { LINE, RECTANGLE }
+enum Shape { LINE, RECTANGLE, BOX }
 
 # While the mouse draws: where it began; INF otherwise.
 var _from: Vector2 = Vector2.INF
 # What was drawn, to be looked at before it is done: two places of the plane and its normal, towards
-# what goes, in the tree's space; or the command of a rectangle.
+# what goes, in the tree's space; or the nodes in a rectangle.
 var _ends: PackedVector3Array = []
 var _normal: Vector3
-var _command: String = ""
+var _ids: PackedInt32Array = []
+# Or a box along the tree's axes; without volume where there is none.
+var _box: AABB
 var _rect: Rect2
 
 
@@ -46,24 +49,18 @@ func get_defaults() -> Dictionary[StringName, Variant]:
 func make_settings() -> Control:
 	_restore()
 	var strip: Strip = Strip.new()
-	(
-		strip
-		. add_choice(
-			"",
-			tr(
-				(
-					"A line cuts through the whole tree as the view sees it. A rectangle takes the nodes in it,"
-					+ " and what grows from them."
-				)
-			),
-			[tr("Line"), tr("Rectangle")],
-			values[&"shape"],
-			_on_shape_chosen
+	var shapes: PackedStringArray = [tr("Line"), tr("Rectangle"), tr("Box")]
+	var explained: String = tr(
+		(
+			"A line cuts through the whole tree as the view sees it. A rectangle takes the nodes in it,"
+			+ " and what grows from them. A box cuts at its faces, which lie along the tree's axes:"
+			+ " draw it in the view from the front, the right or the top."
 		)
 	)
+	strip.add_choice("", explained, shapes, values[&"shape"], _on_shape_chosen)
 	strip.add_switch(
-		tr("Right at the line"),
-		tr("Branches end right at the line; otherwise at their last node before it."),
+		tr("Right at the cut"),
+		tr("Branches end right at the line or the box; otherwise at their last node before it."),
 		values[&"exact"],
 		set_setting.bind(&"exact")
 	)
@@ -72,7 +69,7 @@ func make_settings() -> Control:
 
 
 func is_busy() -> bool:
-	return is_held() or not get_command().is_empty()
+	return is_held() or not _ends.is_empty() or not _ids.is_empty() or _box.has_volume()
 
 
 func is_held() -> bool:
@@ -81,8 +78,7 @@ func is_held() -> bool:
 
 func cancel() -> void:
 	_from = Vector2.INF
-	_ends = []
-	_command = ""
+	_forget()
 	_queue()
 
 
@@ -116,8 +112,12 @@ func _release(_button: InputEventMouseButton) -> bool:
 
 ## Does what is drawn.
 func accept() -> bool:
+	if session.tree == null:
+		return false
+	# In few words, since the log keeps them.
+	_ids = get_lowest_of(_ids)
 	var command: String = get_command()
-	if command.is_empty() or session.tree == null:
+	if command.is_empty():
 		return false
 	var edit: TreeEdit = session.run(get_title(), command)
 	if edit != null:
@@ -128,11 +128,18 @@ func accept() -> bool:
 
 ## What is drawn, as an edit command; empty if nothing is.
 func get_command() -> String:
+	if not _ids.is_empty():
+		return "remove nodes=%s" % words_of_nodes(_ids)
+	var exact: String = "yes" if values[&"exact"] else "no"
+	if _box.has_volume():
+		return (
+			"prune_box from=%s to=%s exact=%s"
+			% [words_of(_box.position), words_of(_box.end), exact]
+		)
 	if _ends.is_empty():
-		return _command
+		return ""
 	return (
-		"prune_side place=%s towards=%s exact=%s"
-		% [words_of(_ends[0]), words_of(_normal), "yes" if values[&"exact"] else "no"]
+		"prune_side place=%s towards=%s exact=%s" % [words_of(_ends[0]), words_of(_normal), exact]
 	)
 
 
@@ -140,6 +147,8 @@ func _look_again() -> void:
 	if is_held():
 		_take_shape()
 	show_command(get_command())
+	if _box.has_volume():
+		_show_box()
 
 
 func draw(overlay: Control) -> void:
@@ -149,7 +158,7 @@ func draw(overlay: Control) -> void:
 	var width: float = 2.0 * get_scale()
 	if not _ends.is_empty():
 		_draw_line(overlay, width)
-	elif not _command.is_empty() or (is_held() and values[&"shape"] == Shape.RECTANGLE):
+	elif not _ids.is_empty() or (is_held() and values[&"shape"] != Shape.LINE):
 		overlay.draw_rect(_rect, Color(GONE, 0.12))
 		overlay.draw_rect(_rect, GONE, false, width)
 
@@ -172,15 +181,28 @@ func _draw_line(overlay: Control, width: float) -> void:
 
 
 func _take_shape() -> void:
-	_ends = []
-	_command = ""
+	_forget()
 	if session.tree == null or _pointer.distance_to(_from) < 1.0:
 		return
-	if values[&"shape"] == Shape.RECTANGLE:
-		_take_rectangle()
-		return
+	_rect = Rect2(_from, _pointer - _from).abs()
 	var middle: Vector3 = session.tree.get_aabb().get_center()
-	_ends = [place_at(_from, middle), place_at(_pointer, middle)]
+	match values[&"shape"]:
+		Shape.RECTANGLE:
+			_ids = session.picker.call(&"pick_rect", _eye, _rect)
+		Shape.BOX:
+			_take_box(place_at(_from, middle), place_at(_pointer, middle))
+		_:
+			_take_line(place_at(_from, middle), place_at(_pointer, middle))
+
+
+func _forget() -> void:
+	_ends = []
+	_ids = []
+	_box = AABB()
+
+
+func _take_line(from: Vector3, to: Vector3) -> void:
+	_ends = [from, to]
 	var sight: Vector3 = view_direction(Vector3.FORWARD)
 	if _eye.projection != Camera3D.PROJECTION_ORTHOGONAL:
 		sight = _ends[0] - session.node.global_transform.affine_inverse() * _eye.global_position
@@ -194,11 +216,25 @@ func _take_shape() -> void:
 		_normal = -_normal
 
 
-func _take_rectangle() -> void:
-	_rect = Rect2(_from, _pointer - _from).abs()
-	var ids: PackedInt32Array = session.picker.call(&"pick_rect", _eye, _rect)
-	if not ids.is_empty():
-		_command = "remove nodes=%s" % words_of_nodes(get_lowest_of(ids))
+# As deep as the whole tree along the axis that the view looks along.
+func _take_box(from: Vector3, to: Vector3) -> void:
+	_box = AABB(from, Vector3.ZERO).expand(to)
+	var axis: int = view_direction(Vector3.FORWARD).abs().max_axis_index()
+	var whole: AABB = session.tree.get_aabb().grow(0.1)
+	_box.position[axis] = whole.position[axis]
+	_box.size[axis] = whole.size[axis]
+
+
+# Its edges, too.
+func _show_box() -> void:
+	var edges: PackedVector3Array = []
+	for i: int in 8:
+		for bit: int in [1, 2, 4]:
+			if not i & bit:
+				edges.append(_box.get_endpoint(i))
+				edges.append(_box.get_endpoint(i | bit))
+	var wood: PackedVector3Array = [] if _ghosts.is_empty() else _ghosts[Mesh.ARRAY_VERTEX]
+	set_ghosts(wood + edges, [])
 
 
 func _on_shape_chosen(index: int) -> void:

@@ -11,6 +11,9 @@ const _SECTION: String = "tree_reconstruction"
 var values: Dictionary[StringName, Variant] = {}
 
 var _queued: bool = false
+# What get_lowest_selected() found, and of what.
+var _lowest: PackedInt32Array
+var _lowest_of: Array = []
 # Since the last edit, and where the mouse was then.
 var _rests: bool = false
 var _rested_at: Vector2
@@ -56,6 +59,7 @@ func stop() -> void:
 		session.tree_changed.disconnect(_queue)
 	cancel()
 	_clear()
+	_lowest_of = []
 	_keep()
 
 
@@ -178,19 +182,26 @@ func get_selected() -> PackedInt32Array:
 
 ## Of the selected nodes those that don't grow from another one of them.
 func get_lowest_selected() -> PackedInt32Array:
-	return get_lowest_of(get_selected())
+	# Asked for again with every node that the mouse comes over, and thousands may be selected.
+	var of: Array = [session.tree, session.tree.get_bark_revision(), session.selection]
+	if _lowest_of != of:
+		_lowest_of = of
+		_lowest = get_lowest_of(get_selected())
+	return _lowest
 
 
-## Of some nodes those that don't grow from another one of them.
+## Of some nodes those that don't grow from another one of them. What the tree no longer has is left
+## out.
 func get_lowest_of(ids: PackedInt32Array) -> PackedInt32Array:
 	var selected: Dictionary[int, bool] = {}
 	for id: int in ids:
-		selected[id] = true
+		if session.tree.has_node(id):
+			selected[id] = true
 	# By node: whether it or one below it is selected.
 	var known: Dictionary[int, bool] = {}
 	var lowest: PackedInt32Array = []
 	var root: int = session.tree.get_root()
-	for id: int in ids:
+	for id: int in selected:
 		var way: PackedInt32Array = []
 		var at: int = id
 		var covered: bool = false
