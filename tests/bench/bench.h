@@ -30,6 +30,8 @@ void write_resized(const std::string& scan, size_t count, const std::string& pat
 void bench_beside(const std::vector<std::string>& scans, const Settings& settings);
 // What a user waits for while editing trees of 5,000 and 100,000 nodes.
 void bench_edits(const Settings& settings);
+// New individuals of a tree: of scans or skeletons, or of a grown one where none is named.
+void bench_variants(const std::vector<std::string>& files, const Settings& settings);
 // One line per real scan; with recall, precision and length where there is a corrected skeleton,
 // and with another program's tree of the same scan below.
 void bench_scans(const std::vector<std::string>& scans, const Settings& settings);

@@ -29,6 +29,7 @@ const char* const kUsage =
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
+    "       bench --variants [SCAN…|SKELETON…] new individuals of a tree, with bark, in a second\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
@@ -64,7 +65,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
-            word == "--edits" || word == "--help") {
+            word == "--edits" || word == "--variants" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -139,6 +140,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--lighter") {
         bench_lighter(files_of(line.scans));
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--variants") {
+        bench_variants(files_of(line.scans), line.settings);
         return EXIT_SUCCESS;
     }
     if (line.scans.empty() && (line.mode == "--scans" || line.mode == "--methods" || line.mode == "--clicks"))

@@ -1,0 +1,84 @@
+// How many new individuals of a tree are made in a second, with their bark.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+
+#include "bench.h"
+#include "edit/lighten.h"
+#include "edit/vary.h"
+#include "exchange/tree_files.h"
+#include "mesh/branch_tubes.h"
+#include "pipeline/reconstruct.h"
+#include "synth/grow.h"
+
+namespace treerec::bench {
+
+namespace {
+
+constexpr size_t kTriangles = 5000;  // of the tree that a game would use
+
+double least_ms(int times, const std::function<void()>& work) {
+    double least = 1e300;
+    for (int i = 0; i < times; i++) {
+        const auto begin = std::chrono::steady_clock::now();
+        work();
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+        least = std::min(least, took.count());
+    }
+    return least;
+}
+
+size_t triangles_of(const Tree& tree) {
+    return build_branch_tubes(tree).indices.size() / 3;
+}
+
+void measure_tree(const char* name, const Tree& tree, const Foliage& foliage, int times) {
+    const double look_ms = least_ms(3, [&] { const VariantMaker maker(tree, foliage); });
+    const VariantMaker maker(tree, foliage);
+    uint64_t seed = 0;
+    TreeVariant variant;
+    const double make_ms = least_ms(times, [&] { variant = maker.make(seed++, 0.5); });
+    const double bark_ms = least_ms(times, [&] { build_branch_tubes(variant.tree); });
+    std::printf("%-30.30s %8zu %8zu %10zu %8.2f %8.3f %8.3f %8.0f\n", name, tree.size(), foliage.cells.size(),
+                triangles_of(tree), look_ms, make_ms, bark_ms, 1000.0 / (make_ms + bark_ms));
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+void bench_variants(const std::vector<std::string>& files, const Settings& settings) {
+    const int times = settings.repetitions > 0 ? settings.repetitions : 100;
+    std::printf(
+        "\nVariants, milliseconds, the least of %d; making one takes one core, bark all; last: both, in a "
+        "second\n",
+        times);
+    std::printf("%-30s %8s %8s %10s %8s %8s %8s %8s\n", "tree", "nodes", "cells", "triangles", "look", "make",
+                "bark", "each s");
+    const auto measure_both = [&](const std::string& name, const Tree& tree, const Foliage& foliage) {
+        measure_tree(name.c_str(), tree, foliage, times);
+        Tree light = tree;
+        for (size_t nodes = tree.size(); nodes > 16 && triangles_of(light) > kTriangles; nodes -= nodes / 8) {
+            light = tree;
+            LightenOptions options;
+            options.nodes = nodes;
+            lighten(light, options);
+        }
+        measure_tree("  lighter", light.compacted(), {}, times);
+    };
+    for (const std::string& file : files) {
+        const std::string name = file.substr(file.find_last_of("/\\") + 1);
+        if (is_skeleton_file(file)) {
+            measure_both(name, read_skeleton(file), {});
+        } else {
+            const Reconstruction made = reconstruct_file(file, {});
+            measure_both(name, made.tree, made.foliage);
+        }
+    }
+    if (!files.empty()) return;
+    GrowOptions grow;
+    grow.seed = 2;
+    measure_both("a grown broadleaf", grow_tree(grow), {});
+}
+
+}  // namespace treerec::bench
