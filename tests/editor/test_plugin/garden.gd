@@ -139,8 +139,14 @@ func clear_nodes(
 	var found: PackedInt32Array = []
 	for id: int in candidates:
 		var place: Vector3 = of.global_transform * of.reconstruction.get_node_position(id)
-		@warning_ignore("unsafe_method_access")
-		if picker.pick(camera, camera.unproject_position(place)) == id:
+		var clear: bool = true
+		# The mouse stands on whole pixels.
+		for off: Vector2 in [
+			Vector2.ZERO, Vector2.ONE, -Vector2.ONE, Vector2(1, -1), Vector2(-1, 1)
+		]:
+			@warning_ignore("unsafe_method_access")
+			clear = clear and picker.pick(camera, camera.unproject_position(place) + off) == id
+		if clear:
 			found.append(id)
 			if found.size() == most:
 				break

@@ -27,8 +27,20 @@ const _HOME: Dictionary[String, int] = {
 	"spatial_editor/orbit_view_right": 2,
 	"spatial_editor/orbit_view_up": 1,
 }
-# How much of the picture stays free around the tree.
-const _MARGIN: float = 1.12
+# Where the camera of each view stands: its pitch and its yaw, in degrees.
+const _ANGLES: Dictionary[StringName, Vector2] = {
+	&"view_front": Vector2(0, 0),
+	&"view_rear": Vector2(0, 180),
+	&"view_right": Vector2(0, 90),
+	&"view_left": Vector2(0, -90),
+	&"view_top": Vector2(-90, 0),
+	&"view_bottom": Vector2(90, 0),
+	&"view_home": Vector2(-15, 30),
+}
+# How much of the picture stays free around the tree, also for its leaves, and how many of its nodes
+# are looked at for that.
+const _MARGIN: float = 1.15
+const _PLACES: int = 4000
 # Where the editor's camera stands in a scene in which nobody has moved it yet.
 const _UNTOUCHED: Vector3 = Vector3(1.682942, 1.917702, 3.080605)
 # Seconds after which the camera is left where it is.
@@ -108,21 +120,23 @@ func stop() -> void:
 	_left = 0.0
 
 
-# How far off the camera must be for the whole tree to be seen.
+# How far off its centre the camera must be for the whole tree to be seen.
 func _distance_for(action: StringName, camera: Camera3D, orthogonal: bool) -> float:
-	var size: Vector3 = _get_box().size
-	var seen: Vector3 = size
-	match action:
-		&"view_right", &"view_left":
-			seen = Vector3(size.z, size.y, size.x)
-		&"view_top", &"view_bottom":
-			seen = Vector3(size.x, size.z, size.y)
-		&"view_home":
-			seen = Vector3(maxf(size.x, size.z), size.y, maxf(size.x, size.z))
+	var angles: Vector2 = _ANGLES[action]
+	var turned: Basis = Basis.from_euler(Vector3(deg_to_rad(angles.x), deg_to_rad(angles.y), 0.0))
+	var to_camera: Transform3D = Transform3D(turned, _get_box().get_center()).affine_inverse()
+	to_camera *= _session.node.global_transform
 	var shape: Vector2 = camera.get_viewport().get_visible_rect().size
-	var half: float = 0.5 * maxf(seen.y, seen.x * shape.y / shape.x) * _MARGIN
-	var distance: float = half / tan(deg_to_rad(camera.fov) * 0.5)
-	return maxf(distance if orthogonal else distance + 0.5 * seen.z, 0.1)
+	var up: float = tan(deg_to_rad(camera.fov) * 0.5)
+	var aside: float = up * shape.x / shape.y
+	var places: PackedVector3Array = _session.tree.get_positions()
+	var distance: float = 0.1
+	@warning_ignore("integer_division")
+	for i: int in range(0, places.size(), maxi(1, places.size() / _PLACES)):
+		var place: Vector3 = to_camera * places[i]
+		var needed: float = maxf(absf(place.y) / up, absf(place.x) / aside) * _MARGIN
+		distance = maxf(distance, needed if orthogonal else needed + place.z)
+	return distance
 
 
 # The tree's box in the scene.

@@ -54,6 +54,11 @@ func input(from: Camera3D, event: InputEvent) -> int:
 	return EditorPlugin.AFTER_GUI_INPUT_PASS
 
 
+## What is under the mouse may be another one, though it stands still.
+func look_again() -> void:
+	_hover_due = true
+
+
 ## To be called once a frame: what is under the mouse is looked for once, however often it moved.
 func update() -> void:
 	if not _hover_due:

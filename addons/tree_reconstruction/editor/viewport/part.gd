@@ -246,6 +246,7 @@ func _on_tool_changed() -> void:
 
 
 func _on_view_changed() -> void:
+	_router.look_again()
 	if _session.view.editing != _was_editing:
 		_take_in_hand()
 	_visibility.update()
