@@ -7,9 +7,10 @@
 # It makes an empty project in a temporary folder with the built addon and test_plugin/ in it, and opens it in the
 # editor with settings of its own. A scenario is a script in scenarios/FOLDER/: it runs in the editor, in test_plugin/,
 # asserts what it finds there, and asks this script over a socket to press keys and buttons (xdotool), to take
-# pictures and to copy files. Each FOLDER is one run of the editor, in alphabetical order, on the same project; it
-# ends with Ctrl+Q. What the engine reports as an error fails the step in which it appears, unless the step expects it.
-# Nothing waits for a fixed time: scenarios wait for what should be there, at most for TREE_EDITOR_PATIENCE seconds.
+# pictures and to copy files. Each FOLDER is one run of the editor, in alphabetical order, which ends with Ctrl+Q;
+# those with the same first letter are on the same project, one after another. What the engine reports as an error
+# fails the step in which it appears, unless the step expects it. Nothing waits for a fixed time: scenarios wait for
+# what should be there, at most for TREE_EDITOR_PATIENCE seconds.
 # Pictures: build/editor/NN-name.png; what the editor printed: build/editor/FOLDER.log. Last line: 'N passed, N failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
@@ -58,6 +59,7 @@ start_screen() {
 
 # A game's project as it comes from version control: the addon is in it, nothing is imported.
 make_project() {
+    rm -rf "$work/project" "$work/config" "$work/data" "$work/cache" "$work/runtime"
     mkdir -p "$work/project/addons" "$work/config/godot" "$work/data" "$work/cache" "$work/runtime"
     chmod 700 "$work/runtime"
     cp -r project/addons/tree_reconstruction "$work/project/addons/"
@@ -168,10 +170,9 @@ run_editor() {
 }
 
 main() {
-    local folder scripts script name
+    local folder scripts script name project=
     rm -rf "$pictures"
     mkdir -p "$pictures"
-    make_project
     start_screen
     for folder in tests/editor/scenarios/*/; do
         folder=$(basename "$folder")
@@ -185,7 +186,10 @@ main() {
                 break
             done
         done
-        [ ${#scripts[@]} = 0 ] || run_editor "$folder" "${scripts[@]}"
+        [ ${#scripts[@]} -gt 0 ] || continue
+        [ "$project" = "${folder:0:1}" ] || make_project
+        project=${folder:0:1}
+        run_editor "$folder" "${scripts[@]}"
     done
     echo "$passed passed, $failed failed"
     [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

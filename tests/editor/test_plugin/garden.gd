@@ -20,6 +20,11 @@ func drop_file(from: String, to: String) -> void:
 	await user.come()
 
 
+## Clicks on a file in the FileSystem dock.
+func click_file(path: String, button: int = User.LEFT) -> bool:
+	return await click_entry(file_list(), func() -> TreeItem: return file_item(path), button)
+
+
 ## Waits until a scan in the project is imported, and returns its tree or null.
 func imported(path: String) -> TreeReconstruction:
 	if not await until(
@@ -89,7 +94,7 @@ func click_node(node: Node) -> bool:
 	if EditorInterface.get_selection().get_selected_nodes() == [node]:
 		# A second click would begin to rename it.
 		return true
-	await user.click(await item_place(node_list(), node_item(node)))
+	await click_entry(node_list(), func() -> TreeItem: return node_item(node))
 	return await until(
 		func() -> bool: return EditorInterface.get_selection().get_selected_nodes() == [node],
 		"the node is selected"

@@ -154,6 +154,21 @@ func item_place(list: Tree, item: TreeItem) -> Vector2:
 	return Vector2.ZERO
 
 
+## Clicks on the entry that `find` returns. Lists move while the editor looks through files, so the
+## mouse goes there first, and looks.
+func click_entry(list: Tree, find: Callable, button: int = User.LEFT) -> bool:
+	for attempt: int in 20:
+		var item: TreeItem = find.call()
+		if item != null:
+			await user.move(await item_place(list, item))
+			item = find.call()
+			if item != null and list.get_item_at_position(list.get_local_mouse_position()) == item:
+				await user.click(await item_place(list, item), button)
+				return true
+		await user.frames(10)
+	return check(false, "The mouse can't get hold of an entry of a list.")
+
+
 ## Saves the edited scene with Ctrl+S.
 func save_scene() -> bool:
 	await user.key("ctrl+s")

@@ -18,8 +18,8 @@ func run() -> void:
 	await picture("imported")
 
 	await step("its menu adds it to a scene that is begun for it")
-	await user.click(await item_place(file_list(), file_item(SCAN)), User.RIGHT)
-	await user.frames(10)
+	await click_file(SCAN, User.RIGHT)
+	await until(func() -> bool: return open_menu() != null, "a menu opens")
 	await picture("menu-of-a-scan")
 	if not await choose("Add Tree to Scene"):
 		return

@@ -16,7 +16,7 @@ func run() -> void:
 	if made == null or not await _new_scene():
 		return
 	await until(func() -> bool: return file_item(SCAN) != null, "the file is in the dock")
-	await user.click(await item_place(file_list(), file_item(SCAN)), User.RIGHT)
+	await click_file(SCAN, User.RIGHT)
 	await until(func() -> bool: return open_menu() != null, "a menu opens")
 	await _see_last_entry()
 	await picture("tour-menu")
@@ -108,10 +108,10 @@ func _see_last_entry() -> void:
 # The home view has room around the tree, and ground below it: nearer, and up.
 func _go_near() -> void:
 	var at: Vector2 = middle(view().get_parent() as Control)
-	for i: int in 4:
+	for i: int in 3:
 		await user.click(at, User.WHEEL_UP)
 	await view_rests()
-	await user.drag([at, at + Vector2(0.0, 190.0)], User.MIDDLE, "shift")
+	await user.drag([at, at + Vector2(0.0, 110.0)], User.MIDDLE, "shift")
 	await view_rests()
 
 
