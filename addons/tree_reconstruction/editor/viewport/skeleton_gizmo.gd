@@ -138,5 +138,8 @@ func _find_collision(tree: TreeReconstruction) -> TriangleMesh:
 		)
 		collision = TriangleMesh.new()
 		collision.create_from_faces(mesh.get_faces())
+	for id: int in _collisions.keys():
+		if not is_instance_id_valid(id):
+			_collisions.erase(id)
 	_collisions[tree.get_instance_id()] = [tree.get_bark_revision(), collision]
 	return collision

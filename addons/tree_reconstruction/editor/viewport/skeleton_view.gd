@@ -16,6 +16,8 @@ const ACTIVE: Color = Color(1.0, 1.0, 1.0)
 const GHOST: Color = Color(0.55, 1.0, 0.6)
 # So many selected nodes get a dot; of more, the lines tell enough.
 const _MAXIMUM_DOTS: int = 3000
+# So many are dots from however far.
+const _FEW: int = 40
 
 ## In the order in which they are drawn.
 var layers: Array[Gizmo.Layer] = []
@@ -27,8 +29,9 @@ var _selected: Gizmo.Layer
 var _selected_dots: Gizmo.Layer
 var _active: Gizmo.Layer
 var _ghosts: Gizmo.Layer
-# What the lines were built of.
+# What the lines were built of, and the mean length of one in metres.
 var _built_of: Array = []
+var _spacing: float = 0.1
 
 
 func _init(session: Session) -> void:
@@ -55,11 +58,11 @@ func update_tree() -> void:
 	var lines: Array = tree.build_skeleton_lines()
 	_lines.set_arrays(Mesh.PRIMITIVE_TRIANGLES, TreeReconstruction.widen_lines(lines))
 	_joints.set_arrays(Mesh.PRIMITIVE_POINTS, _points(tree.get_positions()))
-	var spacing: float = _mean_length(lines)
+	_spacing = _mean_length(lines)
 	for material: Material in [
 		_joints.material, _lines.material, _lines.material.next_pass, _selected.material
 	]:
-		(material as ShaderMaterial).set_shader_parameter(&"spacing", spacing)
+		(material as ShaderMaterial).set_shader_parameter(&"spacing", _spacing)
 
 
 ## Other nodes are selected, or they stand elsewhere.
@@ -82,6 +85,10 @@ func update_selection() -> void:
 		for id: int in ids:
 			places.append(tree.get_node_position(id))
 		_selected_dots.set_arrays(Mesh.PRIMITIVE_POINTS, _points(places))
+		# Many would be one blot from afar, where the lines tell it.
+		_selected_dots.material.set_shader_parameter(
+			&"spacing", 0.0 if ids.size() <= _FEW else 2.0 * _spacing
+		)
 	_active.set_arrays(
 		Mesh.PRIMITIVE_POINTS, _points([tree.get_node_position(_session.get_active())])
 	)
