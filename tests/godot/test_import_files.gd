@@ -6,6 +6,10 @@ const ImportOptions: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/import/import_options.gd"
 )
 
+const ScanFinder: GDScript = preload(
+	"res://addons/tree_reconstruction/editor/import/scan_finder.gd"
+)
+
 
 # Random points about a stem, one line each, with `format` for the three numbers of a line.
 static func _points(format: String, count: int = 400) -> String:
@@ -116,6 +120,51 @@ func test_stand_ins_lead_to_their_scans() -> void:
 		check(not answer.has("scan"), "there is a scan in " + text)
 		check_sentence(answer.get("error", ""), "the error")
 	check(ScanFiles.read_stand_in(folder.path_join("gone.treescan")).has("error"), "no error")
+
+
+func test_the_finder_looks_into_folders() -> void:
+	var model: String = folder.path_join("oak/sparse/0")
+	var hidden: String = folder.path_join("ignored")
+	for path: String in [model, hidden]:
+		DirAccess.make_dir_recursive_absolute(path)
+	var points: String = _points("%.4f %.4f %.4f")
+	var cloud: String = write_text("cloud.txt", points)
+	write_text("README.txt", "Nothing.")
+	write_text("oak/sparse/0/points3D.bin", "any")
+	write_text("oak/sparse/0/images.txt", points)
+	write_text("ignored/.gdignore", "")
+	write_text("ignored/cloud.txt", points)
+	var circle: bool = DirAccess.open(folder).create_link(folder, "again") == OK
+	var look: ScanFinder.Look = ScanFinder.Look.new()
+	look.folder(folder)
+	check_equal(look.scans.get(cloud), folder.path_join("cloud"), "the cloud's place")
+	check_equal(
+		look.scans.get(model.path_join("points3D.bin")),
+		folder.path_join("oak/oak"),
+		"the model's place"
+	)
+	if not circle:
+		check_equal(look.scans.size(), 2, "the scans")
+	check(not look.scans.has(hidden.path_join("cloud.txt")), "An ignored folder was looked into.")
+	check(not look.scans.has(model.path_join("images.txt")), "A model's images are a scan.")
+	check_equal(look.seen[cloud][1], true, "what is remembered of the cloud")
+	# What was seen is not read again while its time stays.
+	var known: ScanFinder.Look = ScanFinder.Look.new()
+	known.seen = {cloud: [FileAccess.get_modified_time(cloud), false]}
+	known.folder(folder)
+	check(not known.scans.has(cloud), "The cloud was read again.")
+	for path: String in [
+		"again",
+		"oak/sparse/0/points3D.bin",
+		"oak/sparse/0/images.txt",
+		"oak/sparse/0",
+		"oak/sparse",
+		"oak",
+		"ignored/.gdignore",
+		"ignored/cloud.txt",
+		"ignored",
+	]:
+		DirAccess.remove_absolute(folder.path_join(path))
 
 
 func test_parameters_cover_all_options() -> void:

@@ -14,6 +14,8 @@ const ScanFiles: GDScript = preload("./scan_files.gd")
 
 const _SECTION: String = "tree_reconstruction"
 const _TEXTS: PackedStringArray = ["txt", "csv"]
+# How many folders deep it looks.
+const _DEEPEST: int = 16
 # Names of folders that say nothing about the scan in them.
 const _PLAIN_FOLDERS: PackedStringArray = ["sparse", "dense", "colmap"]
 # The end of an import is followed by that of the look that found what to import.
@@ -216,13 +218,15 @@ class Look:
 
 	## Looks into the folder and all folders in it.
 	func folder(path: String) -> void:
-		_folder(path)
+		_folder(path, _DEEPEST)
 		seen = _now
 
-	func _folder(path: String) -> void:
-		var names: PackedStringArray = DirAccess.get_files_at(path)
-		if ".gdignore" in names:
+	# `levels`: of folders below this one that are looked into. Links may lead in a circle.
+	func _folder(path: String, levels: int) -> void:
+		# It is hidden, so not among the names.
+		if FileAccess.file_exists(path.path_join(".gdignore")):
 			return
+		var names: PackedStringArray = DirAccess.get_files_at(path)
 		var model: String = ""
 		for points: String in ["points3D.bin", "points3D.txt"]:
 			if model.is_empty() and points in names:
@@ -237,10 +241,12 @@ class Look:
 					stand_ins[file] = stands_for["scan"]
 			elif extension in _TEXTS and model.is_empty() and _is_scan(file):
 				scans[file] = file.get_basename()
+		if levels == 0:
+			return
 		for name: String in DirAccess.get_directories_at(path):
 			if name.begins_with(".") or (path == "res://" and name == "addons"):
 				continue
-			_folder(path.path_join(name))
+			_folder(path.path_join(name), levels - 1)
 
 	func _is_scan(file: String) -> bool:
 		var time: int = FileAccess.get_modified_time(file)
