@@ -32,7 +32,17 @@ func _generate_from_path(path: String, size: Vector2i, metadata: Dictionary) -> 
 	if of_scripts and not _has_our_script(path):
 		return null
 	var resource: Resource = ResourceLoader.load(path)
-	return null if resource == null else _generate(resource, size, metadata)
+	if resource == null:
+		return null
+	var picture: Texture2D = _generate(resource, size, metadata)
+	# This is the engine's thread of pictures. Were it the last to let go of the resource, it would
+	# take it off the signals of others while the main thread may be emitting them.
+	_let_go.call_deferred(resource)
+	return picture
+
+
+func _let_go(_resource: Resource) -> void:
+	pass
 
 
 func _generate(resource: Resource, size: Vector2i, _metadata: Dictionary) -> Texture2D:
