@@ -8,6 +8,7 @@ const Shortcuts := preload("res://addons/tree_reconstruction/editor/viewport/sho
 const InputRouter := preload("res://addons/tree_reconstruction/editor/viewport/input_router.gd")
 const Actions := preload("res://addons/tree_reconstruction/editor/viewport/actions.gd")
 const SkeletonView := preload("res://addons/tree_reconstruction/editor/viewport/skeleton_view.gd")
+const ViewState := preload("res://addons/tree_reconstruction/editor/view_state.gd")
 const PointView := preload("res://addons/tree_reconstruction/editor/viewport/point_view.gd")
 const AxesGrid := preload("res://addons/tree_reconstruction/editor/viewport/axes_grid.gd")
 const AllTools := preload("res://addons/tree_reconstruction/editor/tools/all_tools.gd")
@@ -345,7 +346,7 @@ func test_the_scan_is_drawn_in_three_colours() -> void:
 	view.rebuild()
 	check(not material.get_shader_parameter(&"by_height"), "The scan's colours aren't used.")
 	check_equal(view.layer.mesh.surface_get_arrays(0)[Mesh.ARRAY_COLOR][1], Color.GREEN, "a colour")
-	_session.view.point_colors = _session.ViewState.PointColors.HEIGHT
+	_session.view.point_colors = ViewState.PointColors.HEIGHT
 	_session.view.point_size = 5.0
 	view.update()
 	check(material.get_shader_parameter(&"by_height"), "They aren't coloured by height.")
@@ -374,4 +375,23 @@ func test_axes_and_grid_reach_around_the_tree() -> void:
 	view.update()
 	for layer: RefCounted in view.layers:
 		check(not layer.shown, "A layer is still shown.")
+	_close()
+
+
+func test_a_scan_that_is_not_there_is_told_of_once() -> void:
+	_open(grown_tree(3))
+	var said: Array[String] = []
+	_session.said.connect(func(sentence: String, _kind: int) -> void: said.append(sentence))
+	var view: PointView = PointView.new(_session)
+	_session.view.points = true
+	for colors: int in [0, 2, 2]:
+		_session.view.point_colors = colors as ViewState.PointColors
+		view.update()
+	check_equal(said.size(), 1, "sentences while an edit follows another")
+	check_sentence(said[0], "what is said of a tree without a scan")
+	_session.view.points = false
+	view.update()
+	_session.view.points = true
+	view.update()
+	check_equal(said.size(), 2, "sentences after it was asked for again")
 	_close()

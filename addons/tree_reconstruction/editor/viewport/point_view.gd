@@ -12,6 +12,8 @@ var layer: Gizmo.Layer = Gizmo.Layer.new()
 
 var _session: Session
 var _material: ShaderMaterial = ShaderMaterial.new()
+# The tree whose scan was asked for.
+var _asked_of: TreeReconstruction
 # How the mesh that is there was coloured.
 var _built_as: int = -1
 
@@ -39,7 +41,11 @@ func _init(session: Session) -> void:
 ## there yet.
 func update() -> void:
 	var wanted: bool = _session.tree != null and _session.view.points
-	if wanted and _session.scan.points.is_empty():
+	if not wanted:
+		_asked_of = null
+	elif _session.scan.points.is_empty() and _asked_of != _session.tree:
+		# Once: what can't be read is not tried again after every edit.
+		_asked_of = _session.tree
 		_session.scan.request()
 	layer.shown = wanted and not _session.scan.points.is_empty()
 	if not layer.shown:
