@@ -28,7 +28,8 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 		var viewport: SubViewport = EditorInterface.get_editor_viewport_3d(i)
 		var drop: TwigDrop = TwigDrop.new(session, viewport)
 		drop.set_translation_domain(get_translation_domain())
-		viewport.get_parent().add_child(drop)
+		# Above what takes the mouse there.
+		viewport.get_parent().get_parent().add_child(drop)
 		_drops.append(drop)
 	_session.node_changed.connect(_on_node_changed)
 
