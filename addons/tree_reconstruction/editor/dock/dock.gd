@@ -17,8 +17,10 @@ const Leaves := preload("leaf_rule.gd")
 const Variants := preload("variants.gd")
 const Export := preload("export.gd")
 
-# While a tree is dragged or a slider moves, what is shown follows so often.
+# While a tree is dragged or a slider moves, what is shown follows so often, and less often where
+# that would take more than a share of the time.
 const _SECONDS: float = 0.1
+const _SHARE: float = 0.1
 
 var progress: Progress
 ## The sections by their ids, from top to bottom.
@@ -109,8 +111,10 @@ func update() -> void:
 	var edited: bool = _session.node != null
 	_welcome.visible = not edited
 	_scroll.visible = edited
+	var started: int = Time.get_ticks_usec()
 	for section: Section in sections.values():
 		section.update()
+	_timer.wait_time = maxf(_SECONDS, (Time.get_ticks_usec() - started) / 1e6 / _SHARE)
 
 
 ## The ids of the sections that are folded.

@@ -2,8 +2,11 @@
 extends "section.gd"
 ## The tree, or the branch that begins at the selected node, as a string that can be edited.
 
-## A longer string is not shown until the user asks: a text field is slow with it.
-const MOST: int = 200_000
+## A longer string is not shown until the user asks: it would be written and laid out anew after
+## every edit, which takes longer than a frame.
+const MOST: int = 10_000
+# A node takes about so many characters.
+const _EACH: int = 36
 const _DIALECTS: PackedStringArray = ["turtle", "paper"]
 
 var text: CodeEdit = CodeEdit.new()
@@ -91,22 +94,24 @@ func _show_branch(node: int) -> void:
 	_node = node
 	_log = _tree.edit_log
 	_edited = false
-	var lstring: String = LSystem.write_string(_tree, node, dialect.selected)
-	var long: bool = lstring.length() > MOST and not _forced
+	var whole: bool = node == _tree.get_root()
+	var count: int = (
+		_tree.get_node_count() if whole else _tree.select_nodes("below:%d" % node).size()
+	)
+	var long: bool = count * _EACH > MOST and not _forced
 	anyway.visible = long
 	if long:
 		_what.text = (
-			tr("This branch is a text of %s characters. Select a smaller one.")
-			% Widgets.grouped(lstring.length())
+			tr("This branch is a text of about %s characters. Select a smaller one.")
+			% Widgets.grouped(count * _EACH)
 		)
 		text.text = ""
 	else:
-		_what.text = (
-			tr("The whole tree:")
-			if node == _tree.get_root()
-			else tr("The branch at node %d:") % node
-		)
-		text.text = broken_into_lines(lstring)
+		_what.text = tr("The whole tree:") if whole else tr("The branch at node %d:") % node
+		var lines: String = broken_into_lines(LSystem.write_string(_tree, node, dialect.selected))
+		# To lay it out anew takes longer than all else.
+		if text.text != lines:
+			text.text = lines
 	text.editable = not long
 	_show_edited()
 	_show_error("", -1)

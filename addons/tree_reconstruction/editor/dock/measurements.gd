@@ -9,6 +9,8 @@ var radius: SpinBox
 var values: Dictionary[StringName, Label] = {}
 
 var _selected: VBoxContainer = VBoxContainer.new()
+# The tree and the state of its wood that the figures are of.
+var _shown: Array = []
 
 
 func get_id() -> StringName:
@@ -88,10 +90,15 @@ func _build() -> void:
 func _refresh() -> void:
 	var tree: TreeReconstruction = session.tree
 	if tree == null or tree.is_empty():
+		_shown = []
 		for label: Label in values.values():
 			label.text = "-"
 		_selected.visible = false
 		return
+	_show_selected(tree)
+	if _shown == [tree, tree.get_bark_revision()]:
+		return
+	_shown = [tree, tree.get_bark_revision()]
 	var measured: Dictionary = tree.measure()
 	values[&"height"].text = _metres(measured.height)
 	values[&"dbh"].text = _metres(measured.dbh) if measured.dbh > 0.0 else "-"
@@ -107,7 +114,6 @@ func _refresh() -> void:
 	for order: Dictionary in (measured.orders as Array).slice(1):
 		orders.append(str(int(order.branches)))
 	values[&"orders"].text = "-" if orders.is_empty() else " · ".join(orders)
-	_show_selected(tree)
 
 
 func _show_selected(tree: TreeReconstruction) -> void:
