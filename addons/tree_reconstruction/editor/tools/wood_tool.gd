@@ -271,7 +271,8 @@ func _on_key(key: InputEventKey) -> bool:
 		return accept()
 	if is_own_key(key) and not key.echo and not is_busy():
 		return _press_own_key()
-	return _press_key(key)
+	# An undo in the middle of a drag would take back what came before it.
+	return _press_key(key) or is_held()
 
 
 ## Whether a key is the one that chooses this tool.
