@@ -20,7 +20,7 @@ cut() {
 
 cut menu 1240x900+0+0 900
 cut tree 1600x900+0+0 900
-cut scan 890x700+355+145 900
-cut branch 890x700+355+145 900
-cut graft 890x700+355+145 900
+cut scan 855x700+358+145 900
+cut branch 855x700+358+145 900
+cut graft 855x700+358+145 900
 cut leaves 1600x900+0+0 900

@@ -37,7 +37,6 @@ func run() -> void:
 
 
 func _look_at_it() -> void:
-	await _go_near()
 	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
 	await picture("tour-tree")
 
@@ -67,19 +66,33 @@ func _work_on_it() -> void:
 	await step("a twig of the library is grafted")
 	if not await take_tool(&"graft", "j"):
 		return
-	var tip: int = clear_nodes(_node, _of.select_nodes("leaves&height:3..7"))[0]
-	await user.move(node_on_screen(_node, tip))
+	# Without leaves, and on a stout limb, it is seen best: it is as large as its host bears.
+	await user.key("l")
+	var host: int = clear_nodes(_node, _limbs_from_the_right())[0]
+	var children: int = _of.get_node_children(host).size()
+	await user.move(node_on_screen(_node, host))
 	await until(func() -> bool: return not session().tool.get_ghosts().is_empty(), "it is shown")
 	await picture("tour-graft")
-	await user.click(node_on_screen(_node, tip))
-	await until(func() -> bool: return not _of.get_node_children(tip).is_empty(), "it is grafted")
+	await user.click(node_on_screen(_node, host))
+	await until(
+		func() -> bool: return _of.get_node_children(host).size() > children, "it is grafted"
+	)
+	await user.key("l")
 
-	await step("the leaves become those of a cherry")
+	await step("the leaves become those of a maple in autumn")
 	if not await take_tool(&"leaf_rule", "F2"):
 		return
 	await press(_with_tooltip("OptionButton", "The kind of leaves"))
-	if await choose("Cherry"):
-		await until(func() -> bool: return _of.get_leaf_look() == "cherry", "they are cherry's")
+	if await choose("Maple"):
+		await until(func() -> bool: return _of.get_leaf_look() == "maple", "they are a maple's")
+	var season: SpinBox = _with_tooltip("SpinBox", "0 the buds open") as SpinBox
+	if check(season != null, "There is no season."):
+		await user.click(middle(season.get_line_edit()), User.LEFT, "", 3)
+		await user.type("0.7")
+		await user.key("Return")
+		await until(
+			func() -> bool: return is_equal_approx(_of.leaf_rule.season, 0.7), "autumn comes"
+		)
 	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
 	await until(func() -> bool: return not _node.is_rebuilding(), "the tree is built")
 	await picture("tour-leaves")
@@ -102,17 +115,7 @@ func _new_scene() -> bool:
 func _see_last_entry() -> void:
 	var menu: PopupMenu = open_menu()
 	var row: float = float(menu.size.y) / menu.item_count
-	await user.move(Vector2(menu.position) + Vector2(menu.size.x * 0.4, menu.size.y - row * 0.6))
-
-
-# The home view has room around the tree, and ground below it: nearer, and up.
-func _go_near() -> void:
-	var at: Vector2 = middle(view().get_parent() as Control)
-	for i: int in 3:
-		await user.click(at, User.WHEEL_UP)
-	await view_rests()
-	await user.drag([at, at + Vector2(0.0, 110.0)], User.MIDDLE, "shift")
-	await view_rests()
+	await user.move(Vector2(menu.position) + Vector2(menu.size.x * 0.4, menu.size.y - row))
 
 
 func _branches_of_middle_size() -> PackedInt32Array:
@@ -122,6 +125,14 @@ func _branches_of_middle_size() -> PackedInt32Array:
 		if size > 100 and size < 600:
 			found.append(id)
 	return found
+
+
+func _limbs_from_the_right() -> PackedInt32Array:
+	var limbs: Array = Array(_of.select_nodes("order:1..2&radius:0.025..&height:2..6"))
+	limbs.sort_custom(
+		func(a: int, b: int) -> bool: return node_on_screen(_node, a).x > node_on_screen(_node, b).x
+	)
+	return PackedInt32Array(limbs)
 
 
 func _with_tooltip(type: String, words: String) -> Control:
