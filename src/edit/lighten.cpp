@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <queue>
+#include <string>
 
 #include "edit/lighten_net.h"
 #include "error.h"
@@ -240,6 +241,8 @@ Lightened lighten(Tree& tree, const LightenOptions& options, const Progress* pro
     for (double length : {options.distance, options.deviation})
         if (!(length >= 0.0 && std::isfinite(length)))
             throw Error("Distance and deviation must be numbers of metres that are not negative.");
+    if (options.below != kNoNode && !tree.contains(options.below))
+        throw Error("The tree has no node " + std::to_string(options.below) + ".");
     if (options.nodes == 1) throw Error("A tree is left with 2 nodes at least.");
     return Lightener(tree, options, progress).run();
 }

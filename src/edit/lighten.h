@@ -37,7 +37,8 @@ Lightened merge_turns(Tree& tree, double angle, const Progress* progress = nullp
 // the first. Throws Error for a distance that is negative or not finite, or Cancelled.
 Lightened merge_tips(Tree& tree, double distance, const Progress* progress = nullptr);
 
-// Both in turns until neither finds anything (6.2.3); in what grows from `below` alone, if that is a node.
+// Both in turns until neither finds anything (6.2.3); only in what grows from the node `below`, if that is
+// given. Throws Error for one that the tree doesn't have.
 Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress = nullptr,
                          NodeId below = kNoNode);
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
 
 #include "edit/lighten.h"
 #include "edit/lighten_net.h"
@@ -216,6 +217,8 @@ Lightened merge_tips(Tree& tree, double distance, const Progress* progress) {
 Lightened merge_branches(Tree& tree, double angle, double distance, const Progress* progress, NodeId below) {
     require_angle(angle);
     require_distance(distance);
+    if (below != kNoNode && !tree.contains(below))
+        throw Error("The tree has no node " + std::to_string(below) + ".");
     return Merger(tree, below != kNoNode ? below : tree.root(), progress).run(angle, distance);
 }
 

@@ -377,6 +377,10 @@ TEST(Lighten, WrongOptionsAndCancellingChangeNothing) {
     EXPECT_THROW(lighten(light, {10.0, -0.1}), Error);
     EXPECT_THROW(lighten(light, {10.0, 0.1, std::nan("")}), Error);
     EXPECT_THROW(lighten(light, {10.0, 0.1, 0.1, 1}), Error);
+    LightenOptions nowhere;
+    nowhere.below = 1000000;
+    EXPECT_THROW(lighten(light, nowhere), Error);
+    EXPECT_THROW(merge_branches(light, 10.0, 1.0, nullptr, 1000000), Error);
     EXPECT_THROW(merge_turns(light, std::nan("")), Error);
     EXPECT_THROW(merge_tips(light, kInfinity), Error);
     const Cancel cancel;
