@@ -46,6 +46,11 @@ func test_without_a_tree_it_says_what_to_do() -> void:
 	_frame()
 	for section: Control in _dock.sections.values():
 		check(section.is_visible_in_tree(), "A section is hidden.")
+	check(not _dock._no_tree.is_visible_in_tree(), "It says that there is no tree.")
+	node.reconstruction = null
+	_frame()
+	check(_dock._no_tree.is_visible_in_tree(), "It doesn't say that there is no tree.")
+	check(not _dock.sections[&"stages"].is_visible_in_tree(), "A section is shown without a tree.")
 	_end()
 
 

@@ -34,6 +34,25 @@ func test_fidelity_is_shown_before_and_after_an_edit() -> void:
 	_end()
 
 
+func test_another_tree_is_compared_with_its_own_scan() -> void:
+	_begin(_scanned())
+	var shown: Fidelity = _dock.sections[&"fidelity"] as Fidelity
+	shown.follow.button_pressed = true
+	await _finish()
+	var first: TreeInstance3D = _session.node
+	var second: TreeInstance3D = TreeInstance3D.new()
+	second.reconstruction = TreeReconstructor.new().reconstruct_file(write_scan("other.xyz", 1500))
+	tree.root.add_child(second)
+	_session.edit_node(second)
+	_frame()
+	await _finish()
+	_frame()
+	check(shown.follow.button_pressed, "It no longer follows.")
+	check(shown._figures[&"explained"].text.ends_with("%"), "The other tree is not measured.")
+	first.free()
+	_end()
+
+
 func test_a_report_is_written() -> void:
 	_begin(_scanned())
 	var path: String = folder.path_join("report.html")

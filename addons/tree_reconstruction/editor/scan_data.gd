@@ -82,8 +82,8 @@ func is_loading() -> bool:
 	return _loading != null
 
 
-## Colours for all points: the heat map of [member fidelity], and grey for leaves. Empty while it isn't
-## measured.
+## Colours for all points: the heat map of [member fidelity], and grey for leaves. Empty while it
+## isn't measured.
 func get_heat_colors() -> PackedColorArray:
 	if fidelity == null:
 		return []
@@ -109,6 +109,11 @@ func measure() -> void:
 ## Measures no more.
 func stop_measuring() -> void:
 	_watching = false
+
+
+## Whether it is measured after every edit.
+func is_following() -> bool:
+	return _watching
 
 
 ## The tree was edited.

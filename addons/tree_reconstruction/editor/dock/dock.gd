@@ -28,6 +28,7 @@ var sections: Dictionary[StringName, Section] = {}
 
 var _session: Session
 var _hint: Label
+var _no_tree: Label
 var _welcome: ScrollContainer
 var _scroll: ScrollContainer
 var _timer: Timer = Timer.new()
@@ -57,7 +58,19 @@ func _init(session: Session) -> void:
 	_welcome = ScrollContainer.new()
 	_welcome.size_flags_vertical = Control.SIZE_EXPAND_FILL
 	_welcome.horizontal_scroll_mode = ScrollContainer.SCROLL_MODE_DISABLED
-	_welcome.add_child(_hint)
+	_no_tree = (
+		Widgets
+		. sentence(
+			"This node shows no tree yet. Drag a tree or a scan onto its Reconstruction in the inspector."
+		)
+	)
+	_no_tree.tooltip_text = "The selected node has no tree."
+	_no_tree.mouse_filter = Control.MOUSE_FILTER_PASS
+	var hints: VBoxContainer = VBoxContainer.new()
+	hints.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+	hints.add_child(_hint)
+	hints.add_child(_no_tree)
+	_welcome.add_child(hints)
 	add_child(_welcome)
 	_scroll = ScrollContainer.new()
 	_scroll.size_flags_vertical = Control.SIZE_EXPAND_FILL
@@ -109,8 +122,11 @@ func close() -> void:
 ## Brings what is seen up to date. That happens by itself, some times a second.
 func update() -> void:
 	var edited: bool = _session.node != null
-	_welcome.visible = not edited
-	_scroll.visible = edited
+	var with_tree: bool = edited and _session.tree != null
+	_hint.visible = not edited
+	_no_tree.visible = edited
+	_welcome.visible = not with_tree
+	_scroll.visible = with_tree
 	var started: int = Time.get_ticks_usec()
 	for section: Section in sections.values():
 		section.update()

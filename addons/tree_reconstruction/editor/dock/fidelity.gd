@@ -76,6 +76,10 @@ func _refresh() -> void:
 	var scanned: bool = _has_scan()
 	follow.disabled = not scanned
 	report.disabled = not scanned
+	follow.set_pressed_no_signal(session.scan.is_following())
+	if scanned and session.tree != _of and session.scan.is_following():
+		# Of another tree nothing is loaded yet.
+		session.scan.measure()
 	var measured: TreeFidelity = session.scan.fidelity if scanned else null
 	if measured == null or session.tree != _of:
 		_places.clear()
