@@ -97,6 +97,14 @@ func get_unsaved() -> PackedStringArray:
 	return paths
 
 
+## Writes [param tree] into its file now, whether it has changed or not.
+func save_tree(tree: TreeReconstruction) -> Error:
+	var error: Error = _write(tree, tree.resource_path)
+	if error == OK:
+		_changed.erase(tree.resource_path)
+	return error
+
+
 ## Writes the files of all trees that have changed. Returns a sentence for each that could not be.
 func save() -> PackedStringArray:
 	var failed: PackedStringArray = []

@@ -123,7 +123,7 @@ func _update(
 	if node == null:
 		for property: StringName in _IMPORTED:
 			local.set(property, made.get(property))
-		error = ResourceSaver.save(local, path, ResourceSaver.FLAG_COMPRESS)
+		error = _session.local_trees.save_tree(local)
 		if error != OK:
 			report.append(tr("%s can't be written: %s.") % [path, error_string(error)])
 		return true

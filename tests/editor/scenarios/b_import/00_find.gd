@@ -179,6 +179,7 @@ func _reimport_edited() -> void:
 	):
 		await user.key("Escape")
 	local = load(path) as TreeReconstruction
+	check_equal(session().local_trees.get_unsaved().size(), 0, "trees to save after their files")
 	check("prune_order" in local.edit_log, "The log of edits is lost.")
 	check_equal(local.measure()["tips"], tips_before, "the number of tips of the first edit")
 
