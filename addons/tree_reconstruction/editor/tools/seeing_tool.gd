@@ -22,6 +22,8 @@ var _ghosts: Array = []
 # What would be done, in a sentence.
 var _hint: String = ""
 var _refused: bool = false
+# The command that was shown last, if it can be done, and what it would change.
+var _foreseen: Array = []
 
 
 ## Whether the mouse drags. The right button ends that.
@@ -127,6 +129,9 @@ func show_command(command: String) -> void:
 	var preview: Dictionary = session.tree.preview_edit(command)
 	var error: String = preview["error"]
 	_refused = not error.is_empty()
+	_foreseen = []
+	if not _refused:
+		_foreseen = [command, session.tree, session.tree.get_bark_revision()]
 	_hint = error if _refused else preview["message"]
 	set_ghosts(preview["removed"], preview["added"])
 

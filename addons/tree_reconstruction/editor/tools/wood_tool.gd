@@ -115,7 +115,7 @@ func _press_key(_key: InputEventKey) -> bool:
 func _click(id: int) -> void:
 	var command: String = get_command_at(id)
 	if not command.is_empty():
-		_finish(session.run(get_title(), command))
+		_finish(_run(command))
 
 
 ## Enter, or the tool's button: does it to the selected nodes.
@@ -231,6 +231,16 @@ func set_setting(value: Variant, key: StringName) -> void:
 		values[key] = value
 		_rests = false
 		_queue()
+
+
+# What was shown is known not to be refused: a large tree need not try it once more.
+func _run(command: String) -> TreeEdit:
+	var now: Array = [command, session.tree, session.tree.get_bark_revision()]
+	if _foreseen != now:
+		return session.run(get_title(), command)
+	return session.run_edit(
+		get_title(), func(of: TreeReconstruction) -> TreeEdit: return of.edit(command)
+	)
 
 
 func _queue() -> void:
