@@ -4,11 +4,34 @@ extends RefCounted
 
 const _ADDON: String = "res://addons/tree_reconstruction/"
 const _QUALITY: float = 0.9
+const _PICTURES: Array[StringName] = [&"albedo_texture", &"normal_texture", &"roughness_texture"]
+
+
+## Copies of those of [param material]'s pictures that are the addon's and have a source, by their
+## paths. They take the longest by far to make, and this may run on any thread.
+static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
+	var made: Dictionary[String, Texture2D] = {}
+	var shaded: ShaderMaterial = material as ShaderMaterial
+	if shaded == null:
+		return made
+	for name: StringName in _PICTURES:
+		var texture: Texture2D = shaded.get_shader_parameter(name) as Texture2D
+		if texture == null or not _is_addons(texture):
+			continue
+		var image: Image = _source_of(texture)
+		if image != null:
+			made[texture.resource_path] = _packed(texture, image, "normal" in String(name))
+	return made
 
 
 ## A copy of [param material] with its shader and textures in itself, and with [param values] set
 ## where its shader has them. A material that has nothing of the addon is returned as it is.
-static func plain(material: Material, values: Dictionary[StringName, Variant]) -> Material:
+## [param pictures] are those of [method plain_pictures].
+static func plain(
+	material: Material,
+	values: Dictionary[StringName, Variant],
+	pictures: Dictionary[String, Texture2D]
+) -> Material:
 	var shaded: ShaderMaterial = material as ShaderMaterial
 	if shaded == null or shaded.shader == null or not _is_addons(shaded.shader):
 		return material
@@ -19,7 +42,12 @@ static func plain(material: Material, values: Dictionary[StringName, Variant]) -
 	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
 		var value: Variant = shaded.get_shader_parameter(uniform.name)
 		if value is Texture2D and _is_addons(value):
-			value = _plain_texture(value, "normal" in String(uniform.name))
+			var path: String = (value as Texture2D).resource_path
+			value = (
+				pictures[path]
+				if pictures.has(path)
+				else _plain_texture(value, "normal" in String(uniform.name))
+			)
 		if value != null:
 			made.set_shader_parameter(uniform.name, value)
 	for name: StringName in values:
@@ -49,8 +77,10 @@ static func _code_of(shader: Shader) -> String:
 
 static func _plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:
 	var image: Image = _image_of(texture)
-	if image == null:
-		return texture
+	return texture if image == null else _packed(texture, image, is_normal)
+
+
+static func _packed(texture: Texture2D, image: Image, is_normal: bool) -> Texture2D:
 	if not image.has_mipmaps():
 		image.generate_mipmaps()
 	var made: PortableCompressedTexture2D = PortableCompressedTexture2D.new()
@@ -69,16 +99,23 @@ static func _plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:
 	return made
 
 
-# The picture that it was imported from, if that is there: what the graphics card has is less.
 static func _image_of(texture: Texture2D) -> Image:
-	if FileAccess.file_exists(texture.resource_path) and texture.resource_path.ends_with(".png"):
-		var source: Image = Image.new()
-		if source.load_png_from_buffer(FileAccess.get_file_as_bytes(texture.resource_path)) == OK:
-			return source
-	var image: Image = texture.get_image()
+	var image: Image = _source_of(texture)
+	if image != null:
+		return image
+	image = texture.get_image()
 	if image != null and image.is_compressed() and image.decompress() != OK:
 		return null
 	return image
+
+
+# The picture that it was imported from, if that is there: what the graphics card has is less.
+static func _source_of(texture: Texture2D) -> Image:
+	var path: String = texture.resource_path
+	if not path.ends_with(".png") or not FileAccess.file_exists(path):
+		return null
+	var source: Image = Image.new()
+	return source if source.load_png_from_buffer(FileAccess.get_file_as_bytes(path)) == OK else null
 
 
 static func _is_addons(resource: Resource) -> bool:

@@ -62,6 +62,8 @@ class Parts:
 	var capsules: Array[Dictionary] = []
 	## The box around all levels, at rest.
 	var box: AABB
+	## The pictures of the materials, packed, by the paths of those that they are copies of.
+	var pictures: Dictionary[String, Texture2D] = {}
 	## How high the finest level's wood reaches, in metres.
 	var height: float = 0.0
 
@@ -87,6 +89,8 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 		parts.leaves.append(joined)
 	if collision:
 		parts.capsules = tree.build_capsules()
+	parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
+	parts.pictures.merge(PlainMaterials.plain_pictures(_leaf_of(tree)))
 	for place: Vector3 in _places(parts.bark[0]):
 		parts.height = maxf(parts.height, place.y)
 	var first: bool = true
@@ -142,11 +146,8 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 ## share their materials and their box.
 func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var look: String = tree.get_leaf_look()
-	var bark: Material = PlainMaterials.plain(_chosen(bark_material, look, "bark"), values)
-	var leaf: Material = PlainMaterials.plain(
-		_chosen(leaf_material, look, "blade" if tree.are_leaves_single() else "leaf"), values
-	)
+	var bark: Material = PlainMaterials.plain(_bark_of(tree), values, parts.pictures)
+	var leaf: Material = PlainMaterials.plain(_leaf_of(tree), values, parts.pictures)
 	var meshes: Array[ArrayMesh] = []
 	for level: int in parts.bark.size():
 		var mesh: ArrayMesh = ArrayMesh.new()
@@ -189,6 +190,15 @@ func _shader_values(tree: TreeReconstruction, height: float) -> Dictionary[Strin
 			var tint: Color = tints[i].srgb_to_linear()
 			values[names[i]] = Vector4(tint.r, tint.g, tint.b, tint.a)
 	return values
+
+
+func _bark_of(tree: TreeReconstruction) -> Material:
+	return _chosen(bark_material, tree.get_leaf_look(), "bark")
+
+
+func _leaf_of(tree: TreeReconstruction) -> Material:
+	var part: String = "blade" if tree.are_leaves_single() else "leaf"
+	return _chosen(leaf_material, tree.get_leaf_look(), part)
 
 
 func _chosen(material: Material, look: String, part: String) -> Material:
