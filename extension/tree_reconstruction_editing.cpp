@@ -48,6 +48,14 @@ Ref<TreeEdit> TreeReconstruction::edit(const String& p_command) {
     return guarded(Ref<TreeEdit>(), [&] { return _edit(p_command); });
 }
 
+Variant TreeReconstruction::try_edit(const String& p_command) {
+    try {
+        return _edit(p_command);
+    } catch (const std::exception& error) {
+        return to_godot(std::string(error.what()));
+    }
+}
+
 String TreeReconstruction::check_edit(const String& p_command) const {
     try {
         treerec::Tree result;
@@ -190,6 +198,7 @@ TypedArray<Dictionary> TreeReconstruction::get_edit_commands() {
 
 void TreeReconstruction::_bind_editing() {
     ClassDB::bind_method(D_METHOD("edit", "command"), &TreeReconstruction::edit);
+    ClassDB::bind_method(D_METHOD("try_edit", "command"), &TreeReconstruction::try_edit);
     ClassDB::bind_method(D_METHOD("check_edit", "command"), &TreeReconstruction::check_edit);
     ClassDB::bind_method(D_METHOD("apply_edit", "edit"), &TreeReconstruction::apply_edit);
     ClassDB::bind_method(D_METHOD("revert_edit", "edit"), &TreeReconstruction::revert_edit);

@@ -28,7 +28,6 @@ var _tree: TreeReconstruction
 var _source: String
 var _loading: Jobs.Job
 var _measuring: Jobs.Job
-var _wanted: bool = false
 var _watching: bool = false
 var _outdated: bool = false
 # Indices of wood in points; empty where all are.

@@ -171,11 +171,13 @@ func _on_tree_changed() -> void:
 func run(title: String, command: String) -> TreeEdit:
 	if tree == null:
 		return null
-	var sentence: String = tree.check_edit(command)
-	if not sentence.is_empty():
-		say(sentence, Kind.ERROR)
-		return null
-	return run_edit(title, func(of: TreeReconstruction) -> TreeEdit: return of.edit(command))
+	if LocalTrees.is_foreign(tree, node):
+		# No copy is made for nothing.
+		var sentence: String = tree.check_edit(command)
+		if not sentence.is_empty():
+			say(sentence, Kind.ERROR)
+			return null
+	return run_edit(title, _try.bind(command))
 
 
 ## As [method run], for whatever returns a [TreeEdit]: [param make] is called with the tree to
@@ -225,9 +227,9 @@ func drag(command: String) -> bool:
 	if _drag.edit != null:
 		_drag.tree.revert_edit(_drag.edit)
 		_drag.edit = null
-	if not _drag.tree.check_edit(command).is_empty():
-		return false
-	_drag.edit = _drag.tree.edit(command)
+	var done: Variant = _drag.tree.try_edit(command)
+	if done is TreeEdit:
+		_drag.edit = done
 	return _drag.edit != null
 
 
@@ -340,6 +342,14 @@ func _editable() -> TreeReconstruction:
 	if local != null:
 		node.reconstruction = local
 	return local
+
+
+func _try(edited: TreeReconstruction, command: String) -> TreeEdit:
+	var done: Variant = edited.try_edit(command)
+	if done is TreeEdit:
+		return done
+	say(done as String, Kind.ERROR)
+	return null
 
 
 # Nothing came of an edit that had needed a copy.
