@@ -83,7 +83,10 @@ func run() -> void:
 func _go_to_scene(name: String) -> void:
 	var tabs: TabBar = scene_tabs()
 	for i: int in tabs.tab_count:
-		if tabs.get_tab_title(i).begins_with(name):
+		if tabs.get_tab_title(i).trim_suffix("(*)") == name:
+			# There may be more tabs than there is room.
+			tabs.ensure_tab_visible(i)
+			await user.frames(5)
 			await user.click(tabs.get_screen_transform() * (tabs.get_tab_rect(i).get_center()))
 	await until(
 		func() -> bool: return scene_path() == "res://%s.tscn" % name,

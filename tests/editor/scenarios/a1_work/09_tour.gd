@@ -54,7 +54,7 @@ func _look_at_it() -> void:
 
 func _work_on_it() -> void:
 	await step("a branch is selected and deleted")
-	var branch: int = clear_nodes(_node, _branches_of_middle_size())[0]
+	var branch: int = clear_nodes(_node, _branches_of(100))[0]
 	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
 	await until(func() -> bool: return session().selection.size() > 5, "a branch is selected")
 	await picture("tour-branch")
@@ -63,12 +63,16 @@ func _work_on_it() -> void:
 		return
 	_of = _node.reconstruction
 
-	await step("a twig of the library is grafted")
+	await step("another branch is picked and grafted")
+	# Without leaves it is seen best.
+	await user.key("l")
+	if not await take_tool(&"pick", "k"):
+		return
+	await user.click(node_on_screen(_node, clear_nodes(_node, _branches_of(30))[0]))
+	await until(func() -> bool: return session().scion.length() > 40, "a branch is picked")
 	if not await take_tool(&"graft", "j"):
 		return
-	# Without leaves, and on a stout limb, it is seen best: it is as large as its host bears.
-	await user.key("l")
-	var host: int = clear_nodes(_node, _limbs_from_the_right())[0]
+	var host: int = clear_nodes(_node, _of.select_nodes("order:..1&radius:0.025..&height:1..7"))[0]
 	var children: int = _of.get_node_children(host).size()
 	await user.move(node_on_screen(_node, host))
 	await until(func() -> bool: return not session().tool.get_ghosts().is_empty(), "it is shown")
@@ -118,21 +122,14 @@ func _see_last_entry() -> void:
 	await user.move(Vector2(menu.position) + Vector2(menu.size.x * 0.4, menu.size.y - row))
 
 
-func _branches_of_middle_size() -> PackedInt32Array:
+# The large ones first.
+func _branches_of(least: int) -> PackedInt32Array:
 	var found: PackedInt32Array = []
 	for id: int in large_branches(_of):
 		var size: int = _of.select_nodes("below:%d" % id).size()
-		if size > 100 and size < 600:
+		if size >= least and size < 600:
 			found.append(id)
 	return found
-
-
-func _limbs_from_the_right() -> PackedInt32Array:
-	var limbs: Array = Array(_of.select_nodes("order:1..2&radius:0.025..&height:2..6"))
-	limbs.sort_custom(
-		func(a: int, b: int) -> bool: return node_on_screen(_node, a).x > node_on_screen(_node, b).x
-	)
-	return PackedInt32Array(limbs)
 
 
 func _with_tooltip(type: String, words: String) -> Control:
