@@ -122,6 +122,7 @@ class TreeReconstruction : public godot::Resource {
 
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);
+    void take_tree_of(const godot::Ref<TreeReconstruction>& p_other);
     godot::Variant try_edit(const godot::String& p_command);
     godot::String check_edit(const godot::String& p_command) const;
     godot::Error apply_edit(const godot::Ref<TreeEdit>& p_edit);

@@ -48,6 +48,26 @@ Ref<TreeEdit> TreeReconstruction::edit(const String& p_command) {
     return guarded(Ref<TreeEdit>(), [&] { return _edit(p_command); });
 }
 
+void TreeReconstruction::take_tree_of(const Ref<TreeReconstruction>& p_other) {
+    ERR_FAIL_COND_MSG(p_other.is_null(), "There is no tree to take over.");
+    if (p_other.ptr() == this) {
+        return;
+    }
+    // Trees and foliages are never changed, only replaced: so both may hold the same ones.
+    const std::shared_ptr<const treerec::Tree> tree = p_other->get_tree();
+    const std::shared_ptr<const treerec::Foliage> foliage = p_other->get_leaf_density();
+    {
+        const std::lock_guard lock(mutex_);
+        tree_ = tree;
+        foliage_ = foliage;
+    }
+    newer_skeleton_ = p_other->newer_skeleton_;
+    newer_foliage_ = p_other->newer_foliage_;
+    edit_log_ = p_other->edit_log_;
+    provenance_ = p_other->provenance_;
+    emit_changed();
+}
+
 Variant TreeReconstruction::try_edit(const String& p_command) {
     try {
         return _edit(p_command);
@@ -198,6 +218,7 @@ TypedArray<Dictionary> TreeReconstruction::get_edit_commands() {
 
 void TreeReconstruction::_bind_editing() {
     ClassDB::bind_method(D_METHOD("edit", "command"), &TreeReconstruction::edit);
+    ClassDB::bind_method(D_METHOD("take_tree_of", "other"), &TreeReconstruction::take_tree_of);
     ClassDB::bind_method(D_METHOD("try_edit", "command"), &TreeReconstruction::try_edit);
     ClassDB::bind_method(D_METHOD("check_edit", "command"), &TreeReconstruction::check_edit);
     ClassDB::bind_method(D_METHOD("apply_edit", "edit"), &TreeReconstruction::apply_edit);

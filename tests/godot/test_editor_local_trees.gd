@@ -142,26 +142,36 @@ func test_a_rule_in_a_file_stays_as_it_is() -> void:
 	_end()
 
 
-func test_a_new_reconstruction_takes_the_file_over() -> void:
+func test_a_new_reconstruction_goes_into_the_file() -> void:
 	_edit_imported(grown_tree(3))
 	_session.run("Prune", "prune_order order=1")
-	var old: TreeReconstruction = _session.tree
-	var path: String = old.resource_path
+	var tree_of_file: TreeReconstruction = _session.tree
+	var path: String = tree_of_file.resource_path
+	var before: Dictionary = tree_of_file.skeleton
 	var other: TreeReconstruction = grown_tree(8)
 	_session.replace_tree("Reconstruct again", other)
 	_session.update()
-	check_equal(other.resource_path, path, "the new tree's file")
+	check_equal(_session.tree, tree_of_file, "the resource")
 	_session.local_trees.save()
 	check_equal(_saved(path).skeleton, other.skeleton, "the saved skeleton")
 	_undo.undo()
 	_session.update()
-	check_equal(_session.tree, old, "the tree after undo")
-	check_equal(old.resource_path, path, "the old tree's file")
 	_session.local_trees.save()
-	check_equal(_saved(path).skeleton, old.skeleton, "the saved skeleton after undo")
+	check_equal(_saved(path).skeleton, before, "the saved skeleton after undo")
 	_undo.redo()
 	_session.update()
-	check_equal(other.resource_path, path, "the new tree's file after redo")
 	_session.local_trees.save()
 	check_equal(_saved(path).skeleton, other.skeleton, "the saved skeleton after redo")
+	_end()
+
+
+func test_a_new_reconstruction_of_an_imported_tree_is_a_copy() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var before: Dictionary = made.skeleton
+	_edit_imported(made)
+	_session.replace_tree("Reconstruct again", grown_tree(8))
+	check_equal(made.skeleton, before, "the imported skeleton")
+	check_equal(_session.tree.resource_path, FOLDER.path_join("oak_tree.res"), "the file")
+	_undo.undo()
+	check_equal(_session.tree, made, "the tree after undo")
 	_end()

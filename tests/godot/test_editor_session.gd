@@ -92,14 +92,26 @@ func test_a_value_and_what_it_sets_with_it_are_undone() -> void:
 	_end(session)
 
 
-func test_another_tree_takes_its_place() -> void:
+func test_another_reconstruction_takes_its_place() -> void:
 	var made: TreeReconstruction = grown_tree(4)
 	var session: Session = _session_with(made)
+	# Another node that shows the same tree shows the new one, too.
+	var first: TreeEdit = session.run("Prune", "prune_order order=1")
+	check(first != null, "Nothing was pruned.")
+	var before: Dictionary = made.skeleton
 	var other: TreeReconstruction = grown_tree(5)
 	session.replace_tree("Reconstruct again", other)
-	check_equal(session.node.reconstruction, other, "the tree")
+	check_equal(session.tree, made, "the resource")
+	check_equal(made.skeleton, other.skeleton, "the wood")
+	check_equal(made.edit_log, other.edit_log, "the log")
 	_undo.undo()
-	check_equal(session.node.reconstruction, made, "the tree after undo")
+	check_equal(made.skeleton, before, "the wood after undo")
+	_undo.undo()
+	check(made.get_node_count() > (before["ids"] as Array).size(), "The pruning was not undone.")
+	_undo.redo()
+	check_equal(made.skeleton, before, "the wood after redo")
+	_undo.redo()
+	check_equal(made.skeleton, other.skeleton, "the wood after all was redone")
 	_end(session)
 
 

@@ -26,6 +26,9 @@ var _jobs: Jobs
 var _say: Callable
 var _tree: TreeReconstruction
 var _source: String
+# What it was made by, and where in the scan it stands: a new reconstruction has others.
+var _provenance: Dictionary
+var _frame: Array
 var _loading: Jobs.Job
 var _measuring: Jobs.Job
 var _watching: bool = false
@@ -39,20 +42,20 @@ func _init(jobs: Jobs, say: Callable) -> void:
 	_say = say
 
 
-## Another tree is edited, or none. One of the same scan keeps its points.
+## Another tree is edited, or none, or it was reconstructed again. One of the same scan, in the same
+## place, keeps its points.
 func set_tree(tree: TreeReconstruction) -> void:
-	if tree == _tree:
+	var provenance: Dictionary = {} if tree == null else tree.provenance
+	if tree == _tree and is_same(provenance, _provenance):
 		return
-	var source: String = "" if tree == null else tree.provenance.get("source", "")
-	var same: bool = (
-		not source.is_empty()
-		and source == _source
-		and _tree != null
-		and _tree.skeleton.get("frame") == tree.skeleton.get("frame")
-		and _tree.skeleton.get("up_axis") == tree.skeleton.get("up_axis")
-	)
+	var source: String = provenance.get("source", "")
+	var skeleton: Dictionary = {} if tree == null else tree.skeleton
+	var frame: Array = [skeleton.get("frame"), skeleton.get("up_axis")]
+	var same: bool = not source.is_empty() and source == _source and frame == _frame
 	_tree = tree
+	_provenance = provenance
 	_source = source
+	_frame = frame
 	if same:
 		note_edit()
 		return

@@ -26,6 +26,8 @@ const Jobs := preload("jobs.gd")
 const LocalTrees := preload("local_trees.gd")
 const ScanData := preload("scan_data.gd")
 const ViewState := preload("view_state.gd")
+# What a reconstruction makes of a tree; all else is how it looks.
+const _MADE: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
 
 ## The edited node, or [code]null[/code].
 var node: TreeInstance3D
@@ -101,6 +103,7 @@ func update() -> void:
 	if _tree_moved:
 		_tree_moved = false
 		_drop_missing()
+		scan.set_tree(tree)
 		scan.note_edit()
 		tree_changed.emit()
 	jobs.update()
@@ -301,36 +304,30 @@ func set_value(
 	history.commit(false)
 
 
-## Shows [param made] in the place of the edited tree, as what a reconstruction with other options
-## made. It gets the old one's file.
+## Gives the edited tree the wood, leaves and log of [param made], as what a reconstruction with
+## other options made. It stays the same resource, for all nodes that show it; its leaf rules stay.
 func replace_tree(title: String, made: TreeReconstruction) -> void:
 	if tree == null or made == null or made == tree:
 		return
 	cancel_drag()
-	var old: TreeReconstruction = tree
-	made.resource_name = old.resource_name
+	var imported: TreeReconstruction = tree
+	var edited: TreeReconstruction = _editable()
+	if edited == null:
+		return
 	history.begin(title, node)
-	# First, so that it is the last to be undone: by then the path is the old one's again, and has to
-	# be saved.
-	history.add_method(old, &"emit_changed", [], &"emit_changed", [])
-	if LocalTrees.is_foreign(old, node):
-		var path: String = LocalTrees.free_path(old, node)
-		var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
-		if error != OK:
-			say(
-				tr("The tree can't be written to %s: %s.") % [path, error_string(error)], Kind.ERROR
-			)
-			path = ""
-		made.take_over_path(path)
-	elif old.resource_path.begins_with("res://") and not old.resource_path.contains("::"):
-		var path: String = old.resource_path
-		history.add_method(made, &"take_over_path", [path], &"set_path", [""])
-		history.add_method(old, &"set_path", [""], &"take_over_path", [path])
-	history.add_property(node, &"reconstruction", made, old)
-	history.add_method(made, &"emit_changed", [], &"emit_changed", [])
+	_add_local(edited, imported)
+	add_replacement(edited, made)
 	history.commit()
-	local_trees.watch(made)
-	made.emit_changed()
+
+
+## Adds to the step that was begun that [param replaced] takes the wood, leaves and log of
+## [param made]. Undone, it is bit for bit what it was, so that earlier steps can be undone, too.
+func add_replacement(replaced: TreeReconstruction, made: TreeReconstruction) -> void:
+	var before: TreeReconstruction = TreeReconstruction.new()
+	before.take_tree_of(replaced)
+	var after: TreeReconstruction = TreeReconstruction.new()
+	after.take_tree_of(made)
+	history.add_method(replaced, &"take_tree_of", [after], &"take_tree_of", [before])
 
 
 # The tree to change: the edited one, or a copy of it in a file of its own.
@@ -393,10 +390,7 @@ static func _stored(object: Object) -> Dictionary:
 	for property: Dictionary in object.get_property_list():
 		var name: StringName = property.name
 		# What is large is not set by a property of the leaves.
-		if (
-			property.usage & PROPERTY_USAGE_STORAGE
-			and name not in [&"skeleton", &"foliage", &"provenance", &"edit_log", &"script"]
-		):
+		if property.usage & PROPERTY_USAGE_STORAGE and name not in _MADE and name != &"script":
 			values[name] = object.get(name)
 	return values
 

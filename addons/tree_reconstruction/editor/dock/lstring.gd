@@ -19,7 +19,7 @@ var _what: Label
 var _error: Label
 var _tree: TreeReconstruction
 var _node: int = -1
-var _log: String
+var _revision: int
 var _edited: bool = false
 # The user wants the long one.
 var _forced: bool = false
@@ -83,7 +83,7 @@ func _refresh() -> void:
 	var node: int = session.get_active()
 	if node == session.NO_NODE:
 		node = tree.get_root()
-	if tree == _tree and node == _node and tree.edit_log == _log and not _edited:
+	if tree == _tree and node == _node and tree.get_bark_revision() == _revision and not _edited:
 		return
 	_forced = _forced and node == _node
 	_show_branch(node)
@@ -92,7 +92,7 @@ func _refresh() -> void:
 func _show_branch(node: int) -> void:
 	_tree = session.tree
 	_node = node
-	_log = _tree.edit_log
+	_revision = _tree.get_bark_revision()
 	_edited = false
 	var whole: bool = node == _tree.get_root()
 	var count: int = (

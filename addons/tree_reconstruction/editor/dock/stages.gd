@@ -44,6 +44,8 @@ var _no_scan: Label
 var _sentence: Label
 var _node: TreeInstance3D
 var _tree: TreeReconstruction
+# What it was made by: a new reconstruction of the same tree has another one.
+var _provenance: Dictionary
 
 
 func get_id() -> StringName:
@@ -127,8 +129,10 @@ func _refresh() -> void:
 			row.set_failed(false)
 			row.reset()
 		_sentence.visible = false
-	if session.tree != _tree:
+	var provenance: Dictionary = {} if session.tree == null else session.tree.provenance
+	if session.tree != _tree or not is_same(provenance, _provenance):
 		_tree = session.tree
+		_provenance = provenance
 		_show_options()
 	_show_scan_stages()
 	_show_built()

@@ -10,8 +10,6 @@ const ScanFiles: GDScript = preload("./scan_files.gd")
 const SceneAdder: GDScript = preload("./scene_adder.gd")
 
 const _BACKUPS: int = 5
-# What an import makes; all else is the user's.
-const _IMPORTED: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
 const _LISTED: int = 20
 
 # The session of what is edited: its history, its trees, its voice.
@@ -121,16 +119,14 @@ func _update(
 	_list(path, result["left_out"], report)
 	var node: TreeInstance3D = _node_of(local)
 	if node == null:
-		for property: StringName in _IMPORTED:
-			local.set(property, made.get(property))
+		local.take_tree_of(made)
 		error = _session.local_trees.save_tree(local)
 		if error != OK:
 			report.append(tr("%s can't be written: %s.") % [path, error_string(error)])
 		return true
 	_session.cancel_drag()
 	_session.history.begin(tr("Import Scan Again"), node)
-	for property: StringName in _IMPORTED:
-		_session.history.add_property(local, property, made.get(property), local.get(property))
+	_session.add_replacement(local, made)
 	_session.history.commit()
 	_session.local_trees.watch(local)
 	# It is saved with the scene.
