@@ -132,7 +132,8 @@ func show_command(command: String) -> void:
 	_foreseen = []
 	if not _refused:
 		_foreseen = [command, session.tree, session.tree.get_bark_revision()]
-	_hint = error if _refused else preview["message"]
+	# The message tells what was done, as if it had been.
+	_hint = error if _refused else tr("After a click: %s") % preview["message"]
 	set_ghosts(preview["removed"], preview["added"])
 
 
