@@ -26,7 +26,7 @@ func run() -> void:
 	if not await until(func() -> bool: return root.get_child_count() == 1, "the tree is there"):
 		return
 	_node = root.get_child(0) as TreeInstance3D
-	if await take_up(_node) == null:
+	if await take_up(_node) == null or not await take_tool(&"select", "q"):
 		return
 	_of = made
 	await _look_at_it()
