@@ -124,6 +124,11 @@ wait_until() {
 }
 
 ended() { ! is_running; }
+# Asks the editor to close, again and again: it hears no keys while its own progress dialog is up.
+closed() {
+    ended || xdotool key ctrl+q
+    wait_until 5 ended
+}
 # What it waits for is there, or will never be.
 met() { [ -s "$work/port" ] || ended; }
 
@@ -145,8 +150,7 @@ run_editor() {
         exec {socket}>&-
         if is_running; then
             # What is not saved is asked about only where the scenarios left it so: then this does not end.
-            xdotool key ctrl+q
-            wait_until "$TREE_EDITOR_PATIENCE" ended || {
+            wait_until "$TREE_EDITOR_PATIENCE" closed || {
                 picture "$folder-does-not-close"
                 count "FAILED  $folder: the editor does not close"
             }

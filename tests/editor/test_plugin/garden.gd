@@ -15,6 +15,12 @@ func real_scan(file: String) -> String:
 
 ## Puts a file into the project's folder from another program, and comes back to the editor.
 func drop_file(from: String, to: String) -> void:
+	# The engine forgets new files that it comes upon while it imports others.
+	var quiet: int = 0
+	while quiet < 60:
+		await user.frames(1)
+		var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+		quiet = 0 if files.is_scanning() else quiet + 1
 	await user.go()
 	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
 	await user.come()

@@ -43,8 +43,8 @@ func run() -> void:
 	var row: Control = _section(&"stages").rows[&"skeleton"]
 	@warning_ignore("unsafe_method_access")
 	row.get_field(&"simplify_distance").set_value(0.03)
-	await press(find_control("Button", "Finds the branches again", _dock))
 	var count: int = sample_tree.get_node_count()
+	await press(find_control("Button", "Finds the branches again", _dock))
 	if not await until(
 		func() -> bool: return sample_tree.get_node_count() < count, "the tree has fewer nodes"
 	):
