@@ -16,14 +16,22 @@ func real_scan(file: String) -> String:
 ## Puts a file into the project's folder from another program, and comes back to the editor.
 func drop_file(from: String, to: String) -> void:
 	# The engine forgets new files that it comes upon while it imports others.
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
 	var quiet: int = 0
 	while quiet < 60:
 		await user.frames(1)
-		var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
 		quiet = 0 if files.is_scanning() else quiet + 1
 	await user.go()
 	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
 	await user.come()
+	# Where it did so all the same, who comes back again finds them.
+	var end: int = Time.get_ticks_msec() + 15000
+	while files.get_file_type(to).is_empty() and Time.get_ticks_msec() < end:
+		await user.frames(1)
+	if files.get_file_type(to).is_empty():
+		print("The engine overlooked %s." % to)
+		await user.go()
+		await user.come()
 
 
 ## Clicks on a file in the FileSystem dock.
