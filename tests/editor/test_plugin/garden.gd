@@ -24,14 +24,6 @@ func drop_file(from: String, to: String) -> void:
 	await user.go()
 	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
 	await user.come()
-	# Without a window manager the editor doesn't always notice that it has the focus again; then it is
-	# told to look through the project, as it does by itself when it notices.
-	var end: int = Time.get_ticks_msec() + 15000
-	while files.get_file_type(to).is_empty() and Time.get_ticks_msec() < end:
-		await user.frames(1)
-	if files.get_file_type(to).is_empty() and not FileAccess.file_exists(to + ".import"):
-		print("The editor did not notice that it was come back to: %s." % to)
-		files.scan()
 
 
 ## Clicks on a file in the FileSystem dock.

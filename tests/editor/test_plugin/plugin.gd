@@ -26,6 +26,13 @@ func _exit_tree() -> void:
 	OS.remove_logger(_errors)
 
 
+func _notification(what: int) -> void:
+	if what == NOTIFICATION_APPLICATION_FOCUS_IN and _user != null:
+		_user.is_worked_in = true
+	elif what == NOTIFICATION_APPLICATION_FOCUS_OUT and _user != null:
+		_user.is_worked_in = false
+
+
 func _start() -> void:
 	if OS.get_environment("TREE_EDITOR_TEST").is_empty():
 		return

@@ -16,6 +16,11 @@ const WHEEL_DOWN: int = 5
 # one for what was deferred.
 const _FRAMES: int = 4
 
+## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
+## It looks through the project when it becomes true, and that it is false it only finds after a
+## quarter of a second without focus: whoever comes back sooner was never away.
+var is_worked_in: bool = true
+
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
 var _heard: String = ""
@@ -38,16 +43,12 @@ func meet(folder: String) -> void:
 
 ## Brings the keyboard's focus to the editor.
 func come() -> void:
-	await ask(["focus", "editor"])
-	while not _window().has_focus():
-		await _frame()
+	await _focus("editor", true)
 
 
 ## Takes the focus away, as somebody does who works in another program.
 func go() -> void:
-	await ask(["focus", "elsewhere"])
-	while _window().has_focus():
-		await _frame()
+	await _focus("elsewhere", false)
 
 
 ## The end of all scenarios of this editor. It goes on running: run.sh closes it as a user would.
@@ -136,6 +137,16 @@ func _held(modifiers: String, what: PackedStringArray) -> PackedStringArray:
 func _x(words: PackedStringArray) -> void:
 	await ask(PackedStringArray(["x"]) + words)
 	await frames(_FRAMES)
+
+
+# Asks again where nothing came of it: a window that is just being made may lose the focus again.
+func _focus(where: String, here: bool) -> void:
+	var next: int = 0
+	while _window().has_focus() != here or is_worked_in != here:
+		if Time.get_ticks_msec() >= next:
+			await ask(["focus", where])
+			next = Time.get_ticks_msec() + 3000
+		await _frame()
 
 
 func _frame() -> void:

@@ -40,6 +40,4 @@ func run() -> void:
 	DirAccess.remove_absolute("res://empty.xyz")
 	await user.go()
 	await user.come()
-	# It may not notice: see drop_file().
-	EditorInterface.get_resource_filesystem().scan()
 	await until(func() -> bool: return file_item("res://empty.xyz") == null, "the file is gone")
