@@ -29,10 +29,12 @@ failed=0
 shots=0
 engine=
 screen=
+other=
 
 # Ends what this script has started, and nothing else.
 cleanup() {
     [ -z "$engine" ] || kill -KILL -- "-$engine" 2>/dev/null
+    [ -z "$other" ] || kill "$other" 2>/dev/null
     [ -z "$screen" ] || kill "$screen" 2>/dev/null
     wait 2>/dev/null
     rm -rf "$work"
@@ -55,6 +57,9 @@ start_screen() {
     }
     DISPLAY=:$(cat "$work/display")
     export DISPLAY
+    # Another program, beyond the screen's edge: focus() says what for.
+    xev -name elsewhere -geometry 20x20+1700+1000 >"$work/xev.log" 2>&1 &
+    other=$!
 }
 
 # A game's project as it comes from version control: the addon is in it, nothing is imported.
@@ -84,11 +89,12 @@ picture() {
     import -window root -define png:compression-level=2 "$pictures/$(printf '%02d' "$shots")-$1.png"
 }
 
-# focus editor, focus elsewhere: where the keyboard goes. There is no window manager that would see to it.
+# focus editor, focus elsewhere: where the keyboard goes. There is no window manager that would see to it. Elsewhere is
+# a window of its own: with the focus on the root, X tells the window under the pointer that it has it, too.
 focus() {
     case $1 in
     editor) xdotool windowfocus "$(xdotool search --onlyvisible --class godot 2>/dev/null | head -n 1)" ;;
-    elsewhere) xdotool windowfocus "$(xwininfo -root | sed -n 's/.*Window id: \(0x[0-9a-f]*\).*/\1/p')" ;;
+    elsewhere) xdotool windowfocus "$(xdotool search --name '^elsewhere$' 2>/dev/null | head -n 1)" ;;
     esac
 }
 
