@@ -15,21 +15,17 @@ extends RefCounted
 ## [TreeInstance3D], and no longer follows its scan, its rules or its edits.
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
-const _MOST_LEVELS: int = 5
-# How many times its height a tree is away where the next level takes over.
-const _SWITCH: PackedFloat32Array = [2.5, 6.0, 14.0, 30.0]
-# A level gives way a little later than the next one comes, so that it doesn't flicker there.
-const _MARGIN: float = 0.05
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.15
 const JoinedLeaves := preload("joined_leaves.gd")
 const PlainMaterials := preload("plain_materials.gd")
 const Collision := preload("../nodes/tree_collision.gd")
+const Levels := preload("../nodes/tree_levels.gd")
 
 ## How many levels of detail there are, the finest first: 1 to 5.
-var levels: int = 4:
+var levels: int = Levels.COUNT:
 	set(value):
-		levels = clampi(value, 1, _MOST_LEVELS)
+		levels = clampi(value, 1, Levels.MOST)
 
 ## The distances in metres from which on the next level is shown, one less than there are levels.
 ## Empty: chosen by the tree's height.
@@ -115,17 +111,17 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	var root: Node3D = Node3D.new()
 	root.name = _name_of(tree)
 	var meshes: Array[ArrayMesh] = make_meshes(tree, parts)
-	var switches: PackedFloat32Array = _distances(parts.height)
+	var switches: PackedFloat32Array = Levels.distances(parts.height, levels, distances)
 	for level: int in meshes.size():
 		var part: MeshInstance3D = MeshInstance3D.new()
 		part.name = "Level%d" % level
 		part.mesh = meshes[level]
 		if level > 0:
 			part.visibility_range_begin = switches[level - 1]
-			part.visibility_range_begin_margin = _MARGIN * switches[level - 1]
+			part.visibility_range_begin_margin = Levels.margin(switches[level - 1])
 		if level + 1 < meshes.size():
 			part.visibility_range_end = switches[level]
-			part.visibility_range_end_margin = _MARGIN * switches[level]
+			part.visibility_range_end_margin = Levels.margin(switches[level])
 		root.add_child(part)
 		part.owner = root
 	if not parts.capsules.is_empty():
@@ -166,16 +162,6 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 		mesh.custom_aabb = parts.box.grow(_SWAY * maxf(parts.height, 0.1))
 		meshes.append(mesh)
 	return meshes
-
-
-func _distances(height: float) -> PackedFloat32Array:
-	var chosen: PackedFloat32Array = []
-	for level: int in levels - 1:
-		if level < distances.size():
-			chosen.append(distances[level])
-		else:
-			chosen.append(_SWITCH[level] * maxf(height, 0.5))
-	return chosen
 
 
 # What a TreeInstance3D sets for its instance.
