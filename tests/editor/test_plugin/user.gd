@@ -19,7 +19,7 @@ const _FRAMES: int = 4
 ## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
 ## It looks through the project when it becomes true, and that it is false it only finds after a
 ## quarter of a second without focus: whoever comes back sooner was never away.
-var is_worked_in: bool = true
+var is_worked_in: bool = false
 
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
@@ -38,6 +38,8 @@ func meet(folder: String) -> void:
 		await _frame()
 	_peer = _server.take_connection()
 	_peer.set_no_delay(true)
+	# The engine overlooks the focus that its window has from the beginning.
+	await go()
 	await come()
 
 
