@@ -19,6 +19,11 @@ using treerec::NodeId;
 const int64_t kSurfaceFlags = (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
                               (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT);
 
+const int64_t kJoinedLeafFlags =
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT) |
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT);
+
 std::string to_std(const String& p_text) {
     const CharString bytes = p_text.utf8();
     return std::string(bytes.get_data(), size_t(bytes.length()));

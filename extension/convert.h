@@ -32,6 +32,8 @@ godot::PackedInt32Array to_godot(const std::vector<treerec::NodeId>& p_ids);
 // empty for an empty mesh. Turns the triangles, since the engine's front faces are clockwise.
 godot::Array to_surface_arrays(const treerec::Mesh& p_mesh);
 extern const int64_t kSurfaceFlags;
+// The same for leaves in one mesh (mesh/joined_leaves.h).
+extern const int64_t kJoinedLeafFlags;
 
 // The core's trees keep what a file or a Dictionary holds. Throws treerec::Error for what is no such
 // skeleton.

@@ -287,11 +287,8 @@ Ref<ArrayMesh> TreeReconstruction::build_mesh(int p_lod) const {
 PackedFloat32Array TreeReconstruction::build_leaf_buffer(int p_lod) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, PackedFloat32Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
-    return guarded(PackedFloat32Array(), [&] {
-        const std::vector<treerec::LeafPlacement> leaves =
-            treerec::place_leaves(*get_tree(), get_leaf_rules(), uint64_t(get_seed()), *get_leaf_density());
-        return to_godot(treerec::leaf_buffer(treerec::thin_leaves(leaves, p_lod)));
-    });
+    return guarded(PackedFloat32Array(),
+                   [&] { return to_godot(treerec::leaf_buffer(_place_leaves(get_leaf_rules(), p_lod))); });
 }
 
 Ref<MultiMesh> TreeReconstruction::build_leaves(int p_lod) const {

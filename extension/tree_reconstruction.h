@@ -117,6 +117,7 @@ class TreeReconstruction : public godot::Resource {
     godot::Array build_skeleton_lines() const;
     static godot::Array widen_lines(const godot::Array& p_lines);
     godot::Array build_leaf_form_arrays(int p_lod) const;
+    godot::Array build_joined_leaf_arrays(int p_lod) const;
     static godot::Array build_leaf_card_arrays(int p_lod);
     static godot::PackedStringArray get_leaf_preset_names();
 
@@ -158,7 +159,7 @@ class TreeReconstruction : public godot::Resource {
     // Physics (tree_reconstruction_physics.cpp).
     godot::TypedArray<godot::Dictionary> build_capsules(int p_maximum, double p_minimum_radius) const;
     // tree_reconstruction_variants.cpp
-    godot::Ref<TreeReconstruction> make_variant(int64_t p_seed, double p_amount) const;
+    godot::Ref<TreeReconstruction> make_variant(int64_t p_seed, double p_amount, double p_age) const;
 
   protected:
     static void _bind_methods();
@@ -174,6 +175,7 @@ class TreeReconstruction : public godot::Resource {
     // A node's data, or nothing and an error that names the id.
     std::optional<treerec::Node> _find_node(int p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
+    std::vector<treerec::LeafPlacement> _place_leaves(const treerec::LeafRules& p_rules, int p_lod) const;
     static void _bind_properties();
     static void _bind_editing();
     static void _bind_grafting();

@@ -1,10 +1,14 @@
 // What TreeReconstruction keeps of the leaves that the scan saw, and its leaf rule.
+#include <cstring>
+#include <godot_cpp/classes/mesh.hpp>
+#include <godot_cpp/variant/packed_byte_array.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <utility>
 
 #include "convert.h"
 #include "error.h"
+#include "mesh/joined_leaves.h"
 #include "mesh/leaf_cards.h"
 #include "tree_reconstruction.h"
 
@@ -162,6 +166,39 @@ bool TreeReconstruction::are_leaves_single() const {
 Array TreeReconstruction::build_leaf_form_arrays(int p_lod) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
-    return guarded(Array(),
-                   [&] { return to_surface_arrays(treerec::build_leaf_card(get_leaf_rules(), p_lod)); });
+    return guarded(Array(), [&] {
+        treerec::Mesh card = treerec::build_leaf_card(get_leaf_rules(), p_lod);
+        // The engine would multiply a leaf's own colour, which is a direction, with them.
+        card.colors.clear();
+        return to_surface_arrays(card);
+    });
+}
+
+static PackedByteArray to_bytes(const treerec::MeshArray<std::array<int8_t, 4>>& p_values) {
+    PackedByteArray bytes;
+    bytes.resize(int64_t(4 * p_values.size()));
+    std::memcpy(bytes.ptrw(), p_values.data(), 4 * p_values.size());
+    return bytes;
+}
+
+Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
+    ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
+                        vformat("There is no level of detail %d; 0 is the finest.", p_lod));
+    return guarded(Array(), [&] {
+        const treerec::LeafRules rules = get_leaf_rules();
+        const treerec::JoinedLeaves joined =
+            treerec::join_leaves(_place_leaves(rules, p_lod), treerec::build_leaf_card(rules, p_lod));
+        Array arrays = to_surface_arrays(joined.mesh);
+        if (!arrays.is_empty()) {
+            arrays[Mesh::ARRAY_CUSTOM1] = to_bytes(joined.lengthwise);
+            arrays[Mesh::ARRAY_CUSTOM2] = to_bytes(joined.across);
+        }
+        return arrays;
+    });
+}
+
+std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(const treerec::LeafRules& p_rules,
+                                                                      int p_lod) const {
+    return treerec::thin_leaves(
+        treerec::place_leaves(*get_tree(), p_rules, uint64_t(get_seed()), *get_leaf_density()), p_lod);
 }

@@ -275,6 +275,8 @@ void TreeReconstruction::_bind_methods() {
                                 &TreeReconstruction::widen_lines);
     ClassDB::bind_method(D_METHOD("build_leaf_form_arrays", "lod"),
                          &TreeReconstruction::build_leaf_form_arrays, DEFVAL(0));
+    ClassDB::bind_method(D_METHOD("build_joined_leaf_arrays", "lod"),
+                         &TreeReconstruction::build_joined_leaf_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("build_leaf_card_arrays", "lod"),
                                 &TreeReconstruction::build_leaf_card_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_leaf_preset_names"),
@@ -290,4 +292,5 @@ void TreeReconstruction::_bind_methods() {
     BIND_CONSTANT(FORMAT_VERSION);
     BIND_CONSTANT(FOLIAGE_VERSION);
     ClassDB::bind_integer_constant("TreeReconstruction", "", "MESH_FLAGS", kSurfaceFlags);
+    ClassDB::bind_integer_constant("TreeReconstruction", "", "JOINED_LEAF_FLAGS", kJoinedLeafFlags);
 }

@@ -33,7 +33,8 @@ std::shared_ptr<const treerec::VariantMaker> TreeReconstruction::_get_variant_ma
     return maker;
 }
 
-Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double p_amount) const {
+Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double p_amount,
+                                                         double p_age) const {
     constexpr double kLeafSize = 0.08;
     return guarded(Ref<TreeReconstruction>(), [&] {
         if (!newer_skeleton_.is_empty()) {
@@ -41,7 +42,7 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
                 "This tree was saved by a newer version of the addon, so it can't be varied here. Update the "
                 "addon.");
         }
-        treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), p_amount);
+        treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), p_amount, p_age);
         Ref<TreeReconstruction> made;
         made.instantiate();
         const Ref<LeafRule> rule = get_leaf_rule();
@@ -63,6 +64,9 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
         Dictionary how;
         how["seed"] = p_seed;
         how["amount"] = p_amount;
+        if (p_age != 1.0) {
+            how["age"] = p_age;
+        }
         made->provenance_["variant"] = how;
         made->set_leaf_rule(rule);
         return made;
@@ -70,6 +74,6 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
 }
 
 void TreeReconstruction::_bind_variants() {
-    ClassDB::bind_method(D_METHOD("make_variant", "seed", "amount"), &TreeReconstruction::make_variant,
-                         DEFVAL(0.5));
+    ClassDB::bind_method(D_METHOD("make_variant", "seed", "amount", "age"), &TreeReconstruction::make_variant,
+                         DEFVAL(0.5), DEFVAL(1.0));
 }

@@ -91,6 +91,7 @@ VariantMaker::VariantMaker(const Tree& tree, const Foliage& foliage) : tree_(tre
     if (tree.size() < 2) return;
     look_at_limbs();
     look_at_habits();
+    look_at_growth();
     if (!foliage.empty()) carry_foliage(foliage);
 }
 
@@ -192,11 +193,14 @@ void VariantMaker::look_at_habits() {
     }
 }
 
-TreeVariant VariantMaker::make(uint64_t seed, double amount) const {
+TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     if (!(amount >= 0.0 && amount <= 1.0)) throw Error("The amount of variation must be 0 to 1.");
-    if (amount == 0.0 || tree_.size() < 2) return {tree_, foliage_};
+    if (!(age >= kLeastAge && age <= kMostAge))
+        throw Error("The age of a variant must be 0.2 to 1.2 of the tree's own.");
+    if ((amount == 0.0 && age == 1.0) || tree_.size() < 2) return {tree_, foliage_};
     Work work;
     work.amount = amount;
+    set_age(work, age);
     const size_t expected = tree_.size() + tree_.size() / 4;
     work.positions.reserve(expected);
     work.radii.reserve(expected);
@@ -210,6 +214,8 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount) const {
     Slot trunk;
     trunk.drift = trunk.scale = 1.0 + kTrunkGrowth * amount * random.uniform(-1.7, 1.7);
     trunk.gauge = trunk.scale * (1.0 + kTrunkGauge * amount * random.uniform(-1.7, 1.7));
+    trunk.scale *= work.size;
+    trunk.gauge *= work.gauge;
     trunk.key = hash_seed(seed, 0);
     const Node& root = tree_.node(tree_.root());
     trunk.foot = root.position;
@@ -257,8 +263,13 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
         at.y = std::max(at.y, floor_);
         work.tilts[k] = tilt;
         work.positions.push_back(at);
-        work.radii.push_back(radii_[n] * slot.gauge);
-        work.parents.push_back(k == 0 ? slot.parent : first + static_cast<NodeId>(k) - 1);
+        const NodeId parent = k == 0 ? slot.parent : first + static_cast<NodeId>(k) - 1;
+        double radius = radii_[n] * slot.gauge;
+        // Twigs are as thick on a young tree.
+        if (work.size < 1.0)
+            radius = std::max(radius, std::min({radii_[n], twig_radius_, work.radii[parent]}));
+        work.radii.push_back(radius);
+        work.parents.push_back(parent);
         work.flags.push_back(flags_[n]);
     }
     for (int32_t child = limb.first_child; child < limb.last_child; child++) {
@@ -268,6 +279,10 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
     if (carried_.empty()) return;
     for (int32_t c = carried_begin_[slot.limb]; c < carried_begin_[slot.limb + 1]; c++) {
         const Carried& one = carried_[c];
+        // As dense as they are, in a smaller crown.
+        if (work.size < 1.0 &&
+            static_cast<double>(hash_seed(slot.key, one.cell) >> 11) * 0x1p-53 >= work.size * work.size)
+            continue;
         const DVec3 from = one.node < 0 ? slot.foot : work.positions[first + one.node];
         work.cells.push_back(one.cell);
         work.places.push_back(from + slot.turn * one.offset * slot.scale);
@@ -283,6 +298,7 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
     Random random(key, 1);
     const auto first = static_cast<NodeId>(work.positions.size()) - (limb.end - limb.begin);
 
+    if (!again && is_yet_to_grow(work, own, key)) return;
     const double fate = random.uniform();
     if (!again && !own.stem && own.wood < kSlender * limbs_[0].wood && own.order > 1) {
         if (fate < kLeftOut * amount && work.more_wood > -kBalance * limbs_[0].wood) {

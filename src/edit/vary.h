@@ -27,11 +27,17 @@ class VariantMaker {
   public:
     explicit VariantMaker(const Tree& tree, const Foliage& foliage = {});
 
-    // amount: 0 (the same tree, bit for bit) .. 1. The same seed and amount give the same bytes on every
-    // platform. Any number of threads may call it at once. Linear in the nodes and the cells of foliage.
-    // Of the flags only kTrunkFlag is left: nothing of a variant was measured. Throws Error for another
-    // amount.
-    TreeVariant make(uint64_t seed, double amount) const;
+    // amount: 0 (the same tree, bit for bit, at an age of 1) .. 1. age: kLeastAge .. kMostAge of the tree's
+    // own (vary_age.cpp says what it makes of one). The same seed, amount and age give the same bytes on
+    // every platform. Any number of threads may call it at once. Linear in the nodes and the cells of
+    // foliage. Of the flags only kTrunkFlag is left: nothing of a variant was measured. Throws Error for
+    // another amount or age.
+    TreeVariant make(uint64_t seed, double amount, double age = 1.0) const;
+
+    static constexpr double kLeastAge = 0.2, kMostAge = 1.2;
+
+    // How thick a limb of this tree is for its length: radius = constant * length^this.
+    double allometry() const { return allometry_; }
 
   private:
     // A branch (tree/branches.h) from its foot, the node of its parent that it grows from; the first one's is
@@ -79,6 +85,9 @@ class VariantMaker {
 
     void look_at_limbs();
     void look_at_habits();
+    void look_at_growth();
+    void set_age(Work& work, double age) const;
+    bool is_yet_to_grow(const Work& work, const Limb& limb, uint64_t key) const;
     void carry_foliage(const Foliage& foliage);
     double parent_radius(const Limb& limb) const;
     void grow(Work& work, const Slot& slot) const;
@@ -89,6 +98,9 @@ class VariantMaker {
     Tree tree_;
     Foliage foliage_;
     double floor_ = 0.0;  // the lowest node
+    // What this tree shows of growth: see vary_age.cpp. Metres.
+    double allometry_ = 1.5;
+    double twig_length_ = 0.0, twig_radius_ = 0.0;
     std::vector<Limb> limbs_;
     std::vector<Habit> habits_;  // by order
     // By node of the limbs: the way from the node before (or the foot), its length, the way along the limb up

@@ -24,6 +24,8 @@ struct VariantMaker::Slot {
 // One variant in the making.
 struct VariantMaker::Work {
     double amount = 0.0;
+    double size = 1.0;   // what its age makes of lengths,
+    double gauge = 1.0;  // and of radii
     std::vector<Slot> slots;
     std::vector<DVec3> positions;
     std::vector<double> radii;

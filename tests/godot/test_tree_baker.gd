@@ -1,8 +1,6 @@
 extends "./suite.gd"
 ## Baked trees need nothing of the addon.
 
-const JoinedLeaves := preload("res://addons/tree_reconstruction/baking/joined_leaves.gd")
-
 # Runs in a project that has never seen the addon.
 const _GAME: String = """
 extends SceneTree
@@ -121,7 +119,7 @@ func test_all_leaves_are_there() -> void:
 	var made: TreeReconstruction = _made()
 	var buffer: PackedFloat32Array = made.build_leaf_buffer()
 	var card: Array = made.build_leaf_form_arrays()
-	var arrays: Array = JoinedLeaves.join(buffer, card, Callable())
+	var arrays: Array = made.build_joined_leaf_arrays()
 	@warning_ignore("integer_division")
 	var count: int = buffer.size() / 20
 	var each: int = (card[Mesh.ARRAY_VERTEX] as PackedVector3Array).size()

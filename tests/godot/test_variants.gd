@@ -50,6 +50,21 @@ func test_the_same_seed_gives_the_same_variant() -> void:
 	check(made.make_variant(3).skeleton != first.skeleton, "The old tree is varied.")
 
 
+func test_an_age_makes_it_younger() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	var young: TreeReconstruction = made.make_variant(3, 0.5, 0.3)
+	check(
+		young.measure()["height"] < 0.7 * made.make_variant(3).measure()["height"],
+		"It is as high as the tree."
+	)
+	check_equal(
+		young.provenance, {"variant": {"seed": 3, "amount": 0.5, "age": 0.3}}, "the provenance"
+	)
+	check_equal(made.make_variant(3, 0.5, 0.3).skeleton, young.skeleton, "the same seed's")
+	expected_errors = ["The age of a variant must be 0.2 to 1.2"]
+	check(made.make_variant(3, 0.5, 0.1) == null, "An age of 0.1 was taken.")
+
+
 func test_a_leaf_rule_is_shared() -> void:
 	var made: TreeReconstruction = grown_tree(3)
 	made.leaf_rule = LeafRule.from_preset("maple")

@@ -196,6 +196,7 @@ TEST(Vary, TheSameBytesOnEveryPlatform) {
     }
     EXPECT_EQ(digest(tree), 706767941315135280u);
     EXPECT_EQ(digest(VariantMaker(tree).make(77, 0.5).tree), 18162438640939535871u);
+    EXPECT_EQ(digest(VariantMaker(tree).make(77, 0.5, 0.4).tree), 11807420802011341074u);
 }
 
 TEST(Vary, MoreIsFartherFromTheTree) {

@@ -17,7 +17,6 @@ extends RefCounted
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.15
-const JoinedLeaves := preload("joined_leaves.gd")
 const PlainMaterials := preload("plain_materials.gd")
 const Collision := preload("../nodes/tree_collision.gd")
 const Levels := preload("../nodes/tree_levels.gd")
@@ -79,9 +78,7 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 		parts.bark.append(tree.build_mesh_arrays(level))
 		var joined: Array = []
 		if leaves:
-			joined = JoinedLeaves.join(
-				tree.build_leaf_buffer(level), tree.build_leaf_form_arrays(level), cancelled
-			)
+			joined = tree.build_joined_leaf_arrays(level)
 		parts.leaves.append(joined)
 	if collision:
 		parts.capsules = tree.build_capsules()
@@ -155,7 +152,11 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 			mesh.surface_set_material(mesh.get_surface_count() - 1, bark)
 		if not parts.leaves[level].is_empty():
 			mesh.add_surface_from_arrays(
-				Mesh.PRIMITIVE_TRIANGLES, parts.leaves[level], [], {}, JoinedLeaves.FLAGS
+				Mesh.PRIMITIVE_TRIANGLES,
+				parts.leaves[level],
+				[],
+				{},
+				TreeReconstruction.JOINED_LEAF_FLAGS
 			)
 			mesh.surface_set_name(mesh.get_surface_count() - 1, "leaves")
 			mesh.surface_set_material(mesh.get_surface_count() - 1, leaf)
