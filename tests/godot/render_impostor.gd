@@ -1,0 +1,198 @@
+extends "./suite.gd"
+## An impostor looks like its tree, in the renderer that this run uses.
+
+const SIZE: Vector2i = Vector2i(192, 192)
+const SKY: Color = Color(0.2, 0.3, 0.9)
+
+var _viewport: SubViewport
+var _camera: Camera3D
+
+
+func _stage() -> void:
+	_viewport = SubViewport.new()
+	_viewport.size = SIZE
+	_viewport.own_world_3d = true
+	_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	tree.root.add_child(_viewport)
+	var world: WorldEnvironment = WorldEnvironment.new()
+	world.environment = Environment.new()
+	world.environment.background_mode = Environment.BG_COLOR
+	world.environment.background_color = SKY
+	world.environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
+	world.environment.ambient_light_color = Color.WHITE
+	world.environment.ambient_light_energy = 0.5
+	_viewport.add_child(world)
+	var sun: DirectionalLight3D = DirectionalLight3D.new()
+	sun.rotation_degrees = Vector3(-40, 30, 0)
+	_viewport.add_child(sun)
+	_camera = Camera3D.new()
+	_viewport.add_child(_camera)
+	_camera.make_current()
+
+
+# From as far as impostors are seen, with a lens that fills the picture.
+func _look(center: Vector3, reach: float, pitch: float, yaw: float) -> void:
+	var axes: Basis = Basis.from_euler(Vector3(deg_to_rad(-pitch), deg_to_rad(yaw), 0.0))
+	var away: float = 14.0 * reach
+	_camera.transform = Transform3D(axes, center + axes.z * away)
+	_camera.fov = rad_to_deg(2.0 * asin(1.1 * reach / away))
+	_camera.far = 2.0 * away
+
+
+func _picture() -> Image:
+	await RenderingServer.frame_post_draw
+	await RenderingServer.frame_post_draw
+	return _viewport.get_texture().get_image()
+
+
+static func _shows_tree(pixel: Color) -> bool:
+	return pixel.b < pixel.g + 0.15
+
+
+# The share of the picture that shows the tree, and its mean color.
+func _summary(picture: Image) -> Array:
+	var count: int = 0
+	var sum: Color = Color(0.0, 0.0, 0.0)
+	for y: int in SIZE.y:
+		for x: int in SIZE.x:
+			var pixel: Color = picture.get_pixel(x, y)
+			if _shows_tree(pixel):
+				count += 1
+				sum += pixel
+	return [count / float(SIZE.x * SIZE.y), sum / maxf(count, 1.0)]
+
+
+# The mean difference of a channel, over the pixels where either shows the tree.
+func _difference(a: Image, b: Image) -> float:
+	var sum: float = 0.0
+	var count: int = 0
+	for y: int in SIZE.y:
+		for x: int in SIZE.x:
+			var one: Color = a.get_pixel(x, y)
+			var other: Color = b.get_pixel(x, y)
+			if _shows_tree(one) or _shows_tree(other):
+				sum += absf(one.r - other.r) + absf(one.g - other.g) + absf(one.b - other.b)
+				count += 1
+	return sum / (3.0 * maxi(count, 1))
+
+
+func _card(mesh: Mesh, place: Transform3D) -> MeshInstance3D:
+	var card: MeshInstance3D = MeshInstance3D.new()
+	card.mesh = mesh
+	card.transform = place
+	_viewport.add_child(card)
+	RenderingServer.instance_geometry_set_shader_parameter(card.get_instance(), &"tree_wind", 0.0)
+	return card
+
+
+func test_an_impostor_looks_like_its_tree() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	made.leaf_rule = LeafRule.from_preset("maple")
+	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
+	baker.resolution = 512
+	baker.views = 6
+	var children: int = tree.root.get_child_count()
+	var impostor: TreeImpostor = await baker.bake(made)
+	check(impostor != null, baker.get_error_message())
+	if impostor == null:
+		return
+	check_equal(baker.get_progress(), 1.0, "the progress")
+	check(impostor.is_of(made), "It is of another tree.")
+	await tree.process_frame
+	check_equal(tree.root.get_child_count(), children, "what is left in the scene")
+
+	# What is saved is the same.
+	var path: String = folder.path_join("oak.impostor.res")
+	check_equal(ResourceSaver.save(impostor, path, ResourceSaver.FLAG_COMPRESS), OK, "saving")
+	impostor = load(path) as TreeImpostor
+
+	await _stage()
+	var center: Vector3 = impostor.box.get_center()
+	var reach: float = 0.5 * impostor.box.size.length()
+	var live: TreeInstance3D = TreeInstance3D.new()
+	live.lod = 0
+	live.wind = false
+	live.reconstruction = made
+	_viewport.add_child(live)
+	while live.is_rebuilding():
+		await tree.process_frame
+	var card: MeshInstance3D = _card(impostor.get_mesh(), Transform3D.IDENTITY)
+	for way: Vector2 in [Vector2(2.0, 0.0), Vector2(25.0, 100.0), Vector2(60.0, 230.0)]:
+		_look(center, reach, way.x, way.y)
+		live.visible = true
+		card.visible = false
+		var wanted: Image = await _picture()
+		live.visible = false
+		var empty: Image = await _picture()
+		card.visible = true
+		var given: Image = await _picture()
+		var nothing: float = _difference(wanted, empty)
+		var difference: float = _difference(wanted, given)
+		var of: Array = _summary(wanted)
+		var shown: Array = _summary(given)
+		check(of[0] > 0.05, "There is no tree in the picture from %s." % way)
+		check(difference < 0.45 * nothing, "From %s: %.3f of %.3f." % [way, difference, nothing])
+		check_near(shown[0], of[0], 0.15 * of[0], "how much of the picture it covers from %s" % way)
+		for channel: int in 3:
+			check_near(
+				shown[1][channel], of[1][channel], 0.05, "channel %d from %s" % [channel, way]
+			)
+	await _check_places(impostor, card, center, reach)
+	await _check_wind(card, 1.7 * impostor.height)
+	_viewport.free()
+
+
+# Turned and scaled, alone and in a MultiMesh, it is the same.
+func _check_places(
+	impostor: TreeImpostor, card: MeshInstance3D, center: Vector3, reach: float
+) -> void:
+	var place: Transform3D = Transform3D(
+		Basis.from_euler(Vector3(0.0, 1.1, 0.0)).scaled(Vector3.ONE * 1.7), Vector3(30.0, 4.0, -9.0)
+	)
+	_look(place * center, 1.7 * reach, 20.0, 75.0)
+	card.transform = place
+	var alone: Image = await _picture()
+	card.visible = false
+	check(_difference(alone, await _picture()) > 0.1, "It is gone where it was moved to.")
+	var many: MultiMeshInstance3D = MultiMeshInstance3D.new()
+	many.multimesh = MultiMesh.new()
+	many.multimesh.transform_format = MultiMesh.TRANSFORM_3D
+	many.multimesh.mesh = impostor.get_mesh()
+	many.multimesh.instance_count = 2
+	many.multimesh.set_instance_transform(0, Transform3D(Basis(), Vector3(0.0, -500.0, 0.0)))
+	many.multimesh.set_instance_transform(1, place)
+	_viewport.add_child(many)
+	RenderingServer.instance_geometry_set_shader_parameter(many.get_instance(), &"tree_wind", 0.0)
+	check(_difference(alone, await _picture()) < 0.005, "It is another one in a MultiMesh.")
+	many.free()
+	card.visible = true
+
+
+func _check_wind(card: MeshInstance3D, height: float) -> void:
+	var server: Object = RenderingServer
+	server.instance_geometry_set_shader_parameter(card.get_instance(), &"tree_height", height)
+	var calm: Image = await _picture()
+	check(_difference(calm, await _picture()) < 0.001, "It moves without wind.")
+	server.instance_geometry_set_shader_parameter(card.get_instance(), &"tree_wind", 1.0)
+	(card.mesh.surface_get_material(0) as ShaderMaterial).set_shader_parameter(
+		&"wind_strength", 2.0
+	)
+	var moved: float = _difference(calm, await _picture())
+	check(moved > 0.004, "The wind moves it by %.4f." % moved)
+
+
+func test_baking_can_be_cancelled() -> void:
+	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
+	baker.resolution = 512
+	var children: int = tree.root.get_child_count()
+	var ended: Array[bool] = [false]
+	var bake: Callable = func() -> void: ended[0] = await baker.bake(grown_tree(2)) == null
+	bake.call()
+	while baker.get_progress() < 0.15:
+		await tree.process_frame
+	baker.cancel()
+	for i: int in 4:
+		await tree.process_frame
+	check(ended[0], "It goes on.")
+	check_equal(baker.get_error_message(), "", "the reason")
+	check_equal(tree.root.get_child_count(), children, "what is left in the scene")
