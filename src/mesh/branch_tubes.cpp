@@ -1,23 +1,18 @@
 #include "mesh/branch_tubes.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "error.h"
-#include "foliage/branch_axis.h"
-#include "foliage/crown.h"
 #include "geometry/parallel.h"
-#include "mesh/tube_rings.h"
-#include "tree/branches.h"
+#include "mesh/tube_builder.h"
 
 namespace treerec {
 
+namespace tubes {
+
 namespace {
 
-constexpr double kLargestTree = 1e6;       // metres from the origin
-constexpr double kLeastShare = 1e-5;       // of the coordinates: thinner wood would vanish in floats
 constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
-constexpr double kCollarRadius = 0.012;    // metres; thinner branches get no collar of their own
 constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
 constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
@@ -26,7 +21,6 @@ constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
 constexpr double kHeightSlack = 1e-3;      // and over the tree's height
 constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
-constexpr size_t kBranchesPerChunk = 32;   // of parallel work
 
 // Radians between rings at level 0, of branches of such a radius in metres: the eye rests on the stout ones.
 struct BendLimit {
@@ -35,24 +29,7 @@ struct BendLimit {
 };
 constexpr BendLimit kBendLimits[] = {{0.02, 0.35}, {0.01, 0.7}, {0.0, 1.2}};
 
-// How one branch becomes a tube: where its rings lie in its chunk, and its vertices and indices in the mesh.
-struct Tube {
-    uint32_t first_ring = 0;
-    uint32_t rings = 0;  // 0: not drawn
-    uint32_t sides = 0;
-    bool round_tip = false;
-    bool point = false;           // the last ring is only the apex
-    double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
-    double parent_radius = 0.0;   // metres, 0 for the trunk
-    DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
-    std::optional<double> foot;   // y of a standing trunk's level cut
-    size_t first_vertex = 0;
-    size_t first_index = 0;
-
-    size_t all_rings() const { return rings + (round_tip ? 1u : 0u) - (point ? 1u : 0u); }
-    size_t vertices() const { return rings ? all_rings() * (sides + 1) + sides : 0; }
-    size_t indices() const { return rings ? (all_rings() - 1) * sides * 6 + sides * 3 : 0; }
-};
+}  // namespace
 
 uint32_t sides_of(double radius, const TubeOptions& options) {
     const double wanted = 2.0 * kPi * radius / std::max(options.side_length, 1e-6);
@@ -63,64 +40,6 @@ uint32_t sides_of(double radius, const TubeOptions& options) {
         static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
     return static_cast<uint32_t>(std::max(3, sides >> std::clamp(options.level, 0, 8)));
 }
-
-// Everything that the tubes of one tree share.
-struct Builder {
-    const Tree& tree;
-    const TubeOptions& options;
-    const BranchList list;
-    const Crown crown;
-    const double least;                    // metres: the smallest radius and half the smallest ring distance
-    std::vector<Tube> tubes;               // by branch
-    std::vector<std::vector<Ring>> rings;  // by chunk of branches
-    std::vector<uint8_t> drawn;            // by branch: not too thin, or bearing one that is not
-    std::vector<float> node_along;         // by node id: metres along its branch's axis
-
-    Builder(const Tree& t, const TubeOptions& o)
-        : tree(t),
-          options(o),
-          list(list_branches(t)),
-          crown(measure_crown(t)),
-          least(kLeastShare * crown.coordinate),
-          tubes(list.branches.size()),
-          rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
-          drawn(list.branches.size(), 0),
-          node_along(static_cast<size_t>(t.id_end()), 0.0f) {
-        for (size_t i = list.branches.size(); i-- > 0;) {
-            if (!drawn[i] && too_thin(list.branches[i])) continue;
-            drawn[i] = 1;
-            if (list.branches[i].parent >= 0) drawn[static_cast<size_t>(list.branches[i].parent)] = 1;
-        }
-    }
-
-    const Ring* rings_of(size_t branch) const {
-        return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
-    }
-
-    // The largest radius that a ring about `attach` may have and still hide in its parent's tube: the parent
-    // is a prism, and thins towards its next node.
-    double hidden_radius(NodeId attach, double reach) const {
-        const Node& node = tree.node(attach);
-        double radius = node.radius;
-        const Branch& parent = list.branches[list.branch_of[attach]];
-        for (NodeId child : tree.children(attach)) {
-            if (list.branch_of[child] != list.branch_of[attach]) continue;
-            const double distance = glm::distance(tree.node(child).position, node.position);
-            const double t = distance > reach ? reach / distance : 1.0;
-            radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
-        }
-        const double thickest = tree.node(list.nodes[parent.begin]).radius;
-        return 0.92 * std::cos(kPi / sides_of(thickest, options)) * radius;
-    }
-
-    void plan(size_t index, std::vector<AxisPoint>& points);
-    void seat(size_t index);
-    void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
-    void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
-                    std::vector<Ring>& out) const;
-    void emit(size_t index, Mesh& mesh) const;
-    bool too_thin(const Branch& branch) const;
-};
 
 // Far away, thin and short branches are less than a pixel.
 bool Builder::too_thin(const Branch& branch) const {
@@ -219,9 +138,10 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
             if (!near && (far || bent || changed || misses(last, next))) break;
             best = next;
+            const bool flares = level == 0 && to.along <= tube.flare.reach;
             const bool collar =
                 collar_begins && to.radius >= kCollarRadius && to.along < tube.exit + 2.5 * to.radius;
-            if (collar && to.along - from.along >= gap) break;
+            if ((collar || flares) && to.along - from.along >= gap) break;
         }
         // A last ring right above another only makes slivers.
         if (best + 1 == points.size() && last > 0 &&
@@ -256,6 +176,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
             return;
         add_collar(branch, points, tube);
     }
+    if (branch.attach == kNoNode && options.level <= 1 && tree.node(tree.root()).is_trunk())
+        tube.flare = plan_flare(points, sides_of(tree.node(tree.root()).radius, options));
     pick_rings(branch, points, tube, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
@@ -264,10 +186,12 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
         thickest = std::max(thickest, out[i].radius);
     if (branch.attach == kNoNode && tree.node(tree.root()).is_trunk())
         tube.foot = cut_level(out.data() + tube.first_ring, tube.rings);
+    if (!tube.foot) tube.flare = {};
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
+    frame_rings(out.data() + tube.first_ring, tube.rings);
 }
 
 // Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.
@@ -300,6 +224,7 @@ void Builder::seat(size_t index) {
             std::clamp((side - under->along) / std::max(over->along - under->along, 1e-30), 0.0, 1.0);
         radius = std::min(radius, under->radius + (over->radius - under->radius) * f);
     }
+    tubes[index].host_ring = static_cast<uint32_t>(lower - begin);
     const double hidden = 0.92 * std::cos(kPi / parent.sides) * radius;
     Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
     start.centre = lower->centre + chord * t;
@@ -307,147 +232,31 @@ void Builder::seat(size_t index) {
     start.radius = std::max(std::min(start.radius, hidden), least);
 }
 
-void Builder::emit(size_t index, Mesh& mesh) const {
+// Once all tubes are where they stay.
+void Builder::join(size_t index) {
     const Branch& branch = list.branches[index];
-    const Tube& tube = tubes[index];
-    const Ring* const run = rings_of(index);
-    const uint32_t sides = tube.sides;
-    const size_t count = tube.rings;
-    const Ring& last_ring = run[count - 1];
-    const double length = last_ring.along;
-    const double repeats =
-        std::max(1.0, std::round(2.0 * kPi * run[1].radius / std::max(options.bark_width, 1e-6)));
-    const float phase = static_cast<float>(branch_phase(list.nodes[branch.end - 1]));
-    const Vec4 custom0(Vec3(run[0].centre), static_cast<float>(branch.order));
-    DVec2 circle[65];
-    for (uint32_t j = 0; j <= sides; j++) {
-        const double angle = 2.0 * kPi * (j % sides) / sides;
-        circle[j] = {std::cos(angle), std::sin(angle)};
-    }
-    size_t vertex = tube.first_vertex;
-    const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double u, double v,
-                         double radius, const Vec4& color) {
-        mesh.positions[vertex] = Vec3(position);
-        mesh.normals[vertex] = Vec3(normal);
-        mesh.uvs[vertex] = {static_cast<float>(u), static_cast<float>(v)};
-        mesh.colors[vertex] = color;
-        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
-        if (options.pivots) {
-            mesh.custom0[vertex] = custom0;
-            mesh.radii[vertex] = static_cast<float>(radius);
-        }
-        vertex++;
-    };
-    // shade: 0 .. 1, how much of the ring's vertex lies in the crease between the branch and its parent.
-    const auto color_at = [&](const DVec3& centre, double along, double shade) {
-        double light = 0.45 + 0.55 * crown.openness(centre);
-        if (centre.y < crown.centre.y - crown.radii.y) light = 0.95;
-        if (tube.parent_radius > 0.0) {
-            const double t = std::clamp((along - tube.exit) / (1.5 * tube.parent_radius), 0.0, 1.0);
-            light *= 1.0 - 0.4 * (1.0 - t) * shade;
-        } else {
-            light *= 0.75 + 0.25 * std::clamp(along / (4.0 * run[0].radius), 0.0, 1.0);
-        }
-        return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
-                    phase, static_cast<float>(light));
-    };
-    // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.
-    const auto blend_at = [&](const Ring& ring) {
-        if (tube.parent_radius <= 0.0 || options.level > 0 || run[1].radius < kCollarRadius) return 0.0;
-        const double past = (ring.along - tube.exit) / (1.5 * run[1].radius);
-        return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
-    };
-    DVec3 normal = run[0].normal;
-    DVec3 x = any_perpendicular(normal);
-    for (size_t i = 0; i < count - (tube.point ? 1 : 0); i++) {
-        const Ring& ring = run[i];
-        // Parallel transport: the smallest turn that takes the last ring's normal to this one's.
-        const double turn = 1.0 + glm::dot(normal, ring.normal);
-        if (turn > 1e-9) x -= (normal + ring.normal) * (glm::dot(x, ring.normal) / turn);
-        normal = ring.normal;
-        x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
-        const DVec3 y = glm::cross(normal, x);
-        const Ring& before = run[i > 0 ? i - 1 : 0];
-        const Ring& after = run[std::min(i + 1, count - 1)];
-        const double slope = std::clamp(
-            (after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0, 1.0);
-        const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
-        const Vec4 color = color_at(ring.centre, ring.along, 1.0);
-        const double blend = i == 0 ? 0.0 : blend_at(ring);
-        for (uint32_t j = 0; j <= sides; j++) {
-            const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            DVec3 position = ring.centre + radial * ring.radius;
-            double v = ring.along;
-            if (i == 0 && tube.foot) {
-                // Along the trunk to the level cut.
-                const double down = (position.y - *tube.foot) / normal.y;
-                position -= normal * down;
-                v -= down;
-            }
-            DVec3 tangent = y * circle[j].x - x * circle[j].y;
-            DVec3 outward = (radial - normal * slope) * scale;
-            Vec4 corner_color = color;
-            if (blend > 0.0) {
-                const DVec3 from = position - run[0].centre;
-                const DVec3 bark = from - tube.parent_direction * glm::dot(from, tube.parent_direction);
-                const DVec3 away = normalized_or(bark, outward);
-                // What looks away from the parent's axis lies in no crease.
-                const double shade = 1.0 - glm::smoothstep(0.0, 0.8, glm::dot(radial, away));
-                corner_color = color_at(ring.centre, ring.along, shade);
-                outward = normalized_or(outward + away * blend, outward);
-                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
-            }
-            put(position, outward, tangent, repeats * j / sides, v, ring.radius, corner_color);
-        }
-    }
-    // The tip: a dome, or a point as high as the tip is wide.
-    const DVec3 y = glm::cross(normal, x);
-    const Vec4 color = color_at(last_ring.centre, length, 1.0);
-    if (tube.round_tip) {
-        for (uint32_t j = 0; j <= sides; j++) {
-            const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
-                radial * 0.7746 + normal * 0.6325, y * circle[j].x - x * circle[j].y, repeats * j / sides,
-                length + 0.66 * last_ring.radius, last_ring.radius, color);
-        }
-    }
-    const DVec3 apex = last_ring.centre + normal * (0.98 * last_ring.radius);
-    for (uint32_t j = 0; j < sides; j++) {
-        const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
-        const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
-        // A drawn-out point is lit like the wood below it.
-        const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
-        put(apex, outward, tangent, repeats * (j + 0.5) / sides, length + 1.2 * last_ring.radius,
-            last_ring.radius, color);
-    }
-    size_t at = tube.first_index;
-    const uint32_t base = static_cast<uint32_t>(tube.first_vertex), stride = sides + 1;
-    const uint32_t spans = static_cast<uint32_t>(tube.all_rings()) - 1;
-    for (uint32_t i = 0; i < spans; i++) {
-        for (uint32_t j = 0; j < sides; j++) {
-            const uint32_t a = base + i * stride + j, b = a + 1, c = a + stride, d = c + 1;
-            for (uint32_t corner : {a, b, d, a, d, c})
-                mesh.indices[at++] = corner;
-        }
-    }
-    for (uint32_t j = 0; j < sides; j++) {
-        const uint32_t a = base + spans * stride + j;
-        for (uint32_t corner : {a, a + 1, base + (spans + 1) * stride + j})
-            mesh.indices[at++] = corner;
-    }
+    Tube& tube = tubes[index];
+    if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode) return;
+    if (rings_of(index)[1].radius < kCollarRadius) return;
+    const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
+    if (tubes[host].rings < 2) return;
+    std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];
+    tube.first_collar = out.size();
+    tube.collar = make_collar({rings_of(index), tube.rings, tube.sides},
+                              {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring, out);
 }
 
-}  // namespace
+}  // namespace tubes
 
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Progress* progress) {
     Mesh mesh;
     if (tree.size() < 2) return mesh;
     if (options.maximum_sides > 64) throw Error("A branch can have at most 64 sides.");
-    Builder builder(tree, options);
-    if (!(builder.crown.coordinate < kLargestTree))
+    tubes::Builder builder(tree, options);
+    if (!(builder.crown.coordinate < tubes::kLargestTree))
         throw Error("The tree reaches beyond 1000 km; check the scan's units.");
     const size_t branches = builder.tubes.size();
-    parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
+    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         std::vector<AxisPoint> points;
         for (size_t i = begin; i < end; i++)
@@ -455,8 +264,13 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     });
     for (size_t i = 0; i < branches; i++)  // parents before children
         builder.seat(i);
+    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        for (size_t i = begin; i < end; i++)
+            builder.join(i);
+    });
     size_t vertices = 0, indices = 0;
-    for (Tube& tube : builder.tubes) {
+    for (tubes::Tube& tube : builder.tubes) {
         tube.first_vertex = vertices;
         tube.first_index = indices;
         vertices += tube.vertices();
@@ -473,7 +287,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
         mesh.radii.resize(vertices);
     }
     mesh.indices.resize(indices);
-    parallel_for(branches, kBranchesPerChunk, [&](size_t begin, size_t end) {
+    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         for (size_t i = begin; i < end; i++)
             if (builder.tubes[i].rings > 0) builder.emit(i, mesh);

@@ -13,16 +13,22 @@ struct TubeOptions {
     double side_length = 0.02;  // metres of circumference per side aimed at, at level 0
     int minimum_sides = 5;      // one less on branches under 16 mm of diameter, two less under 8 mm
     int maximum_sides = 24;
-    double bark_width =
-        1.0;             // metres of circumference per texture repeat, rounded per branch to whole repeats
+    double bark_width = 0.6;  // metres of circumference per texture repeat
+    // For materials that know nothing of the bark's seam: each branch takes a whole number of repeats,
+    // whatever their width, instead of as many as fit around it and a seam that the bark's shader blends
+    // over.
+    bool whole_repeats = false;
     bool pivots = true;  // custom0 and radii are filled; files have no place for them
 };
 
-// Vertices carry normals, tangents, UVs (u around in whole repeats, v along in metres), wind channels.
-// A trunk that stands is cut level and goes on below the root, by its radius or 0.25 m, whichever is less
-// (and further where a thick one leans), so that slopes hide the cut; a branch without a trunk is cut across.
-// An empty tree or a lone root gives an empty mesh. Deterministic. Throws Error for a tree that reaches
-// beyond 1000 km or has too much bark, or Cancelled.
+// Vertices carry normals, tangents, UVs (u around in repeats, v along in metres), wind channels.
+// At level 0 stout branches have collars: their first vertices lie on their parent's bark, with its normal,
+// light and UVs, and a curved web leads up from there; u goes on beyond a round there, below 0 or above it.
+// Thinner branches start within their parents. A trunk that stands and does not widen at its foot is given a
+// flare there. A trunk that stands is cut level and goes on below the root, by its radius or 0.25 m,
+// whichever is less (and further where a thick one leans), so that slopes hide the cut; a branch without a
+// trunk is cut across. An empty tree or a lone root gives an empty mesh. Deterministic. Throws Error for a
+// tree that reaches beyond 1000 km or has too much bark, or Cancelled.
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {},
                         const Progress* progress = nullptr);
 

@@ -48,4 +48,25 @@ std::optional<double> cut_level(Ring* rings, size_t count) {
     return std::min(foot, next.centre.y - dip - 0.1 * cut.radius);
 }
 
+void frame_rings(Ring* rings, size_t count) {
+    if (count == 0) return;
+    DVec3 normal = rings[0].normal;
+    DVec3 x = any_perpendicular(normal);
+    for (size_t i = 0; i < count; i++) {
+        Ring& ring = rings[i];
+        const double turn = 1.0 + glm::dot(normal, ring.normal);
+        if (turn > 1e-9) x -= (normal + ring.normal) * (glm::dot(x, ring.normal) / turn);
+        normal = ring.normal;
+        x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
+        ring.x = x;
+    }
+}
+
+double ring_slope(const Ring* rings, size_t count, size_t i) {
+    const Ring& before = rings[i > 0 ? i - 1 : 0];
+    const Ring& after = rings[std::min(i + 1, count - 1)];
+    return std::clamp((after.radius - before.radius) / std::max(after.along - before.along, 1e-30), -1.0,
+                      1.0);
+}
+
 }  // namespace treerec

@@ -14,6 +14,8 @@ struct Ring {
     DVec3 normal;  // unit, towards the tip
     double radius;
     double along;  // from the branch's start
+    DVec3 x{0.0};  // unit, across the normal: where the ring's first corner lies; set by frame_rings()
+    DVec3 y() const { return glm::cross(normal, x); }  // a quarter turn on
 };
 
 // Two rings must not cross on the inner side of a bend: turns both towards their mean until they clear.
@@ -23,5 +25,11 @@ void limit_tilt(Ring* rings, size_t count);
 // the first ring's normal to where that goes on along, and gives the cut's y. Nothing for what lies or has
 // fewer than two rings. rings: from the root.
 std::optional<double> cut_level(Ring* rings, size_t count);
+
+// Parallel transport: each ring's x is the last one's by the smallest turn that takes its normal to this one.
+void frame_rings(Ring* rings, size_t count);
+
+// How much wider the tube becomes per metre at ring i, by its neighbours; -1..1.
+double ring_slope(const Ring* rings, size_t count, size_t i);
 
 }  // namespace treerec

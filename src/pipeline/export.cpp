@@ -51,6 +51,7 @@ const Mesh& TreeExporter::bark() {
     if (!bark_) {
         TubeOptions tubes;
         tubes.pivots = false;
+        tubes.whole_repeats = true;
         bark_ = build_branch_tubes(leafy_tree(tree_, options_.leaves, options_.foliage), tubes, progress_);
     }
     return *bark_;

@@ -34,8 +34,9 @@ TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
         while (end < mesh.positions.size() && mesh.uvs[end].y == mesh.uvs[v].y &&
                mesh.custom0[end] == mesh.custom0[v])
             sum += DVec3(mesh.positions[end++]);
-        // The last vertex of a ring repeats the first.
-        if (mesh.custom0[v].w == 1.0f && mesh.colors[v].g < 1.0f)
+        // The last vertex of a ring repeats the first. A collar's rows slant: no two of their vertices are as
+        // far along.
+        if (end - v > 3 && mesh.custom0[v].w == 1.0f && mesh.colors[v].g < 1.0f)
             centres.push_back((sum - DVec3(mesh.positions[end - 1])) / static_cast<double>(end - v - 1));
         v = end;
     }

@@ -1,0 +1,120 @@
+// What the tubes of one tree are built by. Internal to mesh/.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "foliage/branch_axis.h"
+#include "foliage/crown.h"
+#include "mesh/branch_tubes.h"
+#include "mesh/collar.h"
+#include "mesh/root_flare.h"
+#include "mesh/tube_rings.h"
+#include "tree/branches.h"
+
+namespace treerec::tubes {
+
+constexpr double kLargestTree = 1e6;      // metres from the origin
+constexpr double kLeastShare = 1e-5;      // of the coordinates: thinner wood would vanish in floats
+constexpr double kCollarRadius = 0.012;   // metres; thinner branches get no collar of their own
+constexpr size_t kBranchesPerChunk = 32;  // of parallel work
+
+// Of a tube about wood of such a radius in metres.
+uint32_t sides_of(double radius, const TubeOptions& options);
+
+// How one branch becomes a tube: where its rings lie in its chunk, and its vertices and indices in the mesh.
+struct Tube {
+    uint32_t first_ring = 0;
+    uint32_t rings = 0;  // 0: not drawn
+    uint32_t sides = 0;
+    bool round_tip = false;
+    bool point = false;           // the last ring is only the apex
+    double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
+    double parent_radius = 0.0;   // metres, 0 for the trunk
+    DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
+    std::optional<double> foot;   // y of a standing trunk's level cut
+    RootFlare flare;              // of that trunk
+    Collar collar;                // on its parent's bark
+    size_t first_collar = 0;      // its vertices in the chunk
+    uint32_t host_ring = 0;       // of the parent, below where this one starts
+    size_t first_vertex = 0;
+    size_t first_index = 0;
+
+    size_t rows() const {
+        return collar.rows + rings - collar.next_ring + (round_tip ? 1u : 0u) - (point ? 1u : 0u);
+    }
+    // A collar has two rows at one place, and no faces between them.
+    size_t spans() const { return rows() - (collar.rows ? 2u : 1u); }
+    size_t vertices() const { return rings ? rows() * (sides + 1) + sides : 0; }
+    size_t indices() const { return rings ? spans() * sides * 6 + sides * 3 : 0; }
+};
+
+// Everything that the tubes of one tree share.
+struct Builder {
+    const Tree& tree;
+    const TubeOptions& options;
+    const BranchList list;
+    const Crown crown;
+    const double least;                    // metres: the smallest radius and half the smallest ring distance
+    std::vector<Tube> tubes;               // by branch
+    std::vector<std::vector<Ring>> rings;  // by chunk of branches
+    std::vector<std::vector<CollarVertex>> collars;  // by chunk of branches
+    std::vector<uint8_t> drawn;                      // by branch: not too thin, or bearing one that is not
+    std::vector<float> node_along;                   // by node id: metres along its branch's axis
+
+    Builder(const Tree& t, const TubeOptions& o)
+        : tree(t),
+          options(o),
+          list(list_branches(t)),
+          crown(measure_crown(t)),
+          least(kLeastShare * crown.coordinate),
+          tubes(list.branches.size()),
+          rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
+          collars(rings.size()),
+          drawn(list.branches.size(), 0),
+          node_along(static_cast<size_t>(t.id_end()), 0.0f) {
+        for (size_t i = list.branches.size(); i-- > 0;) {
+            if (!drawn[i] && too_thin(list.branches[i])) continue;
+            drawn[i] = 1;
+            if (list.branches[i].parent >= 0) drawn[static_cast<size_t>(list.branches[i].parent)] = 1;
+        }
+    }
+
+    const Ring* rings_of(size_t branch) const {
+        return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
+    }
+
+    // The largest radius that a ring about `attach` may have and still hide in its parent's tube: the parent
+    // is a prism, and thins towards its next node.
+    double hidden_radius(NodeId attach, double reach) const {
+        const Node& node = tree.node(attach);
+        double radius = node.radius;
+        const Branch& parent = list.branches[list.branch_of[attach]];
+        for (NodeId child : tree.children(attach)) {
+            if (list.branch_of[child] != list.branch_of[attach]) continue;
+            const double distance = glm::distance(tree.node(child).position, node.position);
+            const double t = distance > reach ? reach / distance : 1.0;
+            radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
+        }
+        const double thickest = tree.node(list.nodes[parent.begin]).radius;
+        return 0.92 * std::cos(kPi / sides_of(thickest, options)) * radius;
+    }
+
+    void plan(size_t index, std::vector<AxisPoint>& points);
+    void seat(size_t index);
+    void join(size_t index);
+    void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
+    void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
+                    std::vector<Ring>& out) const;
+    double light_at(const Tube& tube, double start_radius, const DVec3& centre, double along,
+                    double shade) const;
+    float phase_of(size_t index) const {
+        return static_cast<float>(branch_phase(list.nodes[list.branches[index].end - 1]));
+    }
+    double repeats_of(size_t index, double radius) const;
+    void emit(size_t index, Mesh& mesh) const;
+    bool too_thin(const Branch& branch) const;
+};
+
+}  // namespace treerec::tubes

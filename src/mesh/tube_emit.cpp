@@ -1,0 +1,185 @@
+// Tubes to vertices.
+#include <algorithm>
+
+#include "mesh/tube_builder.h"
+
+namespace treerec::tubes {
+
+namespace {
+
+constexpr double kCrease = 0.2;  // of the light: how much darker it is halfway up a collar
+
+}  // namespace
+
+// How much of the sky the bark sees (COLOR.a). shade: 0 .. 1, how much of the place lies in the crease
+// between the branch and its parent.
+double Builder::light_at(const Tube& tube, double start_radius, const DVec3& centre, double along,
+                         double shade) const {
+    double light = 0.45 + 0.55 * crown.openness(centre);
+    if (centre.y < crown.centre.y - crown.radii.y) light = 0.95;
+    if (tube.parent_radius > 0.0) {
+        const double t = std::clamp((along - tube.exit) / (1.5 * tube.parent_radius), 0.0, 1.0);
+        return light * (1.0 - 0.4 * (1.0 - t) * shade);
+    }
+    return light * (0.75 + 0.25 * std::clamp(along / (4.0 * start_radius), 0.0, 1.0));
+}
+
+// How often the bark's picture goes around where the branch is so thick.
+double Builder::repeats_of(size_t index, double radius) const {
+    const double width = std::max(options.bark_width, 1e-6);
+    if (!options.whole_repeats) return 2.0 * kPi * radius / width;
+    return std::max(1.0, std::round(2.0 * kPi * rings_of(index)[1].radius / width));
+}
+
+void Builder::emit(size_t index, Mesh& mesh) const {
+    const Branch& branch = list.branches[index];
+    const Tube& tube = tubes[index];
+    const Ring* const run = rings_of(index);
+    const uint32_t sides = tube.sides, stride = sides + 1;
+    const size_t count = tube.rings;
+    const Ring& last_ring = run[count - 1];
+    const double length = last_ring.along;
+    const double repeats = repeats_of(index, last_ring.radius);
+    const float phase = phase_of(index);
+    const Vec4 custom0(Vec3(run[0].centre), static_cast<float>(branch.order));
+    DVec2 circle[65];
+    for (uint32_t j = 0; j <= sides; j++) {
+        const double angle = 2.0 * kPi * (j % sides) / sides;
+        circle[j] = {std::cos(angle), std::sin(angle)};
+    }
+    const double per_side = 1.0 / sides;
+    size_t vertex = tube.first_vertex;
+    const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double around,
+                         double repeats, double v, double radius, const Vec4& color) {
+        mesh.positions[vertex] = Vec3(position);
+        mesh.normals[vertex] = Vec3(normal);
+        mesh.uvs[vertex] = {static_cast<float>(around * repeats), static_cast<float>(v)};
+        mesh.colors[vertex] = color;
+        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
+        if (options.pivots) {
+            mesh.custom0[vertex] = custom0;
+            mesh.radii[vertex] = static_cast<float>(radius);
+        }
+        vertex++;
+    };
+    const auto color_at = [&](const DVec3& centre, double along, double light, float of_phase) {
+        return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
+                    of_phase, static_cast<float>(light));
+    };
+    const CollarVertex* const collar = collars[index / kBranchesPerChunk].data() + tube.first_collar;
+    const size_t host = static_cast<size_t>(std::max(branch.parent, 0));
+    for (size_t i = 0; i < tube.collar.rows * stride; i++) {
+        const CollarVertex& from = collar[i];
+        const bool foot = i < stride;
+        const double bark =
+            light_at(tubes[host], rings_of(host)[0].radius, from.host_centre, from.host_along, 1.0);
+        const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
+        const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
+        const double light = (bark + (own - bark) * from.own) * crease;
+        const bool as_host = foot || (i >= 2 * stride && i < 3 * stride);
+        put(from.position, from.normal, from.tangent, from.around,
+            repeats_of(as_host ? host : index, from.radius), from.v, from.radius,
+            color_at(from.position, foot ? 0.0 : std::max(from.along, 1e-4 * length), light,
+                     foot ? phase_of(host) : phase));
+    }
+    // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.
+    const auto blend_at = [&](const Ring& ring) {
+        if (tube.parent_radius <= 0.0 || options.level > 0 || tube.collar.rows > 0 ||
+            run[1].radius < kCollarRadius)
+            return 0.0;
+        const double past = (ring.along - tube.exit) / (1.5 * run[1].radius);
+        return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
+    };
+    for (size_t i = tube.collar.next_ring; i < count - (tube.point ? 1 : 0); i++) {
+        const Ring& ring = run[i];
+        const DVec3 y = ring.y();
+        const double slope = ring_slope(run, count, i);
+        const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
+        const Vec4 color = color_at(ring.centre, ring.along,
+                                    light_at(tube, run[0].radius, ring.centre, ring.along, 1.0), phase);
+        const bool flares = tube.flare.amount > 0.0 && ring.along < tube.flare.reach;
+        const double shown = flares ? mean_radius(tube.flare, ring) : ring.radius;
+        const double ring_repeats = repeats_of(index, shown);
+        const double blend = i == 0 ? 0.0 : blend_at(ring);
+        for (uint32_t j = 0; j < stride; j++) {
+            const DVec3 radial = ring.x * circle[j].x + y * circle[j].y;
+            DVec3 tangent = (y * circle[j].x - ring.x * circle[j].y);
+            DVec3 outward = (radial - ring.normal * slope) * scale;
+            double radius = ring.radius;
+            if (flares) {
+                const FlareAt flare = flare_at(tube.flare, ring, 2.0 * kPi * (j % sides) / sides);
+                radius = flare.radius;
+                outward = normalized_or(radial - ring.normal * flare.slope -
+                                            (y * circle[j].x - ring.x * circle[j].y) * flare.turn,
+                                        radial);
+                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
+            }
+            DVec3 position = ring.centre + radial * radius;
+            double v = ring.along;
+            if (i == 0 && tube.foot) {
+                // Along the trunk to the level cut.
+                const double down = (position.y - *tube.foot) / ring.normal.y;
+                position -= ring.normal * down;
+                v -= down;
+            }
+            Vec4 corner_color = color;
+            if (blend > 0.0) {
+                const DVec3 from = position - run[0].centre;
+                const DVec3 bark = from - tube.parent_direction * glm::dot(from, tube.parent_direction);
+                const DVec3 away = normalized_or(bark, outward);
+                // What looks away from the parent's axis lies in no crease.
+                const double shade = 1.0 - glm::smoothstep(0.0, 0.8, glm::dot(radial, away));
+                corner_color = color_at(ring.centre, ring.along,
+                                        light_at(tube, run[0].radius, ring.centre, ring.along, shade), phase);
+                outward = normalized_or(outward + away * blend, outward);
+                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
+            }
+            put(position, outward, tangent, per_side * j, ring_repeats, v, shown, corner_color);
+        }
+    }
+    // The tip: a dome, or a point as high as the tip is wide.
+    const DVec3 normal = last_ring.normal, x = last_ring.x, y = last_ring.y();
+    const Vec4 color = color_at(last_ring.centre, length,
+                                light_at(tube, run[0].radius, last_ring.centre, length, 1.0), phase);
+    if (tube.round_tip) {
+        for (uint32_t j = 0; j < stride; j++) {
+            const DVec3 radial = x * circle[j].x + y * circle[j].y;
+            put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
+                radial * 0.7746 + normal * 0.6325, (y * circle[j].x - x * circle[j].y), per_side * j, repeats,
+                length + 0.66 * last_ring.radius, last_ring.radius, color);
+        }
+    }
+    const DVec3 apex = last_ring.centre + normal * (0.98 * last_ring.radius);
+    for (uint32_t j = 0; j < sides; j++) {
+        const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
+        const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
+        // A drawn-out point is lit like the wood below it.
+        const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
+        put(apex, outward, tangent, per_side * (j + 0.5), repeats, length + 1.2 * last_ring.radius,
+            last_ring.radius, color);
+    }
+    size_t at = tube.first_index;
+    const uint32_t base = static_cast<uint32_t>(tube.first_vertex);
+    const uint32_t rows = static_cast<uint32_t>(tube.rows());
+    const uint32_t first_row = tube.collar.rows ? 1 : 0;
+    const auto join_rows = [&](uint32_t low, uint32_t high) {
+        for (uint32_t j = 0; j < sides; j++) {
+            const uint32_t a = base + low * stride + j, b = a + 1, c = base + high * stride + j, d = c + 1;
+            for (uint32_t corner : {a, b, d, a, d, c})
+                mesh.indices[at++] = corner;
+        }
+    };
+    if (first_row) {
+        join_rows(0, 2);
+        join_rows(1, 3);
+    }
+    for (uint32_t row = first_row ? 3 : 0; row + 1 < rows; row++)
+        join_rows(row, row + 1);
+    for (uint32_t j = 0; j < sides; j++) {
+        const uint32_t a = base + (rows - 1) * stride + j;
+        for (uint32_t corner : {a, a + 1, base + rows * stride + j})
+            mesh.indices[at++] = corner;
+    }
+}
+
+}  // namespace treerec::tubes
