@@ -38,8 +38,12 @@ func meet(folder: String) -> void:
 		await _frame()
 	_peer = _server.take_connection()
 	_peer.set_no_delay(true)
-	# The engine overlooks the focus that its window has from the beginning.
+	# The engine takes its window for focused from the beginning, whether it is or not, and overlooks
+	# the first focus that it does get. After going away for long enough it knows.
+	await ask(["focus", "editor"])
+	await _frame()
 	await go()
+	await (Engine.get_main_loop() as SceneTree).create_timer(0.6).timeout
 	await come()
 
 
