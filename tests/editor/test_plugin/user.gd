@@ -38,12 +38,7 @@ func meet(folder: String) -> void:
 		await _frame()
 	_peer = _server.take_connection()
 	_peer.set_no_delay(true)
-	# The engine takes its window for focused from the beginning, whether it is or not, and overlooks
-	# the first focus that it does get. After going away for long enough it knows.
-	await ask(["focus", "editor"])
-	await _frame()
 	await go()
-	await (Engine.get_main_loop() as SceneTree).create_timer(0.6).timeout
 	await come()
 
 
@@ -145,12 +140,18 @@ func _x(words: PackedStringArray) -> void:
 	await frames(_FRAMES)
 
 
-# Asks again where nothing came of it: a window that is just being made may lose the focus again.
+# The engine takes its window for focused from the beginning, whether it is or not, and overlooks
+# the first focus that it does get. So where nothing comes of it, it is tried from the other side.
 func _focus(where: String, here: bool) -> void:
 	var next: int = 0
+	var again: bool = false
 	while _window().has_focus() != here or is_worked_in != here:
 		if Time.get_ticks_msec() >= next:
+			if again:
+				await ask(["focus", "elsewhere" if here else "editor"])
+				await (Engine.get_main_loop() as SceneTree).create_timer(0.6).timeout
 			await ask(["focus", where])
+			again = true
 			next = Time.get_ticks_msec() + 3000
 		await _frame()
 
