@@ -1,0 +1,308 @@
+@tool
+extends RefCounted
+## What of a forest is drawn: for each cell near enough, each individual in it and each level of
+## detail a multimesh of whole trees. They come and go with the camera, a few per frame.
+
+const Stand := preload("stand.gd")
+const Individual := preload("individual.gd")
+const TreeLevels := preload("../tree_levels.gd")
+const _LEVELS_PARAMETER: StringName = &"tree_levels"
+# How much earlier a cell is made than it is seen, in metres and by its size.
+const _AHEAD: float = 4.0
+const _AHEAD_SHARE: float = 0.25
+# Nodes that wait to be used again.
+const _MOST_SPARE: int = 256
+
+
+## One level of detail of one individual: where it begins and ends, in metres.
+class Turn:
+	extends RefCounted
+	var mesh: Mesh
+	var begin: float = 0.0
+	var end: float = 0.0
+	var begin_margin: float = 0.0
+	var end_margin: float = 0.0
+	var shadow: bool = true
+
+
+## A cell of one level that is there, or is being made.
+class Shown:
+	extends RefCounted
+	var parts: Dictionary[int, MultiMeshInstance3D] = {}
+
+
+## The node that bears what is drawn.
+var parent: Node3D
+var stand: Stand
+## By individual, then by level.
+var turns: Array[Array] = []
+## Whether each tree knows for itself which level it shows; else a cell shows one.
+var by_tree: bool = false
+## How far a level reaches, by level: the farthest of all individuals'.
+var ends: PackedFloat32Array = []
+var begins: PackedFloat32Array = []
+
+## How many multimeshes are drawn at most.
+var count: int = 0
+
+var _shown: Array[Dictionary] = []
+# What is to be made: level, cell, individual; the nearest last.
+var _queue: Array[Array] = []
+var _goners: Array[MultiMeshInstance3D] = []
+var _spare: Array[MultiMeshInstance3D] = []
+var _viewer: Vector3 = Vector3.INF
+
+
+## Begins anew with another stand; what was shown goes.
+func start(of: Stand, individuals: int) -> void:
+	clear()
+	stand = of
+	turns = []
+	for i: int in individuals:
+		turns.append([])
+	begins = []
+	ends = []
+	for i: int in stand.grids.size():
+		_shown.append({})
+		begins.append(INF)
+		ends.append(0.0)
+
+
+## Frees all that is drawn.
+func clear() -> void:
+	for level: Dictionary in _shown:
+		for shown: Shown in level.values():
+			for part: MultiMeshInstance3D in shown.parts.values():
+				part.queue_free()
+	for part: MultiMeshInstance3D in _goners + _spare:
+		part.queue_free()
+	_shown = []
+	_queue = []
+	_goners = []
+	_spare = []
+	_viewer = Vector3.INF
+	stand = null
+	count = 0
+
+
+## An individual is ready: its levels of detail take their turns at [param distances], and the last
+## one ends at [param farthest].
+func add_individual(
+	place: int, individual: Individual, distances: PackedFloat32Array, farthest: float, far: Mesh
+) -> void:
+	var mine: Array[Turn] = []
+	var meshes: Array[Mesh] = []
+	meshes.assign(individual.meshes)
+	if far != null:
+		meshes.append(far)
+	for level: int in meshes.size():
+		var turn: Turn = Turn.new()
+		turn.mesh = meshes[level]
+		turn.begin = distances[level - 1] if level > 0 else 0.0
+		turn.end = distances[level] if level < distances.size() else farthest
+		turn.begin_margin = TreeLevels.margin(turn.begin)
+		turn.end_margin = TreeLevels.margin(turn.end)
+		# A forest that ends before a level begins has none of it.
+		turn.end = minf(turn.end, farthest)
+		begins[level] = minf(begins[level], turn.begin - turn.begin_margin)
+		ends[level] = maxf(ends[level], turn.end + turn.end_margin)
+		mine.append(turn)
+	turns[place] = mine
+	var cells: Array[Array] = []
+	for level: int in _shown.size():
+		for key: Vector2i in _shown[level]:
+			cells.append([_away(level, key), level, key])
+	_enqueue(cells, [place])
+	_viewer = Vector3.INF
+
+
+## Which individual stands for another one: those that the budget had no room for share the others'.
+func stand_in(individual: int) -> int:
+	return individual % maxi(turns.size(), 1)
+
+
+## All of a tree's cells are made again: it is new, or gone.
+func touch(at: Vector3, individual: int) -> void:
+	for level: int in _shown.size():
+		var key: Vector2i = stand.grids[level].cell_at(at)
+		if _shown[level].has(key):
+			_queue.append([level, key, stand_in(individual)])
+	_viewer = Vector3.INF
+
+
+## Decides what should be there for a camera at [param viewer].
+func look_from(viewer: Vector3) -> void:
+	if stand == null or viewer.distance_to(_viewer) < 0.5 * _AHEAD:
+		return
+	_viewer = viewer
+	var cells: Array[Array] = []
+	for level: int in _shown.size():
+		_look_at(level, cells)
+	var places: Array[int] = []
+	for place: int in turns.size():
+		if not turns[place].is_empty():
+			places.append(place)
+	_enqueue(cells, places)
+
+
+## Makes what is missing until [param deadline] (see [method Time.get_ticks_usec]); returns whether
+## all is there.
+func work(deadline: int) -> bool:
+	while not (_queue.is_empty() and _goners.is_empty()):
+		if Time.get_ticks_usec() >= deadline:
+			return false
+		if not _goners.is_empty():
+			_drop(_goners.pop_back())
+		else:
+			var next: Array = _queue.pop_back()
+			_make(next[0], next[1], next[2])
+	return true
+
+
+func is_done() -> bool:
+	return _queue.is_empty() and _goners.is_empty()
+
+
+## All that is drawn, for tests.
+func get_parts() -> Array[MultiMeshInstance3D]:
+	var parts: Array[MultiMeshInstance3D] = []
+	for level: Dictionary in _shown:
+		for shown: Shown in level.values():
+			for part: MultiMeshInstance3D in shown.parts.values():
+				parts.append(part)
+	return parts
+
+
+# What comes from far to near is taken from the end.
+func _enqueue(cells: Array[Array], places: Array[int]) -> void:
+	cells.sort_custom(func(a: Array, b: Array) -> bool: return a[0] > b[0])
+	for cell: Array in cells:
+		for place: int in places:
+			_queue.append([cell[1], cell[2], place])
+
+
+# Adds the cells that are new to `cells`: how far away, level, cell.
+func _look_at(level: int, cells: Array[Array]) -> void:
+	var grid: Stand.Grid = stand.grids[level]
+	var shown: Dictionary = _shown[level]
+	var ahead: float = _AHEAD + _AHEAD_SHARE * grid.size
+	var reach: float = ends[level] + ahead + grid.size
+	var wanted: Dictionary[Vector2i, bool] = {}
+	if reach > 0.0 and ends[level] > begins[level]:
+		var low: Vector2i = grid.cell_at(_viewer - Vector3.ONE * reach)
+		var high: Vector2i = grid.cell_at(_viewer + Vector3.ONE * reach)
+		for key: Vector2i in Stand.keys_between(grid, low, high):
+			var box: AABB = grid.cells[key].box
+			var away: float = box.get_center().distance_to(_viewer)
+			var half: float = 0.5 * box.size.length() + ahead
+			if away - half < ends[level] and away + half > begins[level]:
+				wanted[key] = true
+				if not shown.has(key):
+					shown[key] = Shown.new()
+					cells.append([away, level, key])
+	for key: Vector2i in shown.keys():
+		if not wanted.has(key):
+			for part: MultiMeshInstance3D in (shown[key] as Shown).parts.values():
+				part.visible = false
+				_goners.append(part)
+				count -= 1
+			shown.erase(key)
+
+
+func _away(level: int, key: Vector2i) -> float:
+	var cell: Stand.Cell = stand.grids[level].cells.get(key)
+	return INF if cell == null else cell.box.get_center().distance_to(_viewer)
+
+
+func _make(level: int, key: Vector2i, place: int) -> void:
+	var shown: Shown = _shown[level].get(key)
+	if shown == null or turns[place].size() <= level:
+		return
+	var buffer: PackedFloat32Array = []
+	var box: AABB
+	var cell: Stand.Cell = stand.grids[level].cells.get(key)
+	if cell != null:
+		for id: int in cell.ids:
+			if stand_in(stand.individuals[id]) != place:
+				continue
+			var at: int = Stand.FLOATS * id
+			var foot: Vector3 = stand.place_of(id)
+			box = box.expand(foot) if not buffer.is_empty() else AABB(foot, Vector3.ZERO)
+			buffer.append_array(stand.buffer.slice(at, at + Stand.FLOATS))
+	var part: MultiMeshInstance3D = shown.parts.get(place)
+	if buffer.is_empty():
+		if part != null:
+			shown.parts.erase(place)
+			_goners.append(part)
+			count -= 1
+		return
+	if part == null:
+		part = _take_part()
+		shown.parts[place] = part
+		count += 1
+	_fill(part, buffer, turns[place][level], box)
+
+
+func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, feet: AABB) -> void:
+	var multimesh: MultiMesh = part.multimesh
+	multimesh.mesh = turn.mesh
+	@warning_ignore("integer_division")
+	multimesh.instance_count = buffer.size() / Stand.FLOATS
+	multimesh.buffer = buffer
+	# Trees turn about their feet and grow by their scale.
+	var mesh_box: AABB = (turn.mesh as ArrayMesh).custom_aabb
+	var wide: float = 0.0
+	for i: int in 8:
+		var corner: Vector3 = mesh_box.get_endpoint(i)
+		wide = maxf(wide, Vector2(corner.x, corner.z).length())
+	wide *= stand.largest
+	var low: float = maxf(-mesh_box.position.y, 0.0) * stand.largest
+	var high: float = mesh_box.end.y * stand.largest
+	var box: AABB = AABB(
+		feet.position - Vector3(wide, low, wide),
+		feet.size + Vector3(2.0 * wide, low + high, 2.0 * wide)
+	)
+	multimesh.custom_aabb = box
+	part.custom_aabb = box
+	# The engine measures to the middle of the box.
+	var off: float = 0.0
+	if by_tree:
+		off = 0.5 * feet.size.length() + feet.get_center().distance_to(box.get_center())
+		RenderingServer.instance_geometry_set_shader_parameter(
+			part.get_instance(),
+			_LEVELS_PARAMETER,
+			Vector4(turn.begin, turn.begin_margin, turn.end, turn.end_margin)
+		)
+	part.visibility_range_begin = maxf(turn.begin - turn.begin_margin - off, 0.0)
+	part.visibility_range_end = turn.end + turn.end_margin + off
+	if not by_tree:
+		part.visibility_range_begin = turn.begin
+		part.visibility_range_end = turn.end
+	part.cast_shadow = (
+		GeometryInstance3D.SHADOW_CASTING_SETTING_ON
+		if turn.shadow
+		else GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
+	)
+	part.visible = true
+
+
+func _take_part() -> MultiMeshInstance3D:
+	if not _spare.is_empty():
+		return _spare.pop_back()
+	var part: MultiMeshInstance3D = MultiMeshInstance3D.new()
+	part.multimesh = MultiMesh.new()
+	part.multimesh.transform_format = MultiMesh.TRANSFORM_3D
+	part.multimesh.use_custom_data = true
+	part.gi_mode = GeometryInstance3D.GI_MODE_DISABLED
+	parent.add_child(part, false, Node.INTERNAL_MODE_BACK)
+	return part
+
+
+func _drop(part: MultiMeshInstance3D) -> void:
+	if _spare.size() >= _MOST_SPARE:
+		part.queue_free()
+		return
+	part.visible = false
+	part.multimesh.instance_count = 0
+	part.multimesh.mesh = null
+	_spare.append(part)

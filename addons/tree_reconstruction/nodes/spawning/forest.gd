@@ -1,0 +1,371 @@
+@tool
+extends RefCounted
+## What a [TreeVariantSpawner3D] does: builds the individuals, finds the places, and draws the trees
+## around a camera.
+
+const Individual := preload("individual.gd")
+const Individuals := preload("individuals.gd")
+const Materials := preload("materials.gd")
+const Scatter := preload("scatter.gd")
+const Stand := preload("stand.gd")
+const Cells := preload("cells.gd")
+const Bodies := preload("bodies.gd")
+const Region := preload("region.gd")
+const TreeLevels := preload("../tree_levels.gd")
+## Where a body keeps the id of its tree.
+const META: StringName = Bodies.META
+# Cells over the distance at which their level ends.
+const _CELL_SHARE: float = 0.6
+const _LEAST_CELL: float = 6.0
+# How deep the feet of trees are in the ground, in metres.
+const _SINK: float = 0.03
+const _MEGABYTE: int = 1_000_000
+# Places of the spawner's enumeration.
+const _GIVEN: int = 1
+
+## The trees, as soon as their places are known.
+var stand: Stand
+
+# A TreeVariantSpawner3D: its settings are read when the forest starts.
+var _node: Node3D
+var _individuals: Individuals = Individuals.new()
+var _cells: Cells = Cells.new()
+var _bodies: Bodies = Bodies.new()
+var _region: Region
+# Plans whose materials are being read.
+var _waiting: Array[Individual] = []
+# Materials that the engine's thread reads.
+var _asked: PackedStringArray = []
+
+
+func _init(node: Node3D) -> void:
+	_node = node
+	_cells.parent = node
+	_bodies.parent = node
+
+
+## Begins anew; with other individuals, too, or with those that there are.
+func start(with_individuals: bool, threaded: bool) -> void:
+	_clear_places()
+	var from: Array[TreeReconstruction] = _node.get_all_sources()
+	if from.is_empty():
+		stop()
+		return
+	if with_individuals or _individuals.ready.is_empty():
+		_individuals.stop()
+		_individuals.threaded = threaded
+		_individuals.budget = _node.memory_budget_mb * _MEGABYTE
+		_waiting = _plans(from)
+	_region = _make_region(_sizes(from))
+	_region.start(threaded)
+
+
+## Builds and draws until [param deadline] (see [method Time.get_ticks_usec]), for [param camera]
+## or, without one, for that of the viewport.
+func go_on(deadline: int, camera: Node3D) -> void:
+	if not _waiting.is_empty() and _have_materials():
+		_individuals.start(_waiting)
+		_waiting = []
+	var fresh: PackedInt32Array = _individuals.poll(deadline)
+	if _waiting.is_empty() and _region != null and _region.poll(deadline):
+		stand = _region.stand
+		_region = null
+		_start_cells()
+	elif stand != null:
+		# Where the budget ended, others stand for those that it had no room for.
+		if _cells.turns.size() > maxi(_individuals.accepted, 1):
+			_start_cells()
+		else:
+			_add_to_cells(fresh)
+	if stand == null:
+		return
+	var viewer: Vector3 = _find_viewer(camera)
+	_cells.look_from(viewer)
+	_cells.work(deadline)
+	if _node.collision and not Engine.is_editor_hint():
+		_bodies.reach = _node.collision_distance
+		_bodies.most = _node.collision_trees
+		_bodies.layer = _node.collision_layer
+		_bodies.look_from(viewer, stand)
+		while Time.get_ticks_usec() < deadline and _bodies.make_next(stand, _ready_of):
+			pass
+
+
+## Ends what is under way, and waits for it.
+func stop() -> void:
+	_waiting = []
+	for path: String in _asked:
+		ResourceLoader.load_threaded_get(path)
+	_asked = []
+	_individuals.stop()
+	if _region != null:
+		_region.stop()
+		_region = null
+
+
+## Takes all away.
+func clear() -> void:
+	stop()
+	_clear_places()
+
+
+## What was built of a tree that has changed is not used again.
+func forget() -> void:
+	Individuals.forget()
+
+
+## The share of the work that is done: 1 when all is there.
+func get_progress() -> float:
+	var share: float = _individuals.progress()
+	var placed: bool = stand != null or (_region == null and _individuals.ready.is_empty())
+	if not (_waiting.is_empty() and placed and _individuals.is_done() and _cells.is_done()):
+		share = minf(share, 0.99)
+	return share
+
+
+## Adds a tree; returns its id.
+func add(frame: Transform3D) -> int:
+	var id: int = stand.add(frame)
+	_cells.touch(frame.origin, stand.individuals[id])
+	_bodies.touch()
+	return id
+
+
+## Takes a tree away.
+func remove(id: int) -> void:
+	var individual: int = stand.individuals[id]
+	var place: Vector3 = stand.place_of(id)
+	stand.remove(id)
+	_cells.touch(place, individual)
+	_bodies.touch()
+
+
+## Which individual a tree is.
+func individual_of(id: int) -> int:
+	return _cells.stand_in(stand.individuals[id])
+
+
+## The seed of an individual.
+func seed_of(index: int) -> int:
+	return Scatter.mix(_node.seed, index) & 0x7fffffff
+
+
+## The age of an individual. Ages are spread evenly.
+func age_of(index: int) -> float:
+	var share: float = index + Scatter.share(Scatter.mix(_node.seed, 1000 + index))
+	return snappedf(lerpf(_node.ages.x, _node.ages.y, share / _node.variants), 0.001)
+
+
+## How many individuals are ready.
+func get_ready_count() -> int:
+	var count: int = 0
+	for one: Individual in _individuals.ready:
+		count += 1 if one != null else 0
+	return count
+
+
+## A mesh of an individual that is ready.
+func get_mesh(index: int, level: int) -> ArrayMesh:
+	if index < 0 or index >= _individuals.ready.size() or _individuals.ready[index] == null:
+		return null
+	var meshes: Array[ArrayMesh] = _individuals.ready[index].meshes
+	return meshes[level] if level >= 0 and level < meshes.size() else null
+
+
+## See [method TreeVariantSpawner3D.get_digest].
+func get_digest() -> String:
+	var all: HashingContext = HashingContext.new()
+	all.start(HashingContext.HASH_SHA256)
+	for index: int in _node.variants:
+		all.update(var_to_bytes([seed_of(index), _node.amount, age_of(index)]))
+	if stand != null and not stand.buffer.is_empty():
+		all.update(stand.buffer.to_byte_array())
+		all.update(stand.individuals.to_byte_array())
+	return all.finish().hex_encode()
+
+
+## See [method TreeVariantSpawner3D.get_statistics].
+func get_statistics() -> Dictionary:
+	var triangles: PackedInt32Array = []
+	triangles.resize(_node.levels)
+	for one: Individual in _individuals.ready:
+		if one != null:
+			for level: int in mini(one.triangles.size(), triangles.size()):
+				triangles[level] += one.triangles[level]
+	return {
+		"trees": 0 if stand == null else stand.count,
+		"variants": get_ready_count(),
+		"bytes": _individuals.bytes,
+		"triangles": triangles,
+		"multimeshes": _cells.count,
+		"bodies": _bodies.get_count()
+	}
+
+
+func _clear_places() -> void:
+	if _region != null:
+		_region.stop()
+		_region = null
+	stand = null
+	_cells.clear()
+	_bodies.clear()
+
+
+func _start_cells() -> void:
+	_cells.start(stand, maxi(_individuals.accepted, 1))
+	var ready: PackedInt32Array = []
+	for index: int in _individuals.accepted:
+		if _individuals.ready[index] != null:
+			ready.append(index)
+	_add_to_cells(ready)
+
+
+func _add_to_cells(ready: PackedInt32Array) -> void:
+	for index: int in ready:
+		var one: Individual = _individuals.ready[index]
+		var distances: PackedFloat32Array = TreeLevels.distances(
+			one.height, _node.levels, _node.level_distances
+		)
+		_cells.add_individual(index, one, distances, _node.view_distance, null)
+		_bodies.touch()
+
+
+func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
+	var plans: Array[Individual] = []
+	for index: int in _node.variants:
+		var plan: Individual = Individual.new()
+		plan.source = from[index % from.size()]
+		plan.number = seed_of(index)
+		plan.amount = _node.amount
+		plan.age = age_of(index)
+		plan.levels = _node.levels
+		plan.leaves = _node.leaves
+		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
+		plan.bark_material = _node.bark_material
+		plan.leaf_material = _node.leaf_material
+		plan.season = Materials.season_values(plan.source.leaf_rule, _node.season_spread)
+		plan.key = str(
+			[
+				plan.source.get_instance_id(),
+				plan.number,
+				plan.amount,
+				plan.age,
+				plan.levels,
+				plan.leaves,
+				plan.capsules_wanted,
+				plan.bark_material,
+				plan.leaf_material,
+				_node.season_spread
+			]
+		)
+		plans.append(plan)
+	return plans
+
+
+# Those that the user did not choose are the presets', read by a thread of the engine's: pictures
+# take long.
+func _have_materials() -> bool:
+	var all: bool = true
+	for plan: Individual in _waiting:
+		if plan.bark_material == null:
+			plan.bark_material = _read(Materials.preset_path(plan.source, "bark"))
+		if plan.leaf_material == null:
+			plan.leaf_material = _read(Materials.preset_path(plan.source, "leaf"))
+		all = all and plan.bark_material != null and plan.leaf_material != null
+	return all
+
+
+func _read(path: String) -> Material:
+	# What was asked for has to be taken, also where it has come by another way meanwhile.
+	match ResourceLoader.load_threaded_get_status(path):
+		ResourceLoader.THREAD_LOAD_IN_PROGRESS:
+			return null
+		ResourceLoader.THREAD_LOAD_LOADED:
+			_asked.remove_at(_asked.find(path))
+			return ResourceLoader.load_threaded_get(path) as Material
+	if ResourceLoader.has_cached(path) or not _individuals.threaded:
+		return load(path) as Material
+	if ResourceLoader.load_threaded_request(path) != OK:
+		return load(path) as Material
+	_asked.append(path)
+	return null
+
+
+# How large the cells of each level are.
+func _sizes(from: Array[TreeReconstruction]) -> PackedFloat32Array:
+	var height: float = 0.0
+	for one: TreeReconstruction in from:
+		height = maxf(height, one.get_aabb().end.y)
+	var distances: PackedFloat32Array = TreeLevels.distances(
+		height, _node.levels, _node.level_distances
+	)
+	_cells.by_tree = true
+	for material: Material in [_node.bark_material, _node.leaf_material]:
+		# The presets do.
+		if material != null and not Materials.knows_levels(material):
+			_cells.by_tree = false
+	var sizes: PackedFloat32Array = []
+	for level: int in _node.levels:
+		var end: float = distances[level] if level < distances.size() else _node.view_distance
+		# Where a cell shows one level, all levels have the same cells.
+		if not _cells.by_tree and not distances.is_empty():
+			end = distances[0]
+		sizes.append(maxf(_CELL_SHARE * minf(end, _node.view_distance), _LEAST_CELL))
+	return sizes
+
+
+func _make_region(sizes: PackedFloat32Array) -> Region:
+	var made: Region = Region.new()
+	made.stand = Stand.new(sizes)
+	made.stand.number = _node.seed
+	made.stand.variety = _node.variants
+	made.stand.smallest_scale = 1.0 - _node.size_variation
+	made.stand.largest_scale = 1.0 + _node.size_variation
+	made.stand.lean = tan(deg_to_rad(_node.lean))
+	made.stand.alignment = _node.ground_alignment
+	made.stand.sink = _SINK
+	made.is_given = _node.placement == _GIVEN
+	made.given = _node.transforms.duplicate()
+	made.scatter.number = _node.seed
+	made.scatter.density = _node.density
+	made.scatter.distance = _node.minimum_distance
+	made.scatter.clumping = _node.clumping
+	made.scatter.size = _node.region_size
+	made.scatter.steepest = deg_to_rad(_node.ground_slope_limit)
+	made.scatter.lowest = _node.ground_heights.x
+	made.scatter.highest = _node.ground_heights.y
+	made.rays = _node.ground_rays
+	made.ray_mask = _node.ground_mask
+	made.ray_depth = _node.ground_depth
+	var place: Node3D = _node.get_node_or_null(_node.region) as Node3D
+	made.read_scene(_node, place)
+	if place is Path3D and not (place as Path3D).curve_changed.is_connected(_node.rebuild_places):
+		(place as Path3D).curve_changed.connect(_node.rebuild_places)
+	return made
+
+
+# The individual of a tree, if it is ready.
+func _ready_of(id: int) -> Individual:
+	var index: int = individual_of(id)
+	return _individuals.ready[index] if index < _individuals.ready.size() else null
+
+
+func _find_viewer(camera: Node3D) -> Vector3:
+	var from: Node3D = camera if is_instance_valid(camera) else null
+	if from == null and Engine.is_editor_hint():
+		from = _get_editor_camera()
+	if from == null:
+		from = _node.get_viewport().get_camera_3d()
+	if from == null or not from.is_inside_tree():
+		return Vector3.ZERO
+	return _node.global_transform.affine_inverse() * from.global_position
+
+
+# The class is the editor's own: no game has it.
+static func _get_editor_camera() -> Camera3D:
+	if not Engine.has_singleton(&"EditorInterface"):
+		return null
+	var viewport: SubViewport = Engine.get_singleton(&"EditorInterface").call(
+		&"get_editor_viewport_3d", 0
+	)
+	return viewport.get_camera_3d() if viewport != null else null

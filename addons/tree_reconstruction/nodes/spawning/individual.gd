@@ -1,0 +1,151 @@
+@tool
+extends RefCounted
+## One individual of a forest: how a worker builds it, step by step, and its meshes.
+
+const Materials := preload("materials.gd")
+# How far the wind moves a tree beyond its box, over its height.
+const _SWAY: float = 0.15
+# Of one vertex, as the engine keeps it, and of one index.
+const _BARK_BYTES: int = 60
+const _LEAF_BYTES: int = 68
+const _INDEX_BYTES: int = 4
+
+
+## A surface that is built and waits to be given to the engine.
+class Surface:
+	extends RefCounted
+	var level: int
+	var arrays: Array
+	var flags: int
+	var material: Material
+	var name: String
+	var bytes: int
+
+
+## What it is made of.
+var source: TreeReconstruction
+var number: int = 0
+var amount: float = 0.5
+var age: float = 1.0
+var levels: int = 4
+var leaves: bool = true
+## How many capsules, and of which branches; none for no bodies.
+var capsules_wanted: int = 0
+var capsule_radius: float = 0.03
+var bark_material: Material
+var leaf_material: Material
+## What the leaves' material takes on (see [method Materials.season_values]).
+var season: Dictionary[StringName, Variant] = {}
+## What others that would be the same have in common with it.
+var key: String
+
+## Set to end its building early.
+var stale: bool = false
+
+## What was built.
+var surfaces: Array[Surface] = []
+var meshes: Array[ArrayMesh] = []
+var triangles: PackedInt32Array = []
+var capsules: Array[Dictionary] = []
+var box: AABB
+var height: float = 0.1
+var bytes: int = 0
+
+var _tree: TreeReconstruction
+var _step: int = 0
+var _added: int = 0
+
+
+## Builds all, for a worker.
+func build() -> void:
+	while not stale and step():
+		pass
+
+
+## Builds the next part; [code]false[/code] after the last one.
+func step() -> bool:
+	if _step == 0:
+		_tree = source.make_variant(number, amount, age)
+		if capsules_wanted > 0:
+			capsules = _tree.build_capsules(capsules_wanted, capsule_radius)
+	elif _step <= levels:
+		_add("bark", _step - 1, _tree.build_mesh_arrays(_step - 1))
+	elif leaves and _step <= 2 * levels:
+		_add("leaves", _step - levels - 1, _tree.build_joined_leaf_arrays(_step - levels - 1))
+	else:
+		_finish()
+		return false
+	_step += 1
+	return true
+
+
+## Makes the meshes, still empty, and their materials: on the main thread, whose renderer says what
+## is in a shader.
+func prepare() -> void:
+	var values: Dictionary[StringName, Variant] = {&"tree_height": height, &"tree_wind": 1.0}
+	var bark: Material = Materials.for_trees(bark_material, values)
+	values.merge(season)
+	var leaf: Material = Materials.for_trees(leaf_material, values)
+	for level: int in levels:
+		var mesh: ArrayMesh = ArrayMesh.new()
+		mesh.custom_aabb = box
+		meshes.append(mesh)
+	for surface: Surface in surfaces:
+		surface.material = bark if surface.name == "bark" else leaf
+
+
+## Gives the engine the next surface. [code]false[/code] after the last one.
+func give_surface() -> bool:
+	if _added == surfaces.size():
+		return false
+	var next: Surface = surfaces[_added]
+	var mesh: ArrayMesh = meshes[next.level]
+	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, next.arrays, [], {}, next.flags)
+	mesh.surface_set_name(mesh.get_surface_count() - 1, next.name)
+	mesh.surface_set_material(mesh.get_surface_count() - 1, next.material)
+	next.arrays = []
+	_added += 1
+	return _added < surfaces.size()
+
+
+## How many bytes the next surface has.
+func next_bytes() -> int:
+	return surfaces[_added].bytes if _added < surfaces.size() else 0
+
+
+## Whether the engine has all of it.
+func is_given() -> bool:
+	return not meshes.is_empty() and _added == surfaces.size()
+
+
+func _add(name: String, level: int, arrays: Array) -> void:
+	if triangles.size() <= level:
+		triangles.append(0)
+	if arrays.is_empty():
+		return
+	var made: Surface = Surface.new()
+	made.level = level
+	made.name = name
+	made.arrays = arrays
+	var bark: bool = name == "bark"
+	made.flags = (TreeReconstruction.MESH_FLAGS if bark else TreeReconstruction.JOINED_LEAF_FLAGS)
+	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
+	var indices: int = (arrays[Mesh.ARRAY_INDEX] as PackedInt32Array).size()
+	made.bytes = places.size() * (_BARK_BYTES if bark else _LEAF_BYTES) + indices * _INDEX_BYTES
+	bytes += made.bytes
+	@warning_ignore("integer_division")
+	triangles[level] += indices / 3
+	surfaces.append(made)
+
+
+func _finish() -> void:
+	var rest: AABB = _tree.get_aabb()
+	height = maxf(rest.end.y, 0.1)
+	box = rest
+	for surface: Surface in surfaces:
+		# The finest level's leaves reach as far as any.
+		if surface.level == 0:
+			for place: Vector3 in surface.arrays[Mesh.ARRAY_VERTEX] as PackedVector3Array:
+				box = box.expand(place)
+	box = box.grow(_SWAY * height)
+	_tree = null

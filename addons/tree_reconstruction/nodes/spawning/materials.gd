@@ -1,0 +1,91 @@
+@tool
+extends RefCounted
+## Materials for whole trees in a multimesh: what a [TreeInstance3D] sets for its instance is in
+## them, what differs from tree to tree comes with the multimesh.
+
+const _ADDON: String = "res://addons/tree_reconstruction/"
+const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+const _DEFINES: String = "\n#define TREE_BAKED\n#define TREE_WIND_GLOBALS\n"
+
+# By their paths; they go when the last material does.
+static var _shaders: Dictionary[String, WeakRef] = {}
+
+
+## A copy of [param material] for whole trees with [param values]. A material that has no shader of
+## the addon's is returned as it is.
+static func for_trees(material: Material, values: Dictionary[StringName, Variant]) -> Material:
+	if not _is_ours(material):
+		return material
+	var shaded: ShaderMaterial = material as ShaderMaterial
+	var made: ShaderMaterial = ShaderMaterial.new()
+	made.shader = _shader_of(shaded.shader)
+	made.render_priority = shaded.render_priority
+	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
+		var value: Variant = shaded.get_shader_parameter(uniform.name)
+		if value != null:
+			made.set_shader_parameter(uniform.name, value)
+	for name: StringName in values:
+		made.set_shader_parameter(name, values[name])
+	return made
+
+
+## Whether the material's shader is the addon's, which shows each tree of a multimesh at its own
+## level of detail.
+static func knows_levels(material: Material) -> bool:
+	return _is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels")
+
+
+## Where the material is that a tree's leaf preset has for its [code]bark[/code] or
+## [code]leaf[/code].
+static func preset_path(tree: TreeReconstruction, part: String) -> String:
+	if part == "leaf" and tree.are_leaves_single():
+		part = "blade"
+	var path: String = _PRESETS % [tree.get_leaf_look(), part]
+	return path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]
+
+
+## What the season makes of the leaves, [param spread] apart from the earliest tree to the latest.
+static func season_values(rule: LeafRule, spread: float) -> Dictionary[StringName, Variant]:
+	var values: Dictionary[StringName, Variant] = {}
+	if rule == null:
+		return values
+	var other: LeafRule = rule.duplicate() as LeafRule
+	for end: String in ["", "_after"]:
+		other.season = rule.season + (-0.5 if end.is_empty() else 0.5) * spread
+		var tints: PackedColorArray = other.get_season_tints()
+		for i: int in 2:
+			# Colors would be converted by some renderers and not by others.
+			var tint: Color = tints[i].srgb_to_linear()
+			values[StringName(["season_early", "season_late"][i] + end)] = Vector4(
+				tint.r, tint.g, tint.b, tint.a
+			)
+	return values
+
+
+static func _is_ours(material: Material) -> bool:
+	var shaded: ShaderMaterial = material as ShaderMaterial
+	return (
+		shaded != null and shaded.shader != null and shaded.shader.resource_path.begins_with(_ADDON)
+	)
+
+
+static func _shader_of(shader: Shader) -> Shader:
+	var path: String = shader.resource_path
+	var known: Shader = null
+	if _shaders.has(path):
+		known = _shaders[path].get_ref() as Shader
+	if known == null:
+		known = Shader.new()
+		known.code = _code_of(shader)
+		_shaders[path] = weakref(known)
+	return known
+
+
+static func _code_of(shader: Shader) -> String:
+	# It has no path that its includes could be beside.
+	var include: RegEx = RegEx.create_from_string('#include\\s+"(?!res://)([^"]+)"')
+	var folder: String = shader.resource_path.get_base_dir()
+	var code: String = include.sub(shader.code, '#include "%s/$1"' % folder, true)
+	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
+	var end: int = type.search(code).get_end()
+	return code.left(end) + _DEFINES + code.substr(end)

@@ -1,0 +1,183 @@
+@tool
+extends RefCounted
+## The trees of a forest: where each stands, which individual it is, and in which cells they are.
+
+const Scatter := preload("scatter.gd")
+## Of a multimesh: twelve of the transform, then its own tone, its own season and two that are free.
+const FLOATS: int = 16
+
+
+## Cells of one size, each with the trees in it.
+class Grid:
+	extends RefCounted
+	var size: float
+	var cells: Dictionary[Vector2i, Cell] = {}
+
+	func cell_at(at: Vector3) -> Vector2i:
+		return Vector2i(floori(at.x / size), floori(at.z / size))
+
+	func add(id: int, at: Vector3) -> void:
+		var key: Vector2i = cell_at(at)
+		var cell: Cell = cells.get(key)
+		if cell == null:
+			cell = Cell.new()
+			cell.box = AABB(at, Vector3.ZERO)
+			cells[key] = cell
+		cell.ids.append(id)
+		cell.box = cell.box.expand(at)
+
+	func remove(id: int, at: Vector3) -> void:
+		var key: Vector2i = cell_at(at)
+		var cell: Cell = cells[key]
+		cell.ids.remove_at(cell.ids.find(id))
+		if cell.ids.is_empty():
+			cells.erase(key)
+
+
+## What stands in one cell. The box is around the feet of its trees.
+class Cell:
+	extends RefCounted
+	var ids: PackedInt32Array = []
+	var box: AABB
+
+
+## All trees, [constant FLOATS] numbers for each.
+var buffer: PackedFloat32Array = []
+## The individual that each wants to be; -1 for one that was removed.
+var individuals: PackedInt32Array = []
+## By level of detail.
+var grids: Array[Grid] = []
+## How many stand.
+var count: int = 0
+## The scale of the largest tree.
+var largest: float = 0.0
+
+var number: int = 1
+var variety: int = 1
+var smallest_scale: float = 1.0
+var largest_scale: float = 1.0
+var lean: float = 0.0
+var alignment: float = 0.0
+var sink: float = 0.0
+
+
+## Stands that begin with cells of such sizes.
+func _init(sizes: PackedFloat32Array) -> void:
+	for size: float in sizes:
+		var grid: Grid = Grid.new()
+		grid.size = size
+		grids.append(grid)
+
+
+## Adds a tree at a place that was found on ground of such a normal; returns its id.
+func plant(place: Vector3, normal: Vector3) -> int:
+	var key: int = Scatter.mix(number, 8 * individuals.size() + 1)
+	var yaw: float = TAU * Scatter.share(Scatter.mix(key, 1))
+	var scale: float = lerpf(smallest_scale, largest_scale, Scatter.share(Scatter.mix(key, 2)))
+	var aside: float = TAU * Scatter.share(Scatter.mix(key, 3))
+	var up: Vector3 = Vector3.UP.lerp(normal, alignment)
+	up += lean * Scatter.share(Scatter.mix(key, 4)) * Vector3(cos(aside), 0.0, sin(aside))
+	up = up.normalized()
+	var right: Vector3 = Vector3(cos(yaw), 0.0, -sin(yaw))
+	right = (right - up * right.dot(up)).normalized()
+	var axes: Basis = Basis(right, up, right.cross(up))
+	return add(Transform3D(axes.scaled_local(Vector3.ONE * scale), place - sink * scale * up))
+
+
+## Adds a tree as it is to stand; returns its id.
+func add(frame: Transform3D) -> int:
+	var id: int = individuals.size()
+	var key: int = Scatter.mix(number, 8 * id + 2)
+	var axes: Basis = frame.basis
+	buffer.append_array(
+		PackedFloat32Array(
+			[
+				axes.x.x,
+				axes.y.x,
+				axes.z.x,
+				frame.origin.x,
+				axes.x.y,
+				axes.y.y,
+				axes.z.y,
+				frame.origin.y,
+				axes.x.z,
+				axes.y.z,
+				axes.z.z,
+				frame.origin.z,
+				2.0 * Scatter.share(Scatter.mix(key, 1)) - 1.0,
+				Scatter.share(Scatter.mix(key, 2)),
+				0.0,
+				0.0
+			]
+		)
+	)
+	individuals.append((Scatter.mix(key, 3) & 0x7fffffff) % variety)
+	largest = maxf(largest, axes.y.length())
+	for grid: Grid in grids:
+		grid.add(id, frame.origin)
+	count += 1
+	return id
+
+
+## Takes a tree away. Its id is never given again.
+func remove(id: int) -> void:
+	for grid: Grid in grids:
+		grid.remove(id, place_of(id))
+	individuals[id] = -1
+	count -= 1
+
+
+func has(id: int) -> bool:
+	return id >= 0 and id < individuals.size() and individuals[id] >= 0
+
+
+func place_of(id: int) -> Vector3:
+	var at: int = FLOATS * id
+	return Vector3(buffer[at + 3], buffer[at + 7], buffer[at + 11])
+
+
+func frame_of(id: int) -> Transform3D:
+	var at: int = FLOATS * id
+	return Transform3D(
+		Basis(
+			Vector3(buffer[at], buffer[at + 4], buffer[at + 8]),
+			Vector3(buffer[at + 1], buffer[at + 5], buffer[at + 9]),
+			Vector3(buffer[at + 2], buffer[at + 6], buffer[at + 10])
+		),
+		place_of(id)
+	)
+
+
+## The trees that stand within [param reach] of a place, the nearest first.
+func near(at: Vector3, reach: float) -> PackedInt32Array:
+	var found: PackedInt32Array = []
+	if grids.is_empty():
+		return found
+	var grid: Grid = grids[0]
+	var low: Vector2i = grid.cell_at(at - Vector3.ONE * reach)
+	var high: Vector2i = grid.cell_at(at + Vector3.ONE * reach)
+	var distances: PackedFloat32Array = []
+	for key: Vector2i in keys_between(grid, low, high):
+		for id: int in grid.cells[key].ids:
+			var distance: float = place_of(id).distance_to(at)
+			if distance <= reach:
+				var place: int = distances.bsearch(distance, false)
+				distances.insert(place, distance)
+				found.insert(place, id)
+	return found
+
+
+## The cells of a grid that hold trees, between two of them.
+static func keys_between(grid: Grid, low: Vector2i, high: Vector2i) -> Array[Vector2i]:
+	var keys: Array[Vector2i] = []
+	# Whichever is less to look at.
+	if (high.x - low.x + 1.0) * (high.y - low.y + 1.0) > grid.cells.size():
+		for key: Vector2i in grid.cells:
+			if key.x >= low.x and key.x <= high.x and key.y >= low.y and key.y <= high.y:
+				keys.append(key)
+		return keys
+	for y: int in range(low.y, high.y + 1):
+		for x: int in range(low.x, high.x + 1):
+			if grid.cells.has(Vector2i(x, y)):
+				keys.append(Vector2i(x, y))
+	return keys
