@@ -299,9 +299,8 @@ func _sizes(from: Array[TreeReconstruction]) -> PackedFloat32Array:
 	var distances: PackedFloat32Array = TreeLevels.distances(
 		height, _node.levels, _node.level_distances
 	)
-	_cells.by_tree = true
+	_cells.by_tree = Materials.presets_know_levels()
 	for material: Material in [_node.bark_material, _node.leaf_material]:
-		# The presets do.
 		if material != null and not Materials.knows_levels(material):
 			_cells.by_tree = false
 	var sizes: PackedFloat32Array = []

@@ -35,6 +35,12 @@ static func knows_levels(material: Material) -> bool:
 	return _is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels")
 
 
+## Whether the shaders of the presets do.
+static func presets_know_levels() -> bool:
+	var code: String = (load(_ADDON + "shaders/leaf.gdshader") as Shader).code
+	return code.contains("tree_levels")
+
+
 ## Where the material is that a tree's leaf preset has for its [code]bark[/code] or
 ## [code]leaf[/code].
 static func preset_path(tree: TreeReconstruction, part: String) -> String:
