@@ -17,11 +17,9 @@ extends Node3D
 ## [codeblock]
 ## var forest := TreeVariantSpawner3D.new()
 ## forest.source = load("res://oak.res")
-## forest.region_size = Vector2(200, 200)
 ## add_child(forest)
 ## await forest.finished
-## var id: int = forest.spawn_at(Transform3D(Basis(), Vector3(3, 0, 4)))
-## forest.take(id).fell(12)
+## forest.take(forest.find_trees(Vector3.ZERO, 10.0)[0]).fell(12)
 ## [/codeblock]
 
 ## Emitted while the forest is made, with the share that is done.
@@ -226,6 +224,12 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 @export var level_distances: PackedFloat32Array = []:
 	set(value):
 		level_distances = value
+		_change(true)
+
+## What stands for trees that are farther away than the last level of detail.
+@export var impostor: TreeImpostor:
+	set(value):
+		impostor = value
 		_change(true)
 
 ## Trees farther from the camera than this, in metres, are not there.
@@ -462,19 +466,18 @@ func _listen() -> void:
 		if one != null and not _heard.has(one):
 			one.changed.connect(_on_source_changed)
 			_heard.append(one)
-	update_configuration_warnings()
 	_change(true)
 
 
 func _on_source_changed() -> void:
 	_forest.forget()
-	update_configuration_warnings()
 	_change(true)
 
 
 func _change(of_variants: bool) -> void:
 	_variants_changed = _variants_changed or of_variants
 	_queued = true
+	update_configuration_warnings()
 	# In the editor a slider that is dragged changes it each frame.
 	_calm = _CALM_SECONDS if Engine.is_editor_hint() else 0.0
 
@@ -482,11 +485,10 @@ func _change(of_variants: bool) -> void:
 func _tell() -> void:
 	if not _telling or _queued:
 		return
-	var share: float = _forest.get_progress()
-	if share != _progress:
-		_progress = share
-		progressed.emit(share)
-	if share >= 1.0:
+	if _forest.get_progress() != _progress:
+		_progress = _forest.get_progress()
+		progressed.emit(_progress)
+	if _progress >= 1.0:
 		_telling = false
 		finished.emit()
 

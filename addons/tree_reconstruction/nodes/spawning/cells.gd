@@ -4,7 +4,6 @@ extends RefCounted
 ## detail a multimesh of whole trees. They come and go with the camera, a few per frame.
 
 const Stand := preload("stand.gd")
-const Individual := preload("individual.gd")
 const TreeLevels := preload("../tree_levels.gd")
 const _LEVELS_PARAMETER: StringName = &"tree_levels"
 # How much earlier a cell is made than it is seen, in metres and by its size.
@@ -22,7 +21,11 @@ class Turn:
 	var end: float = 0.0
 	var begin_margin: float = 0.0
 	var end_margin: float = 0.0
+	## Over the size of what stands there.
+	var scale: float = 1.0
 	var shadow: bool = true
+	## Whether each tree knows for itself when it is its turn; else its cell does.
+	var by_tree: bool = false
 
 
 ## A cell of one level that is there, or is being made.
@@ -36,8 +39,6 @@ var parent: Node3D
 var stand: Stand
 ## By individual, then by level.
 var turns: Array[Array] = []
-## Whether each tree knows for itself which level it shows; else a cell shows one.
-var by_tree: bool = false
 ## How far a level reaches, by level: the farthest of all individuals'.
 var ends: PackedFloat32Array = []
 var begins: PackedFloat32Array = []
@@ -85,19 +86,13 @@ func clear() -> void:
 	count = 0
 
 
-## An individual is ready: its levels of detail take their turns at [param distances], and the last
-## one ends at [param farthest].
+## An individual is ready: these levels of detail, the finest first, take their turns at [param
+## distances], and the last one ends at [param farthest].
 func add_individual(
-	place: int, individual: Individual, distances: PackedFloat32Array, farthest: float, far: Mesh
+	place: int, mine: Array[Turn], distances: PackedFloat32Array, farthest: float
 ) -> void:
-	var mine: Array[Turn] = []
-	var meshes: Array[Mesh] = []
-	meshes.assign(individual.meshes)
-	if far != null:
-		meshes.append(far)
-	for level: int in meshes.size():
-		var turn: Turn = Turn.new()
-		turn.mesh = meshes[level]
+	for level: int in mine.size():
+		var turn: Turn = mine[level]
 		turn.begin = distances[level - 1] if level > 0 else 0.0
 		turn.end = distances[level] if level < distances.size() else farthest
 		turn.begin_margin = TreeLevels.margin(turn.begin)
@@ -106,7 +101,6 @@ func add_individual(
 		turn.end = minf(turn.end, farthest)
 		begins[level] = minf(begins[level], turn.begin - turn.begin_margin)
 		ends[level] = maxf(ends[level], turn.end + turn.end_margin)
-		mine.append(turn)
 	turns[place] = mine
 	var cells: Array[Array] = []
 	for level: int in _shown.size():
@@ -229,6 +223,12 @@ func _make(level: int, key: Vector2i, place: int) -> void:
 			var foot: Vector3 = stand.place_of(id)
 			box = box.expand(foot) if not buffer.is_empty() else AABB(foot, Vector3.ZERO)
 			buffer.append_array(stand.buffer.slice(at, at + Stand.FLOATS))
+	var scale: float = turns[place][level].scale
+	if scale != 1.0:
+		for at: int in buffer.size():
+			# The axes, not the place.
+			if at % Stand.FLOATS < 12 and at % 4 < 3:
+				buffer[at] *= scale
 	var part: MultiMeshInstance3D = shown.parts.get(place)
 	if buffer.is_empty():
 		if part != null:
@@ -255,9 +255,10 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	for i: int in 8:
 		var corner: Vector3 = mesh_box.get_endpoint(i)
 		wide = maxf(wide, Vector2(corner.x, corner.z).length())
-	wide *= stand.largest
-	var low: float = maxf(-mesh_box.position.y, 0.0) * stand.largest
-	var high: float = mesh_box.end.y * stand.largest
+	var largest: float = stand.largest * turn.scale
+	wide *= largest
+	var low: float = maxf(-mesh_box.position.y, 0.0) * largest
+	var high: float = mesh_box.end.y * largest
 	var box: AABB = AABB(
 		feet.position - Vector3(wide, low, wide),
 		feet.size + Vector3(2.0 * wide, low + high, 2.0 * wide)
@@ -266,7 +267,7 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	part.custom_aabb = box
 	# The engine measures to the middle of the box.
 	var off: float = 0.0
-	if by_tree:
+	if turn.by_tree:
 		off = 0.5 * feet.size.length() + feet.get_center().distance_to(box.get_center())
 		RenderingServer.instance_geometry_set_shader_parameter(
 			part.get_instance(),
@@ -275,7 +276,7 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 		)
 	part.visibility_range_begin = maxf(turn.begin - turn.begin_margin - off, 0.0)
 	part.visibility_range_end = turn.end + turn.end_margin + off
-	if not by_tree:
+	if not turn.by_tree:
 		part.visibility_range_begin = turn.begin
 		part.visibility_range_end = turn.end
 	part.cast_shadow = (

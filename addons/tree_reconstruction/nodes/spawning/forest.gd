@@ -32,6 +32,10 @@ var _individuals: Individuals = Individuals.new()
 var _cells: Cells = Cells.new()
 var _bodies: Bodies = Bodies.new()
 var _region: Region
+# What stands for a tree that is far away, if there is an impostor.
+var _card: ArrayMesh
+# Whether each tree knows its level of detail; else a cell shows one.
+var _by_tree: bool = false
 # Plans whose materials are being read.
 var _waiting: Array[Individual] = []
 # Materials that the engine's thread reads.
@@ -56,6 +60,7 @@ func start(with_individuals: bool, threaded: bool) -> void:
 		_individuals.threaded = threaded
 		_individuals.budget = _node.memory_budget_mb * _MEGABYTE
 		_waiting = _plans(from)
+	_make_card(from[0])
 	_region = _make_region(_sizes(from))
 	_region.start(threaded)
 
@@ -224,10 +229,39 @@ func _add_to_cells(ready: PackedInt32Array) -> void:
 	for index: int in ready:
 		var one: Individual = _individuals.ready[index]
 		var distances: PackedFloat32Array = TreeLevels.distances(
-			one.height, _node.levels, _node.level_distances
+			one.height, _count_levels(), _node.level_distances
 		)
-		_cells.add_individual(index, one, distances, _node.view_distance, null)
+		_cells.add_individual(index, _turns(one), distances, _node.view_distance)
 		_bodies.touch()
+
+
+# The levels of an individual, and the card that stands for it where it is far away.
+func _turns(one: Individual) -> Array[Cells.Turn]:
+	var turns: Array[Cells.Turn] = []
+	for mesh: ArrayMesh in one.meshes:
+		var turn: Cells.Turn = Cells.Turn.new()
+		turn.mesh = mesh
+		turn.by_tree = _by_tree
+		turns.append(turn)
+	if _card != null:
+		var turn: Cells.Turn = Cells.Turn.new()
+		turn.mesh = _card
+		turn.scale = one.height / _node.impostor.height
+		turn.by_tree = _by_tree and Materials.knows_levels(_node.impostor.material)
+		turns.append(turn)
+	return turns
+
+
+func _make_card(from: TreeReconstruction) -> void:
+	_card = null
+	var impostor: TreeImpostor = _node.impostor
+	if impostor == null or impostor.material == null:
+		return
+	var values: Dictionary[StringName, Variant] = {
+		&"tree_height": impostor.height, &"tree_wind": 1.0
+	}
+	values.merge(Materials.season_values(from.leaf_rule, 0.0))
+	_card = impostor.make_mesh(Materials.for_trees(impostor.material, values))
 
 
 func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
@@ -238,7 +272,8 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 		plan.number = seed_of(index)
 		plan.amount = _node.amount
 		plan.age = age_of(index)
-		plan.levels = _node.levels
+		# The card is one of them, too.
+		plan.levels = mini(_node.levels, TreeLevels.MOST - (1 if _node.impostor != null else 0))
 		plan.leaves = _node.leaves
 		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
 		plan.bark_material = _node.bark_material
@@ -291,23 +326,28 @@ func _read(path: String) -> Material:
 	return null
 
 
+# With the card.
+func _count_levels() -> int:
+	return mini(_node.levels + (1 if _card != null else 0), TreeLevels.MOST)
+
+
 # How large the cells of each level are.
 func _sizes(from: Array[TreeReconstruction]) -> PackedFloat32Array:
 	var height: float = 0.0
 	for one: TreeReconstruction in from:
 		height = maxf(height, one.get_aabb().end.y)
 	var distances: PackedFloat32Array = TreeLevels.distances(
-		height, _node.levels, _node.level_distances
+		height, _count_levels(), _node.level_distances
 	)
-	_cells.by_tree = Materials.presets_know_levels()
+	_by_tree = Materials.presets_know_levels()
 	for material: Material in [_node.bark_material, _node.leaf_material]:
 		if material != null and not Materials.knows_levels(material):
-			_cells.by_tree = false
+			_by_tree = false
 	var sizes: PackedFloat32Array = []
-	for level: int in _node.levels:
+	for level: int in _count_levels():
 		var end: float = distances[level] if level < distances.size() else _node.view_distance
 		# Where a cell shows one level, all levels have the same cells.
-		if not _cells.by_tree and not distances.is_empty():
+		if not _by_tree and not distances.is_empty():
 			end = distances[0]
 		sizes.append(maxf(_CELL_SHARE * minf(end, _node.view_distance), _LEAST_CELL))
 	return sizes
