@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edit/command_text.h"
+#include "geometry/portable_math.h"
 #include "geometry/segment.h"
 
 namespace treerec {
@@ -134,7 +135,8 @@ NodeId find_node(const Tree& tree, std::string_view text, double tolerance) {
         if (cosine < kLeastCosine) continue;
         double thickness = 0.0;
         if (address.radius > 0.0) {
-            thickness = std::abs(std::log(node.radius / address.radius)) / std::log(kMostRadiusRatio);
+            thickness =
+                std::abs(portable::log(node.radius / address.radius)) / portable::log(kMostRadiusRatio);
             if (thickness > 1.0) continue;
         }
         const double score =
@@ -159,7 +161,7 @@ std::string address_of(const Tree& tree, NodeId id) {
     const Node& node = tree.node(id);
     const ScanFrame& frame = tree.frame();
     const int decimals =
-        std::clamp(static_cast<int>(std::ceil(std::log10(frame.metres_per_unit / kFinestPlace))), 0, 15);
+        std::clamp(static_cast<int>(std::ceil(portable::log10(frame.metres_per_unit / kFinestPlace))), 0, 15);
     const DVec3 place = frame.to_scan(node.position);
     const DVec3 direction = frame.turn_to_scan(direction_of(tree, id));
     std::string text = std::to_string(id) + "@";

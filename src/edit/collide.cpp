@@ -8,6 +8,7 @@
 
 #include "edit/scion.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -76,7 +77,7 @@ class CapsuleGrid {
         const double count = static_cast<double>(capsules.size());
         const double most = std::min(kMostCells, kMostCellsEach * (count + 1.0));
         cell_ = std::max({length / count, thick / count + clearance,
-                          std::cbrt(size.x * size.y * size.z / most) * 1.1,
+                          portable::cbrt(size.x * size.y * size.z / most) * 1.1,
                           std::max({size.x, size.y, size.z}) / 256.0});
         // A flat box can still have too many cells, and stout wood can lie in too many of them.
         for (;; cell_ *= 1.5) {

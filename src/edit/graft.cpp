@@ -7,6 +7,7 @@
 
 #include "edit/scion.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "tree/branches.h"
 
@@ -46,8 +47,8 @@ DVec3 into_gap(const Tree& tree, NodeId host, double lean, uint64_t seed) {
     std::vector<double> taken;
     for (NodeId child : tree.children(host)) {
         const DVec3 way = glm::transpose(frame) * (tree.node(child).position - tree.node(host).position);
-        const double across = std::hypot(way.x, way.z);
-        if (across > 0.17 * glm::length(way)) taken.push_back(std::atan2(way.x, way.z));
+        const double across = portable::hypot(way.x, way.z);
+        if (across > 0.17 * glm::length(way)) taken.push_back(portable::atan2(way.x, way.z));
     }
     double azimuth = Random(hash_seed(seed, 77)).uniform(0.0, 2.0 * kPi);
     if (!taken.empty()) {
@@ -60,7 +61,8 @@ DVec3 into_gap(const Tree& tree, NodeId host, double lean, uint64_t seed) {
             azimuth = taken[i] + 0.5 * widest;
         }
     }
-    const DVec3 way(std::sin(lean) * std::sin(azimuth), std::cos(lean), std::sin(lean) * std::cos(azimuth));
+    const DVec3 way(portable::sin(lean) * portable::sin(azimuth), portable::cos(lean),
+                    portable::sin(lean) * portable::cos(azimuth));
     return glm::normalize(frame * way);
 }
 
@@ -88,7 +90,7 @@ Joint plan_joint(const Tree& tree, NodeId host, const Tree& scion, const GraftOp
                 options.aim, options.lean * kDegree};
     if (joint.ratio == 0.0) joint.ratio = tip ? 1.0 : kSideRatio;
     if (joint.aim == GraftAim::kAuto) {
-        const bool leans = joint.own.y < std::cos(kLeastBranching * kDegree);
+        const bool leans = joint.own.y < portable::cos(kLeastBranching * kDegree);
         joint.aim = tip ? GraftAim::kOnward : leans ? GraftAim::kOwn : GraftAim::kLean;
         joint.lean = kUsualLean * kDegree;
     }

@@ -5,6 +5,7 @@
 
 #include "edit/scion.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "tree/branches.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 DVec3 some_perpendicular(const DVec3& direction, double turn) {
     const DVec3 across = any_perpendicular(direction);
-    return across * std::cos(turn) + glm::cross(direction, across) * std::sin(turn);
+    return across * portable::cos(turn) + glm::cross(direction, across) * portable::sin(turn);
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ Tree vary_scion(const Tree& scion, const Variation& variation, uint64_t seed) {
         if (branch.attach != kNoNode) base = turned[branch.attach] * turn_about(fork_axis, fork);
         const auto turn_at = [&](double along) {
             const double share = branch.length > 0.0 ? along / branch.length : 0.0;
-            return base * turn_about(wave_axis, wave * std::sin(2.0 * kPi * share)) *
+            return base * turn_about(wave_axis, wave * portable::sin(2.0 * kPi * share)) *
                    turn_about(arc_axis, arc * share);
         };
         double along = 0.0;

@@ -10,6 +10,7 @@
 
 #include "edit/lighten_net.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/segment.h"
 
 namespace treerec {
@@ -33,7 +34,7 @@ class Lightener {
           progress_(progress),
           options_(options),
           bounded_(options.nodes == 0),
-          least_cosine_(std::cos(options.angle * std::numbers::pi / 180.0)),
+          least_cosine_(portable::cos(options.angle * std::numbers::pi / 180.0)),
           state_(net_.nodes.size()) {
         if (options.below == kNoNode) return;
         const std::vector<NodeId> branch = tree.depth_first(options.below);

@@ -10,6 +10,7 @@
 #include "edit/lighten.h"
 #include "edit/lighten_net.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -26,7 +27,7 @@ class Merger {
 
     // Runs everything and hands the result over to the tree.
     Lightened run(double angle, double distance) {
-        least_cosine_ = std::cos(angle * std::numbers::pi / 180.0);
+        least_cosine_ = portable::cos(angle * std::numbers::pi / 180.0);
         distance_ = distance;
         const bool turns = angle > 0.0;
         std::vector<NodeId> forks;

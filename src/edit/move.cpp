@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "edit/node_sets.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -135,7 +136,7 @@ std::vector<NodeId> grow_node(Tree& tree, NodeId id, const GrowNodeOptions& opti
         direction = require_direction(*options.direction, "The direction of new wood");
     } else if (host.child_count > 0) {
         const DVec3 side = turned(any_perpendicular(ahead), ahead, kGoldenAngle * host.child_count);
-        direction = ahead * std::cos(kSideAngle) + side * std::sin(kSideAngle);
+        direction = ahead * portable::cos(kSideAngle) + side * portable::sin(kSideAngle);
     }
     double length = options.length > 0.0 ? options.length : segment_length(tree, id);
     if (!(length > 0.0)) length = kRadii * host.radius;

@@ -7,6 +7,7 @@
 
 #include "edit/address.h"
 #include "edit/delta.h"
+#include "geometry/portable_math.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -32,7 +33,7 @@ inline double segment_length(const Tree& tree, NodeId id) {
 
 // v turned about the unit axis by an angle in radians (Rodrigues 1840).
 inline DVec3 turned(const DVec3& v, const DVec3& axis, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
+    const double c = portable::cos(angle), s = portable::sin(angle);
     return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1.0 - c));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "edit/node_sets.h"
+#include "geometry/portable_math.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -81,7 +82,7 @@ std::vector<NodeId> sag(Tree& tree, const std::vector<NodeId>& nodes, const SagO
                 const double inertia = kPi / 4.0 * square * square;
                 // Not past where the weight pulls it.
                 const DVec3 end(0.0, options.weight < 0.0 ? 1.0 : -1.0, 0.0);
-                const double room = std::atan2(glm::length(glm::cross(way, end)), glm::dot(way, end));
+                const double room = portable::atan2(glm::length(glm::cross(way, end)), glm::dot(way, end));
                 angle[id] = std::min(strength * length / (options.stiffness * inertia), room);
                 if (strength > 0.0) axis[id] = bending / strength;
                 if (!(strength > 0.0)) angle[id] = 0.0;

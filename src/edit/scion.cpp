@@ -5,6 +5,7 @@
 #include <string>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -32,8 +33,8 @@ DVec3 direction_at(const Tree& tree, NodeId joint) {
 
 DMat3 turn_about(const DVec3& axis, double radians) {
     // Rodrigues' formula, a column at a time.
-    const double c = std::cos(radians);
-    const double s = std::sin(radians);
+    const double c = portable::cos(radians);
+    const double s = portable::sin(radians);
     const auto turned = [&](const DVec3& v) {
         return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1.0 - c));
     };
@@ -45,7 +46,7 @@ DMat3 turn_between(const DVec3& from, const DVec3& to) {
     const double sine = glm::length(axis);
     const double cosine = glm::dot(from, to);
     if (sine < 1e-12) return cosine > 0.0 ? DMat3(1.0) : turn_about(any_perpendicular(from), kPi);
-    return turn_about(axis / sine, std::atan2(sine, cosine));
+    return turn_about(axis / sine, portable::atan2(sine, cosine));
 }
 
 Tree take_scion(const Tree& tree, NodeId joint_child) {

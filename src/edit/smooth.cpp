@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "edit/node_sets.h"
+#include "geometry/portable_math.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -53,7 +54,7 @@ std::vector<DVec3> places_of(const Tree& tree) {
 
 double turn_at(const DVec3& before, const DVec3& at, const DVec3& after) {
     const DVec3 in = at - before, out = after - at;
-    return std::atan2(glm::length(glm::cross(in, out)), glm::dot(in, out));
+    return portable::atan2(glm::length(glm::cross(in, out)), glm::dot(in, out));
 }
 
 uint8_t flags_between(const Node& lower, const Node& upper) {

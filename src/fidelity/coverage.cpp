@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -76,7 +78,7 @@ int32_t BarkPatches::find(const DVec3& p, NodeId child) const {
     const Row& found = rows_[static_cast<size_t>(row_begin_[b] + row)];
     if (found.count == 1) return found.first;
     const double angle =
-        std::atan2(glm::dot(d, glm::cross(piece.axis, piece.normal)), glm::dot(d, piece.normal));
+        portable::atan2(glm::dot(d, glm::cross(piece.axis, piece.normal)), glm::dot(d, piece.normal));
     const double turn = angle / (2.0 * kPi) + 0.5;  // 0..1
     return found.first + std::min(static_cast<int32_t>(turn * found.count), found.count - 1);
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -42,7 +43,7 @@ DVec3 direction_below(const Tree& tree, NodeId node) {
 double angle_between(const DVec3& a, const DVec3& b) {
     const double lengths = glm::length(a) * glm::length(b);
     if (!(lengths > 0.0)) return 0.0;
-    return std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * 180.0 / kPi;
+    return portable::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * 180.0 / kPi;
 }
 
 // 0 at `from`, 1 at `to` and beyond.

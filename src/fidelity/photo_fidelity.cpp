@@ -7,6 +7,7 @@
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
@@ -76,7 +77,7 @@ Image read_mask(const std::string& path) {
 }  // namespace
 
 double photo_information(size_t photos) {
-    return 1.0 - std::pow(kInformationRatio, static_cast<double>(photos));
+    return 1.0 - portable::pow(kInformationRatio, static_cast<double>(photos));
 }
 
 std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model, const Progress* progress) {

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "fidelity/segment_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -34,7 +35,8 @@ PictureView view_of(const Bounds& box, double azimuth, int pixels) {
     view.centre = box.centre();
     view.pixels = pixels;
     const DVec3 size = box.size();
-    const double across = std::abs(std::cos(azimuth)) * size.x + std::abs(std::sin(azimuth)) * size.z;
+    const double across =
+        std::abs(portable::cos(azimuth)) * size.x + std::abs(portable::sin(azimuth)) * size.z;
     view.width = std::max(kMargin * across, 1e-3);
     view.height = std::max({kMargin * size.y, 0.25 * view.width, 1e-3});
     return view;
@@ -44,8 +46,8 @@ Picture::Picture(const PictureView& view) : view_(view) {
     if (view.pixels < 16 || view.pixels > 4096) throw Error("A picture is drawn with 16 to 4096 pixels.");
     if (!(view.width > 0.0 && view.height > 0.0 && view.width < 1e6 && view.height < 1e6))
         throw Error("A picture shows more than nothing and less than 1000 km.");
-    right_ = DVec3(std::cos(view.azimuth), 0.0, -std::sin(view.azimuth));
-    away_ = DVec3(-std::sin(view.azimuth), 0.0, -std::cos(view.azimuth));
+    right_ = DVec3(portable::cos(view.azimuth), 0.0, -portable::sin(view.azimuth));
+    away_ = DVec3(-portable::sin(view.azimuth), 0.0, -portable::cos(view.azimuth));
     height_ = kSamples * view.pixels;
     sample_ = view.height / height_;
     const double across = std::ceil(view.width / sample_ / kSamples);
@@ -125,8 +127,8 @@ Image Picture::finish(const Rgb& background) const {
     std::array<std::array<int, 2>, kDirections> around;
     for (int k = 0; k < kDirections; k++) {
         const double angle = 2.0 * kPi * k / kDirections;
-        around[static_cast<size_t>(k)] = {static_cast<int>(std::lround(kReach * std::cos(angle))),
-                                          static_cast<int>(std::lround(kReach * std::sin(angle)))};
+        around[static_cast<size_t>(k)] = {static_cast<int>(std::lround(kReach * portable::cos(angle))),
+                                          static_cast<int>(std::lround(kReach * portable::sin(angle)))};
     }
     for (int y = 0; y < image.height; y++)
         for (int x = 0; x < image.width; x++) {
@@ -142,7 +144,7 @@ Image Picture::finish(const Rgb& background) const {
                         const float other = depth_at(sx + dx, sy + dy);
                         if (other < depth) nearer += std::min(1.0, scale * (depth - other));
                     }
-                    shade = kDarkest + (1.0 - kDarkest) * std::exp(-2.0 * nearer / kDirections);
+                    shade = kDarkest + (1.0 - kDarkest) * portable::exp(-2.0 * nearer / kDirections);
                 }
                 const Rgb& color = covered ? color_[static_cast<size_t>(sy) * static_cast<size_t>(width_) +
                                                     static_cast<size_t>(sx)]

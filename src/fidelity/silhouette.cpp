@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -107,8 +108,8 @@ std::array<View, 4> views_of(const Mesh& before, const Mesh& after, int pixels) 
     double longest = 0.0;
     for (size_t v = 0; v < views.size(); v++) {
         const double azimuth = static_cast<double>(v) * std::numbers::pi / 4.0;
-        views[v].right_x = std::cos(azimuth);
-        views[v].right_z = std::sin(azimuth);
+        views[v].right_x = portable::cos(azimuth);
+        views[v].right_z = portable::sin(azimuth);
         views[v].least = DVec2(INFINITY);
         most[v] = DVec2(-INFINITY);
         for (const Mesh* mesh : {&before, &after})

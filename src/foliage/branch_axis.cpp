@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -99,8 +101,8 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
             points.push_back({from.position, start_direction, from.radius, 0.0});
         }
         first = false;
-        const double bend = std::acos(std::clamp(glm::dot(start_direction, chord), -1.0, 1.0)) +
-                            std::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
+        const double bend = portable::acos(std::clamp(glm::dot(start_direction, chord), -1.0, 1.0)) +
+                            portable::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
         const int pieces = std::clamp(static_cast<int>(std::ceil(bend / kBendPerPoint)), 1, kMostPieces);
         for (int i = 1; i <= pieces; i++) {
             AxisPoint point{to.position, end_direction, to.radius, 0.0};

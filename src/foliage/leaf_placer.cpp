@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 
 namespace treerec {
@@ -56,11 +57,11 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     const bool terminal = number == 0;
     const double lean_out =
         terminal ? 0.0 : glm::radians(angle + rules.angle_variation * random.uniform(-1.0, 1.0));
-    DVec3 y = at.direction * std::cos(lean_out) + radial * std::sin(lean_out);
+    DVec3 y = at.direction * portable::cos(lean_out) + radial * portable::sin(lean_out);
     // Droop turns the leaf towards the ground, most where it lies level.
     const double droop = glm::radians(rules.droop + 0.5 * rules.angle_variation * random.uniform(-1.0, 1.0)) *
                          (terminal ? 0.4 : 1.0);
-    y = normalized_or(y - up * std::tan(std::clamp(droop, -1.2, 1.2)) * (1.0 - 0.6 * std::abs(y.y)),
+    y = normalized_or(y - up * portable::tan(std::clamp(droop, -1.2, 1.2)) * (1.0 - 0.6 * std::abs(y.y)),
                       at.direction);
     const DVec3 position = at.position + radial * (terminal ? 0.0 : kSunk * at.radius);
     const DVec3 outward = crown.outward(position);
@@ -75,7 +76,7 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     const double lean = glm::radians(rules.angle_variation) * random.uniform(-1.0, 1.0);
     z = normalized_or(z - y * glm::dot(z, y), any_perpendicular(y));
     DVec3 x = glm::cross(y, z);
-    z = glm::normalize(z * std::cos(lean) + x * std::sin(lean));
+    z = glm::normalize(z * portable::cos(lean) + x * portable::sin(lean));
     x = glm::cross(y, z);
 
     LeafPlacement leaf;
@@ -153,7 +154,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
         const double down = size.twig_length > 0.0 ? (end.along - along) / size.twig_length : 0.0;
         const double angle = rules.angle * (1.0 - rules.closing * (1.0 - down));
         const double wanted =
-            share * density_at(branch, at) * std::exp(-kClusterSteepness * rules.clustering * down);
+            share * density_at(branch, at) * portable::exp(-kClusterSteepness * rules.clustering * down);
         for (int k = 0; k < count; k++) {
             const uint64_t own = number++;
             if (number_of(branch_key ^ kThinKey, own) >= wanted) continue;
@@ -166,7 +167,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
             } else {
                 around += 2.0 * kPi * k / count;
             }
-            const DVec3 radial = side * std::cos(around) + other * std::sin(around);
+            const DVec3 radial = side * portable::cos(around) + other * portable::sin(around);
             leaves.push_back(leaf_at(at, radial, out, tip, own));
         }
         switch (rules.arrangement) {

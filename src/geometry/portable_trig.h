@@ -1,7 +1,9 @@
-// Sine and cosine that are the same to the last bit on every platform; the standard library's are not.
+// Sine and cosine that are the same to the last bit on every platform; the standard library's are not. See
+// geometry/portable_math.h for the other functions.
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace treerec {
 
@@ -10,11 +12,13 @@ struct SineCosine {
     double cosine = 1.0;
 };
 
-// Of `radians`, up to some thousand; to 1e-15. Taylor series about the nearest quarter turn, from additions
-// and multiplications alone (the build forbids fused ones).
+// Of `radians`, to 1e-15; beyond a million the digits that a double lacks are missing here too, and what is
+// no number or infinite gives no numbers. Taylor series about the nearest quarter turn, from additions and
+// multiplications alone (the build forbids fused ones).
 inline SineCosine portable_sine_cosine(double radians) {
     // pi/2 in two parts, so that the rest keeps its digits.
     constexpr double kQuarter = 1.5707963267341256, kQuarterRest = 6.077100506506192e-11;
+    if (std::abs(radians) > 1e6) radians = std::fmod(radians, 2.0 * std::numbers::pi);
     const double quarters = std::floor(radians * (1.0 / 1.5707963267948966) + 0.5);
     const double x = (radians - quarters * kQuarter) - quarters * kQuarterRest;
     const double y = x * x;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "geometry/portable_math.h"
 #include "geometry/vec.h"
 
 namespace treerec {
@@ -38,14 +39,14 @@ class Random {
     double normal() {
         const double u = 1.0 - uniform();
         const double v = uniform();
-        return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * v);
+        return std::sqrt(-2.0 * portable::log(u)) * portable::cos(2.0 * kPi * v);
     }
     // Uniform on the unit sphere.
     DVec3 direction() {
         const double z = uniform(-1.0, 1.0);
         const double angle = uniform(0.0, 2.0 * kPi);
         const double r = std::sqrt(1.0 - z * z);
-        return {r * std::cos(angle), r * std::sin(angle), z};
+        return {r * portable::cos(angle), r * portable::sin(angle), z};
     }
 
   private:

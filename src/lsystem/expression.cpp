@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "lsystem/lstring.h"
 #include "lsystem/turtle.h"
 
@@ -45,16 +46,16 @@ double to_degrees(double radians) {
 }
 
 const Function kFunctions[] = {
-    {"sin", 1, [](const double* x, Random&) { return std::sin(x[0] * kRadiansPerDegree); }},
-    {"cos", 1, [](const double* x, Random&) { return std::cos(x[0] * kRadiansPerDegree); }},
-    {"tan", 1, [](const double* x, Random&) { return std::tan(x[0] * kRadiansPerDegree); }},
-    {"asin", 1, [](const double* x, Random&) { return to_degrees(std::asin(x[0])); }},
-    {"acos", 1, [](const double* x, Random&) { return to_degrees(std::acos(x[0])); }},
-    {"atan", 1, [](const double* x, Random&) { return to_degrees(std::atan(x[0])); }},
-    {"atan2", 2, [](const double* x, Random&) { return to_degrees(std::atan2(x[0], x[1])); }},
+    {"sin", 1, [](const double* x, Random&) { return portable::sin(x[0] * kRadiansPerDegree); }},
+    {"cos", 1, [](const double* x, Random&) { return portable::cos(x[0] * kRadiansPerDegree); }},
+    {"tan", 1, [](const double* x, Random&) { return portable::tan(x[0] * kRadiansPerDegree); }},
+    {"asin", 1, [](const double* x, Random&) { return to_degrees(portable::asin(x[0])); }},
+    {"acos", 1, [](const double* x, Random&) { return to_degrees(portable::acos(x[0])); }},
+    {"atan", 1, [](const double* x, Random&) { return to_degrees(portable::atan(x[0])); }},
+    {"atan2", 2, [](const double* x, Random&) { return to_degrees(portable::atan2(x[0], x[1])); }},
     {"sqrt", 1, [](const double* x, Random&) { return std::sqrt(x[0]); }},
-    {"exp", 1, [](const double* x, Random&) { return std::exp(x[0]); }},
-    {"log", 1, [](const double* x, Random&) { return std::log(x[0]); }},
+    {"exp", 1, [](const double* x, Random&) { return portable::exp(x[0]); }},
+    {"log", 1, [](const double* x, Random&) { return portable::log(x[0]); }},
     {"abs", 1, [](const double* x, Random&) { return std::abs(x[0]); }},
     {"floor", 1, [](const double* x, Random&) { return std::floor(x[0]); }},
     {"ceil", 1, [](const double* x, Random&) { return std::ceil(x[0]); }},
@@ -62,7 +63,7 @@ const Function kFunctions[] = {
     {"sign", 1, [](const double* x, Random&) { return double((x[0] > 0.0) - (x[0] < 0.0)); }},
     {"min", 2, [](const double* x, Random&) { return std::min(x[0], x[1]); }},
     {"max", 2, [](const double* x, Random&) { return std::max(x[0], x[1]); }},
-    {"pow", 2, [](const double* x, Random&) { return std::pow(x[0], x[1]); }},
+    {"pow", 2, [](const double* x, Random&) { return portable::pow(x[0], x[1]); }},
     {"uniform", 2, [](const double* x, Random& random) { return random.uniform(x[0], x[1]); }},
     {"normal", 2, [](const double* x, Random& random) { return x[0] + x[1] * random.normal(); }},
 };
@@ -304,7 +305,7 @@ double Expression::evaluate(const double* variables, Random& random) const {
                 a = std::fmod(a, b);
                 break;
             case kPower:
-                a = std::pow(a, b);
+                a = portable::pow(a, b);
                 break;
             case kLess:
                 a = a < b;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "lsystem/lstring.h"
 #include "lsystem/turtle.h"
@@ -318,10 +319,12 @@ class Reader {
                 const double pitch = (state_.pitch + random_.uniform(-spread, spread)) * kRadiansPerDegree;
                 const double scale = 1.0 + random_.uniform(-options_.length_spread, options_.length_spread);
                 const double length = (distance_ < 0.0 ? options_.step : distance_) * scale;
-                state_.turtle.position += length * DVec3(std::cos(pitch) * std::cos(yaw), std::sin(pitch),
-                                                         std::cos(pitch) * std::sin(yaw));
+                state_.turtle.position +=
+                    length * DVec3(portable::cos(pitch) * portable::cos(yaw), portable::sin(pitch),
+                                   portable::cos(pitch) * portable::sin(yaw));
                 state_.depth++;
-                state_.radius = std::max(kThinnest, options_.radius * std::pow(options_.taper, state_.depth));
+                state_.radius =
+                    std::max(kThinnest, options_.radius * portable::pow(options_.taper, state_.depth));
                 return add_node(state_.node, false);
             }
             case '+':

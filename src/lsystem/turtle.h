@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "geometry/vec.h"
 
 namespace treerec {
@@ -46,15 +47,15 @@ struct Turtle {
         const DVec3 axis = torque / length;
         const double angle = elasticity * length;
         for (DVec3* v : {&heading, &left, &up})
-            *v = *v * std::cos(angle) + glm::cross(axis, *v) * std::sin(angle) +
-                 axis * (glm::dot(axis, *v) * (1.0 - std::cos(angle)));
+            *v = *v * portable::cos(angle) + glm::cross(axis, *v) * portable::sin(angle) +
+                 axis * (glm::dot(axis, *v) * (1.0 - portable::cos(angle)));
     }
 
   private:
     // Turns `from` towards `to`, and `to` away from `from`.
     static void rotate(DVec3& from, DVec3& to, double degrees) {
-        const double cosine = std::cos(degrees * kRadiansPerDegree);
-        const double sine = std::sin(degrees * kRadiansPerDegree);
+        const double cosine = portable::cos(degrees * kRadiansPerDegree);
+        const double sine = portable::sin(degrees * kRadiansPerDegree);
         const DVec3 turned = from * cosine + to * sine;
         to = to * cosine - from * sine;
         from = turned;

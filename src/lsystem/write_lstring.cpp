@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "lsystem/lstring.h"
 #include "lsystem/short_number.h"
 #include "lsystem/turtle.h"
@@ -18,7 +19,7 @@ constexpr double kShortest = 1e-12;  // metres: nearer nodes coincide
 DVec3 paper_direction(double yaw, double pitch) {
     const double a = yaw * kRadiansPerDegree;
     const double b = pitch * kRadiansPerDegree;
-    return {std::cos(b) * std::cos(a), std::sin(b), std::cos(b) * std::sin(a)};
+    return {portable::cos(b) * portable::cos(a), portable::sin(b), portable::cos(b) * portable::sin(a)};
 }
 
 class Writer {
@@ -170,13 +171,13 @@ class Writer {
         const DVec3 local = paper_ ? DVec3(way.x, way.z, way.y)
                                    : DVec3(glm::dot(way, turtle.heading), glm::dot(way, turtle.left),
                                            glm::dot(way, turtle.up));
-        const double level = std::hypot(local.x, local.y);
+        const double level = portable::hypot(local.x, local.y);
         // Straight up or down there is no yaw.
         if (level > tolerance)
-            plan.yaw = ShortNumber(std::atan2(local.y, local.x) * kDegreesPerRadian,
+            plan.yaw = ShortNumber(portable::atan2(local.y, local.x) * kDegreesPerRadian,
                                    tolerance / level * kDegreesPerRadian);
         if (paper_) {
-            plan.pitch = ShortNumber(std::atan2(local.z, level) * kDegreesPerRadian,
+            plan.pitch = ShortNumber(portable::atan2(local.z, level) * kDegreesPerRadian,
                                      tolerance / length * kDegreesPerRadian);
             turtle.heading = paper_direction(plan.yaw.rounded, plan.pitch.rounded);
         } else {
@@ -184,8 +185,9 @@ class Writer {
                 turtle.turn_around();
             else if (plan.yaw.rounded != 0.0)
                 turtle.turn_left(plan.yaw.rounded);
-            plan.pitch = ShortNumber(std::atan2(local.z, glm::dot(way, turtle.heading)) * kDegreesPerRadian,
-                                     tolerance / length * kDegreesPerRadian);
+            plan.pitch =
+                ShortNumber(portable::atan2(local.z, glm::dot(way, turtle.heading)) * kDegreesPerRadian,
+                            tolerance / length * kDegreesPerRadian);
             if (plan.pitch.rounded != 0.0) turtle.pitch_up(plan.pitch.rounded);
         }
         plan.length = ShortNumber(std::max(0.0, glm::dot(way, turtle.heading)), tolerance);

@@ -4,6 +4,7 @@
 
 #include "error.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "mesh/tube_builder.h"
 
 namespace treerec {
@@ -76,7 +77,8 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
         for (AxisPoint& point : points) {
             const double past = std::max(point.along - 0.85 * tube.exit, 0.0) / (1.4 * own);
             if (past > 3.0) break;
-            const double widened = point.radius * (1.0 + (1.0 - follows) * kCollar * std::exp(-past * past));
+            const double widened =
+                point.radius * (1.0 + (1.0 - follows) * kCollar * portable::exp(-past * past));
             point.radius = std::min(widened, std::max(point.radius, hidden));
         }
     }
@@ -101,7 +103,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
         std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1, [&](const BendLimit& limit) {
             return stoutness >= limit.least_radius;
         })->bend;
-    const double bend_limit = std::cos(std::min(bend_per_ring * (1 + level), 1.2));
+    const double bend_limit = portable::cos(std::min(bend_per_ring * (1 + level), 1.2));
     const double change_limit = 0.4 * (1 + level);
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
@@ -225,7 +227,7 @@ void Builder::seat(size_t index) {
         radius = std::min(radius, under->radius + (over->radius - under->radius) * f);
     }
     tubes[index].host_ring = static_cast<uint32_t>(lower - begin);
-    const double hidden = 0.92 * std::cos(kPi / parent.sides) * radius;
+    const double hidden = 0.92 * portable::cos(kPi / parent.sides) * radius;
     Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
     start.centre = lower->centre + chord * t;
     tubes[index].parent_direction = normalized_or(chord, DVec3(0.0, 1.0, 0.0));

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -70,7 +72,7 @@ double round_height(const TubeShape& tube, const DVec3& p, size_t& hint) {
     hint = at.span;
     if (at.beyond) return HUGE_VAL;
     const Ring &low = tube.rings[at.span], &high = tube.rings[at.span + 1];
-    const double flat = 0.5 + 0.5 * std::cos(kPi / tube.sides);
+    const double flat = 0.5 + 0.5 * portable::cos(kPi / tube.sides);
     return glm::distance(p, glm::mix(low.centre, high.centre, at.t)) -
            flat * (low.radius + (high.radius - low.radius) * at.t);
 }
@@ -90,16 +92,16 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     const DVec3 y = glm::cross(axis, x);
     const DVec3 from = p - place.centre;
     const double a = glm::dot(from, x), b = glm::dot(from, y);
-    const double out = std::hypot(a, b);
+    const double out = portable::hypot(a, b);
     const double c = out > 0.0 ? a / out : 1.0, s = out > 0.0 ? b / out : 0.0;
     place.radial = x * c + y * s;
     place.side = y * c - x * s;
     const double step = 2.0 * kPi / tube.sides;
-    double angle = std::atan2(s, c);
+    double angle = portable::atan2(s, c);
     if (angle < 0.0) angle += 2.0 * kPi;
     place.corner = std::min(angle / step, static_cast<double>(tube.sides));
     const double within = angle - step * std::floor(place.corner);
-    place.surface = place.radius * std::cos(0.5 * step) / std::cos(within - 0.5 * step);
+    place.surface = place.radius * portable::cos(0.5 * step) / portable::cos(within - 0.5 * step);
     place.height = out - place.surface;
     const double slope = ring_slope(tube.rings, tube.count, at.span) * (1.0 - at.t) +
                          ring_slope(tube.rings, tube.count, at.span + 1) * at.t;
@@ -124,7 +126,7 @@ class CollarMaker {
         : branch_(branch), host_(host), span_(host_span) {
         for (uint32_t j = 0; j < branch.sides; j++) {
             const double angle = 2.0 * kPi * j / branch.sides;
-            circle_[j] = {std::cos(angle), std::sin(angle)};
+            circle_[j] = {portable::cos(angle), portable::sin(angle)};
         }
     }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "mesh/leaf_cards.h"
 
 namespace treerec {
@@ -24,7 +25,7 @@ struct Frame {
     Vec3 at(float across, float along, float up) const { return origin + x * across + y * along + z * up; }
     // Turned about its own z, to the right for positive degrees.
     Frame turned(float degrees) const {
-        const float c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
+        const float c = portable::cos(glm::radians(degrees)), s = portable::sin(glm::radians(degrees));
         return {origin, x * c - y * s, y * c + x * s, z};
     }
 };
@@ -41,12 +42,12 @@ class CardBuilder {
         for (int i = 0; i <= pieces; i++) {
             const float t = static_cast<float>(i) / static_cast<float>(pieces);
             const bool straight = std::abs(bend) < 1e-3f;
-            const float along = straight ? t : std::sin(bend * t) / bend;
-            const float down = straight ? 0.0f : (1.0f - std::cos(bend * t)) / bend;
+            const float along = straight ? t : portable::sin(bend * t) / bend;
+            const float down = straight ? 0.0f : (1.0f - portable::cos(bend * t)) / bend;
             for (int k = 0; k < columns; k++) {
                 const float across = static_cast<float>(k) / static_cast<float>(columns - 1) - 0.5f;
                 const float raised = columns == 3 && k == 1 ? fold * width : 0.0f;
-                const Vec3 out = frame.z * std::cos(bend * t) + frame.y * std::sin(bend * t);
+                const Vec3 out = frame.z * portable::cos(bend * t) + frame.y * portable::sin(bend * t);
                 add(frame.at(width * across, length * along, -length * down) + out * raised,
                     out + frame.x * (columns == 3 ? 0.9f * fold * across * 4.0f : 0.45f * across), frame.x,
                     {u[0] + (u[1] - u[0]) * (across + 0.5f), v[0] + (v[1] - v[0]) * t});
@@ -156,7 +157,7 @@ Mesh pinnate_leaf(const LeafRules& rules, int level, float petiole) {
         Frame foot;
         foot.origin.y = petiole + 0.12f + (top - 0.12f) * (count % 2 ? 0.86f : 1.0f) * place;
         // Longest in the middle, and closing in on the tip.
-        const float size = length * (0.78f + 0.22f * std::sin(3.1f * (0.15f + 0.7f * place)));
+        const float size = length * (0.78f + 0.22f * portable::sin(3.1f * (0.15f + 0.7f * place)));
         for (const float side : {-1.0f, 1.0f})
             card.blade(foot.turned(side * (72.0f - 22.0f * place)), size, width * size / length, level, curl);
     }
@@ -196,8 +197,9 @@ Mesh needle_bundle(const LeafRules& rules, int level, float petiole) {
         const float lean = count > 1 ? glm::radians(kNeedleSplay) : 0.0f;
         Frame foot;
         foot.origin.y = petiole;
-        const Vec3 out(static_cast<float>(std::cos(around)), 0.0f, static_cast<float>(std::sin(around)));
-        foot.y = Vec3(0.0f, std::cos(lean), 0.0f) + out * std::sin(lean);
+        const Vec3 out(static_cast<float>(portable::cos(around)), 0.0f,
+                       static_cast<float>(portable::sin(around)));
+        foot.y = Vec3(0.0f, portable::cos(lean), 0.0f) + out * portable::sin(lean);
         foot.x =
             glm::normalize(glm::cross(foot.y, std::abs(out.z) > 0.5f ? Vec3(0, 0, 1) : Vec3(0.3f, 0, 1)));
         foot.z = glm::cross(foot.x, foot.y);

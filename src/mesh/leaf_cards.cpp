@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -62,7 +63,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
 
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, int level) {
     if (level <= 0) return leaves;
-    const double share = std::pow(0.42, std::min(level, 8));
+    const double share = portable::pow(0.42, std::min(level, 8));
     const float growth = static_cast<float>(1.0 / std::sqrt(share));
     std::vector<LeafPlacement> kept;
     kept.reserve(static_cast<size_t>(static_cast<double>(leaves.size()) * share) + 2);

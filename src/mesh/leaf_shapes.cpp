@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "mesh/texture_noise.h"
 
 namespace treerec::texture {
@@ -15,15 +16,16 @@ double half_width(const Shape& shape, double s) {
     // A bell that rises to 1 at `widest`: s^a (1-s)^b scaled.
     const double b = shape.taper;
     const double a = b * shape.widest / (1.0 - shape.widest);
-    const double bell = std::pow(s / shape.widest, a) * std::pow((1.0 - s) / (1.0 - shape.widest), b);
-    double width = 0.5 * shape.width * std::pow(bell, 0.62);
+    const double bell =
+        portable::pow(s / shape.widest, a) * portable::pow((1.0 - s) / (1.0 - shape.widest), b);
+    double width = 0.5 * shape.width * portable::pow(bell, 0.62);
     if (shape.margin == Margin::kSerrate) {
         // Saw teeth that point to the tip.
         const double tooth = s * shape.teeth - std::floor(s * shape.teeth);
         width *= 1.0 - shape.depth * (1.0 - tooth) * smoothstep(0.0, 0.12, 1.0 - s);
     } else if (shape.margin == Margin::kLobed) {
-        const double wave = 0.5 + 0.5 * std::cos(2.0 * kPi * (s * shape.teeth - 0.62));
-        width *= 1.0 - shape.depth * (1.0 - std::pow(wave, 0.7)) * smoothstep(0.08, 0.22, s) *
+        const double wave = 0.5 + 0.5 * portable::cos(2.0 * kPi * (s * shape.teeth - 0.62));
+        width *= 1.0 - shape.depth * (1.0 - portable::pow(wave, 0.7)) * smoothstep(0.08, 0.22, s) *
                            smoothstep(0.0, 0.18, 1.0 - s);
     }
     return width;
@@ -45,7 +47,7 @@ BladePoint lobe_at(const Shape& shape, double s, double t) {
     const double phase = q - std::floor(q) - 0.5;
     const double side = smoothstep(0.11, 0.03, std::abs(phase)) * (1.0 - 0.75 * reach);
     point.vein = std::max(midrib, 0.62 * side);
-    const double quilt = 0.5 - 0.5 * std::cos(2.0 * kPi * (phase + 0.5));
+    const double quilt = 0.5 - 0.5 * portable::cos(2.0 * kPi * (phase + 0.5));
     point.relief = 0.020 * std::sqrt(quilt) * (1.0 - 0.5 * reach) + 0.30 * across - 0.012 * midrib;
     return point;
 }
@@ -165,7 +167,7 @@ BladePoint blade_at(const Shape& shape, double s, double t) {
     BladePoint best;
     const double s0 = s - 0.06;
     for (int i = 0; i < 5; i++) {
-        const double c = std::cos(kAngles[i]), n = std::sin(kAngles[i]);
+        const double c = portable::cos(kAngles[i]), n = portable::sin(kAngles[i]);
         const double along = (s0 * c + t * n) / kLengths[i];
         const double across = (t * c - s0 * n) / kLengths[i];
         // Palmate lobes share a broad base: widen each towards it.

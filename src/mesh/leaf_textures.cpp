@@ -4,6 +4,7 @@
 #include "error.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "mesh/leaf_cards.h"
 #include "mesh/leaf_shapes.h"
 #include "mesh/texture_noise.h"
@@ -33,7 +34,7 @@ struct Sample {
 };
 
 DVec2 twig_at(double f, double sway, double top) {
-    return {sway * std::sin(2.2 * f) * f, top * f};
+    return {sway * portable::sin(2.2 * f) * f, top * f};
 }
 
 std::vector<Leaf> arrange(const Spray& spray, uint64_t seed, double sway, double top) {
@@ -43,8 +44,8 @@ std::vector<Leaf> arrange(const Spray& spray, uint64_t seed, double sway, double
         const DVec2 on = twig_at(f, sway, top);
         const DVec2 ahead = glm::normalize(twig_at(f + 0.01, sway, top) - twig_at(f - 0.01, sway, top));
         const double turn = side * spray.spread * (1.0 - 0.38 * f) * random.uniform(0.88, 1.1);
-        const DVec2 direction(ahead.x * std::cos(turn) + ahead.y * std::sin(turn),
-                              ahead.y * std::cos(turn) - ahead.x * std::sin(turn));
+        const DVec2 direction(ahead.x * portable::cos(turn) + ahead.y * portable::sin(turn),
+                              ahead.y * portable::cos(turn) - ahead.x * portable::sin(turn));
         Leaf leaf;
         leaf.length = spray.leaf_length * random.uniform(0.86, 1.06) * (side == 0.0 ? 1.05 : 1.0);
         leaf.direction = direction;
@@ -155,7 +156,7 @@ void draw_tuft(std::vector<Sample>& canvas, int size, const Spray& spray, uint64
             const double side = k % 2 ? 1.0 : -1.0;
             const double turn = side * random.uniform(0.25, 1.25) * (1.0 - 0.45 * f);
             const double length = random.uniform(0.26, 0.40) * (1.0 - 0.35 * f);
-            const DVec2 direction(std::sin(turn), std::cos(turn));
+            const DVec2 direction(portable::sin(turn), portable::cos(turn));
             const DVec2 middle = on + direction * (0.5 * length);
             const DVec2 tip = middle + glm::normalize(direction + DVec2(0.0, 0.25)) * (0.5 * length);
             const double light = random.uniform(0.75, 1.2);
@@ -199,8 +200,8 @@ void draw_flat_twigs(std::vector<Sample>& canvas, int size, const Spray& spray, 
         const double turn = side * spray.spread * random.uniform(0.9, 1.1) * (1.0 - 0.2 * f);
         const double reach = (0.40 * (1.0 - f) + 0.10) * random.uniform(0.9, 1.1);
         const DVec2 on = twig_at(f, sway, kTop);
-        const DVec2 bent(std::sin(0.75 * turn), std::cos(0.75 * turn));
-        const DVec2 middle = on + DVec2(std::sin(turn), std::cos(turn)) * (0.55 * reach);
+        const DVec2 bent(portable::sin(0.75 * turn), portable::cos(0.75 * turn));
+        const DVec2 middle = on + DVec2(portable::sin(turn), portable::cos(turn)) * (0.55 * reach);
         draw_needled_twig(canvas, size, spray, middle, middle + bent * (0.45 * reach), random);
         draw_needled_twig(canvas, size, spray, on, middle, random);
     }
@@ -220,11 +221,11 @@ void draw_frond(std::vector<Sample>& canvas, int size, const Spray& spray, uint6
         const double side = i == 2 * spray.pairs ? 0.0 : i % 2 ? 1.0 : -1.0;
         Leaf leaf;
         // Longest a little below the middle, short and upright at the tip.
-        leaf.length = spray.leaf_length * std::pow(std::sin(kPi * mix(0.24, 0.97, f)), 0.8) *
+        leaf.length = spray.leaf_length * portable::pow(portable::sin(kPi * mix(0.24, 0.97, f)), 0.8) *
                       random.uniform(0.90, 1.04);
         leaf.length = std::max(leaf.length, 0.09);
         const double turn = side * mix(spray.spread, 0.30, f * f * f) * random.uniform(0.95, 1.05);
-        leaf.direction = {std::sin(turn), std::cos(turn)};
+        leaf.direction = {portable::sin(turn), portable::cos(turn)};
         leaf.base = twig_at(f, sway, kTop);
         const double room =
             std::min((0.96 - leaf.base.y) / std::max(leaf.direction.y, 0.2),

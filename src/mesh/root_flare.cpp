@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -45,13 +47,13 @@ RootFlare plan_flare(std::vector<AxisPoint>& points, uint32_t sides) {
 
 FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle) {
     const double left = std::clamp(1.0 - ring.along / flare.reach, 0.0, 1.0);
-    const double lobe = 1.0 + kLobe * std::cos(flare.lobes * angle);
+    const double lobe = 1.0 + kLobe * portable::cos(flare.lobes * angle);
     const double wide = flare.amount * left * left * (flare.lobes > 0 ? lobe : 1.0);
     FlareAt at;
     at.radius = ring.radius * (1.0 + wide);
     at.slope = -2.0 * ring.radius * flare.amount * left / flare.reach * (flare.lobes > 0 ? lobe : 1.0);
     at.turn = flare.lobes > 0 ? -flare.amount * left * left * kLobe * flare.lobes *
-                                    std::sin(flare.lobes * angle) / (1.0 + wide)
+                                    portable::sin(flare.lobes * angle) / (1.0 + wide)
                               : 0.0;
     return at;
 }

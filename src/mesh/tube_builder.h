@@ -7,6 +7,7 @@
 
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
+#include "geometry/portable_math.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/collar.h"
 #include "mesh/root_flare.h"
@@ -98,7 +99,7 @@ struct Builder {
             radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
         }
         const double thickest = tree.node(list.nodes[parent.begin]).radius;
-        return 0.92 * std::cos(kPi / sides_of(thickest, options)) * radius;
+        return 0.92 * portable::cos(kPi / sides_of(thickest, options)) * radius;
     }
 
     void plan(size_t index, std::vector<AxisPoint>& points);

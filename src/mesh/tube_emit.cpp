@@ -1,6 +1,7 @@
 // Tubes to vertices.
 #include <algorithm>
 
+#include "geometry/portable_math.h"
 #include "mesh/tube_builder.h"
 
 namespace treerec::tubes {
@@ -45,7 +46,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     DVec2 circle[65];
     for (uint32_t j = 0; j <= sides; j++) {
         const double angle = 2.0 * kPi * (j % sides) / sides;
-        circle[j] = {std::cos(angle), std::sin(angle)};
+        circle[j] = {portable::cos(angle), portable::sin(angle)};
     }
     const double per_side = 1.0 / sides;
     size_t vertex = tube.first_vertex;

@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "file_bytes.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -243,7 +244,7 @@ std::optional<DVec2> Camera::project(const DVec3& p) const {
     const auto fisheye = [&](std::initializer_list<double> k) -> std::optional<double> {
         const double r = std::sqrt(r2);
         if (r < 1e-12) return 1.0;
-        const double angle = std::atan(r);
+        const double angle = portable::atan(r);
         const std::optional<double> bent = radial(angle * angle, k);
         return bent ? std::optional(*bent * angle / r) : std::nullopt;
     };

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -14,7 +16,7 @@ constexpr double kLeft = 46.0, kRight = 10.0, kTop = 12.0, kBottom = 40.0;
 // A step of 1, 2 or 5 times a power of ten, of which about four reach `most`.
 double step_for(double most) {
     const double rough = most / 4.0;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
+    const double power = portable::pow(10.0, std::floor(portable::log10(rough)));
     for (double factor : {1.0, 2.0, 5.0})
         if (factor * power >= rough * 0.999) return factor * power;
     return 10.0 * power;
@@ -67,7 +69,7 @@ std::string histogram_svg(const Histogram& histogram) {
     const double bin = inner_width / static_cast<double>(bins), base = kHeight - kBottom;
     std::string svg = "<svg viewBox=\"0 0 520 240\" role=\"img\" aria-label=\"" + histogram.unit + " by " +
                       histogram.axis + "\">";
-    const int digits = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    const int digits = std::max(0, static_cast<int>(-std::floor(portable::log10(step) + 1e-9)));
     for (double at = 0.0; at <= top * 1.0001; at += step) {
         const double y = base - inner_height * at / top;
         svg += "<line class=\"grid\" x1=\"46\" x2=\"510\" y1=\"" + fixed(y, 1) + "\" y2=\"" + fixed(y, 1) +

@@ -11,6 +11,7 @@
 #include "fidelity/picture.h"
 #include "fidelity/unexplained.h"
 #include "file_bytes.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "mesh/branch_tubes.h"
 #include "pipeline/histogram_svg.h"
@@ -270,7 +271,8 @@ std::string heat_pictures(const Page& page, const Bounds& box, Progress& progres
         Picture picture(view);
         // Behind all wood, which they would hide.
         std::vector<Vec3> behind = leaves.points;
-        const Vec3 back(2.0 * box.diagonal() * DVec3(std::sin(view.azimuth), 0.0, std::cos(view.azimuth)));
+        const Vec3 back(2.0 * box.diagonal() *
+                        DVec3(portable::sin(view.azimuth), 0.0, portable::cos(view.azimuth)));
         for (Vec3& p : behind)
             p -= back;
         picture.draw(behind, pale, kLeafRadius, &progress);

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "geometry/cell_grid.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "scan/robust.h"
 
@@ -162,7 +163,7 @@ double share_on_surfaces(const std::vector<Vec3>& points, double extent, const P
 double evenness(std::span<const Vec3> points, const std::array<Range, 3>& ranges, const Progress* progress) {
     const double volume = ranges[0].size() * ranges[1].size() * ranges[2].size();
     const double wanted = std::min(0.5 * static_cast<double>(points.size()), kMostCells);
-    const double cell = std::cbrt(volume / wanted);
+    const double cell = portable::cbrt(volume / wanted);
     if (!(cell > 0.0)) return 0.0;
     double cells = 1.0;
     for (const Range& range : ranges)

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "scan/samples.h"
 #include "scan/separate_trees.h"
@@ -323,7 +324,7 @@ std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<f
                     const int32_t other = top[static_cast<size_t>(k * width + j)];
                     if (other < 0 || other == i) continue;
                     const Vec3& q = points[static_cast<size_t>(other)];
-                    if (std::hypot(q.x - p.x, q.z - p.z) > static_cast<float>(reach)) continue;
+                    if (portable::hypot(q.x - p.x, q.z - p.z) > static_cast<float>(reach)) continue;
                     const float difference =
                         above[static_cast<size_t>(other)] - above[static_cast<size_t>(i)];
                     highest = difference < 0.0F || (difference == 0.0F && other > i);

@@ -8,6 +8,7 @@
 #include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -134,7 +135,7 @@ CellShape shape_of(const std::vector<Gathered>& cells, size_t own, Rows& rows, f
         shape.scatter = s.z / s.x;
     }
     shape.occupied = occupied;
-    shape.crowd = std::log(number / coarseness);
+    shape.crowd = portable::log(number / coarseness);
     return shape;
 }
 
@@ -156,9 +157,9 @@ Vec3 deviations(const std::array<float, 6>& m) {
     const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0);
     if (!(p > 1e-30)) return Vec3(static_cast<float>(std::sqrt(std::max(mean, 0.0))));
     const double det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
-    const double angle = std::acos(std::clamp(det / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
-    const double first = mean + 2.0 * p * std::cos(angle);
-    const double last = mean + 2.0 * p * std::cos(angle + 2.0 * kPi / 3.0);
+    const double angle = portable::acos(std::clamp(det / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
+    const double first = mean + 2.0 * p * portable::cos(angle);
+    const double last = mean + 2.0 * p * portable::cos(angle + 2.0 * kPi / 3.0);
     const double middle = 3.0 * mean - first - last;
     return {static_cast<float>(std::sqrt(std::max(first, 0.0))),
             static_cast<float>(std::sqrt(std::max(middle, 0.0))),

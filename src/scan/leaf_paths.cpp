@@ -9,6 +9,7 @@
 
 #include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -157,7 +158,7 @@ void measure_bushes(const CellPaths& tree, const std::vector<float>& height,
         const uint32_t p = tree.parent[v];
         paths[v].*member = p != v && height[p] < limit
                                ? paths[p].*member
-                               : std::log1p(static_cast<float>(mass[v]) / (height[v] + 1.0F));
+                               : portable::log1p(static_cast<float>(mass[v]) / (height[v] + 1.0F));
     }
 }
 
@@ -195,10 +196,10 @@ CellPaths trace_paths(const Cells& cells, const Progress& progress) {
         for (size_t v = begin; v < end; v++) {
             CellPath& path = result.paths[v];
             const uint32_t b = base[v];
-            path.height = std::log1p(height[v]);
-            path.mass = std::log(static_cast<float>(mass[v]));
-            path.chain = std::log1p(height[b]);
-            path.chain_mass = std::log(static_cast<float>(mass[b]) / (height[b] + 1.0F));
+            path.height = portable::log1p(height[v]);
+            path.mass = portable::log(static_cast<float>(mass[v]));
+            path.chain = portable::log1p(height[b]);
+            path.chain_mass = portable::log(static_cast<float>(mass[b]) / (height[b] + 1.0F));
             path.straight_short = path.straight_long = 1.0F;
             float arc = 0.0F;
             uint32_t u = static_cast<uint32_t>(v);

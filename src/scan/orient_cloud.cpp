@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "scan/clean_cloud.h"
 #include "scan/robust.h"
 #include "scan/scale.h"
@@ -96,7 +97,7 @@ EndView view_end(const std::vector<Slice>& slices, const DVec2& centre, double c
     view.slenderness = length / (2.0 * std::max(quantile(radii, 0.5), 0.01 * height));
     // A twig tip is thin as well, but off the middle of the crown.
     const double offset = glm::length(foot - centre) / crown_radius;
-    view.score = std::log2(1.0 + std::min(view.slenderness, 8.0)) * (1.0 - std::min(offset, 1.0));
+    view.score = portable::log2(1.0 + std::min(view.slenderness, 8.0)) * (1.0 - std::min(offset, 1.0));
     return view;
 }
 
@@ -127,7 +128,7 @@ AxisView view_axis(const std::vector<Vec3>& points, const std::array<Range, 3>& 
             distances.push_back(glm::length(DVec2(p) - centre));
     const double crown_radius = std::max(quantile(distances, 0.9), 1e-9 * height);
     const double middle_radius = std::max(quantile(distances, 0.5), 1e-3 * height);
-    view.elongation_score = 2.0 * std::max(0.0, std::log2(0.15 * height / middle_radius));
+    view.elongation_score = 2.0 * std::max(0.0, portable::log2(0.15 * height / middle_radius));
 
     std::vector<Slice> slices = slice_up(sliced);
     view.low_end = view_end(slices, centre, crown_radius, height);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "scan/separate_trees.h"
 
 namespace treerec {
@@ -25,7 +26,7 @@ size_t nearest_to(const DVec3& position, const Separation& separation, const Sca
     double best_distance = std::numeric_limits<double>::max();
     for (size_t s = 0; s < separation.stems.size(); s++) {
         const DVec3& foot = separation.stems[s].foot;
-        const double distance = std::hypot(foot.x - at.x, foot.z - at.z);
+        const double distance = portable::hypot(foot.x - at.x, foot.z - at.z);
         if (distance >= best_distance) continue;
         best_distance = distance;
         best = s;

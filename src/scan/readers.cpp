@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -189,7 +190,7 @@ void settle_splats(const ReadJob& job, RawCloud& raw) {
         for (int k = 0; k < 3; k++)
             color[k] = color[k] == color[k] ? std::clamp(0.5F + kHarmonic * color[k], 0.0F, 1.0F) : 0.0F;
     raw.color_white = 1.0F;
-    const double least = std::log(kLeastOpacity / (1.0 - kLeastOpacity));  // the inverse of the sigmoid
+    const double least = portable::log(kLeastOpacity / (1.0 - kLeastOpacity));  // the inverse of the sigmoid
     std::vector<uint8_t> keep(raw.size());
     for (size_t i = 0; i < keep.size(); i++)
         keep[i] = raw.opacities[i] >= least;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "scan/robust.h"
 
 namespace treerec {
@@ -38,7 +39,7 @@ Unit guess_unit(double height, bool on_map) {
     const auto is_tree = [&](double metres) {
         return height * metres >= kShortestTree && height * metres <= kTallestTree;
     };
-    const auto error = [&](double metres) { return std::abs(std::log(height * metres / kTypicalTree)); };
+    const auto error = [&](double metres) { return std::abs(portable::log(height * metres / kTypicalTree)); };
     if (is_tree(1.0) || !(height > 0.0)) return {"metres", 1.0};
     if (on_map && is_tree(kFoot)) return {"feet", kFoot};
     Unit best{"", 0.0};
@@ -47,7 +48,7 @@ Unit guess_unit(double height, bool on_map) {
         if (is_tree(unit.metres) && (best.metres == 0.0 || error(unit.metres) < error(best.metres)))
             best = unit;
     if (best.metres > 0.0) return best;
-    const double metres = std::pow(10.0, std::round(std::log10(kTypicalTree / height)));
+    const double metres = portable::pow(10.0, std::round(portable::log10(kTypicalTree / height)));
     return {short_number(metres) + " m each", metres};
 }
 

@@ -7,6 +7,7 @@
 
 #include "geometry/cell_grid.h"
 #include "geometry/kd_tree.h"
+#include "geometry/portable_math.h"
 #include "scan/samples.h"
 
 namespace treerec {
@@ -80,7 +81,7 @@ std::vector<uint32_t> grow(const Voxels& voxels, const std::vector<Vec3>& points
         thickest = std::max(thickest, stem.radius);
     std::vector<float> slowness;
     for (const Stem& stem : stems)
-        slowness.push_back(thickest > 0.0 ? static_cast<float>(std::pow(
+        slowness.push_back(thickest > 0.0 ? static_cast<float>(portable::pow(
                                                 thickest / std::max(stem.radius, 0.05 * thickest), 2.0 / 3.0))
                                           : 1.0F);
     const float widest = static_cast<float>(kWidestCrown * height);
@@ -94,11 +95,11 @@ std::vector<uint32_t> grow(const Voxels& voxels, const std::vector<Vec3>& points
         for (uint32_t n = voxels.begin[c]; n < voxels.begin[c + 1]; n++) {
             const uint32_t other = voxels.neighbour[n];
             const Vec3 way = voxels.centre[other] - voxels.centre[c];
-            const float side = static_cast<float>(kSideways) * std::hypot(way.x, way.z);
+            const float side = static_cast<float>(kSideways) * portable::hypot(way.x, way.z);
             const float total = reached + slowness[tree[c]] * std::sqrt(way.y * way.y + side * side);
             if (total >= cost[other]) continue;
-            if (std::hypot(voxels.centre[other].x - static_cast<float>(foot.x),
-                           voxels.centre[other].z - static_cast<float>(foot.z)) > widest)
+            if (portable::hypot(voxels.centre[other].x - static_cast<float>(foot.x),
+                                voxels.centre[other].z - static_cast<float>(foot.z)) > widest)
                 continue;
             cost[other] = total;
             tree[other] = tree[c];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "scan/leaf_blur.h"
 #include "scan/leaf_cells.h"
@@ -146,7 +147,7 @@ bool surely_bare(const Cells& cells, const CellShapes& shapes) {
 }
 
 double logit(double p) {
-    return std::log(p / (1.0 - p));
+    return portable::log(p / (1.0 - p));
 }
 
 // The share of leaves under which the chances agree with themselves. logits: at even odds.
@@ -171,7 +172,7 @@ double find_share(const std::vector<float>& logits, const std::vector<uint32_t>&
         double sum = 0.0;
         for (int b = 0; b < kBins; b++) {
             const double z = 2.0 * kSpan * b / (kBins - 1) - kSpan + offset;
-            sum += histogram[static_cast<size_t>(b)] / (1.0 + std::exp(-z));
+            sum += histogram[static_cast<size_t>(b)] / (1.0 + portable::exp(-z));
         }
         share = std::clamp(sum / all, kLeast, 1.0 - kLeast);
     }

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/bounds.h"
+#include "geometry/portable_math.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
@@ -54,7 +55,7 @@ int decimals_for(const Bounds& bounds) {
     const DVec3 size = bounds.size();
     const double extent = std::max({size.x, size.y, size.z});
     if (!(extent > 0.0)) return 6;
-    return std::clamp(static_cast<int>(std::ceil(8.0 - std::log10(extent))), 0, 15);
+    return std::clamp(static_cast<int>(std::ceil(8.0 - portable::log10(extent))), 0, 15);
 }
 
 std::string to_ply(const PointCloud& cloud) {
@@ -127,7 +128,7 @@ std::string to_las(const PointCloud& cloud) {
     const DVec3 offset = glm::round(bounds.centre());
     const DVec3 reach = glm::max(bounds.max - offset, offset - bounds.min);
     const double largest = std::max({reach.x, reach.y, reach.z, 1e-3});
-    const double scale = std::pow(10.0, std::ceil(std::log10(largest / 2147483647.0)));
+    const double scale = portable::pow(10.0, std::ceil(portable::log10(largest / 2147483647.0)));
 
     ByteWriter writer(kHeader + stride * cloud.size());
     writer.put_text("LASF");

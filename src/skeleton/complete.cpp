@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fidelity/segment_tree.h"
+#include "geometry/portable_math.h"
 #include "skeleton/assemble.h"
 #include "skeleton/bark.h"
 #include "skeleton/flood_limbs.h"
@@ -81,7 +82,7 @@ size_t start_of(const FloodGrid& grid, const DVec3& from, const DVec3& direction
         const double distance = glm::length(way);
         if (distance > reach) continue;
         const double along = distance > 0.0 ? glm::dot(way, direction) / distance : 1.0;
-        if (along < std::cos(angle)) continue;
+        if (along < portable::cos(angle)) continue;
         const double cost = distance * (1.0 + kAside * (1.0 - along));
         if (best < grid.size() && cost >= least) continue;
         best = v;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/portable_math.h"
 #include "geometry/segment.h"
 
 namespace treerec {
@@ -110,7 +111,8 @@ LimbAxis smooth_axis(const Limb& limb, const Slices& slices, const SliceShape& s
     std::vector<double> members(limb.slices.size());
     auto add = [&](int32_t slice, int32_t at) {
         const double n = static_cast<double>(slices.points_of(slice).size());
-        spread[at] += n * std::hypot(shape.radius[slice], glm::distance(slices.centre[slice], centre[at]));
+        spread[at] +=
+            n * portable::hypot(shape.radius[slice], glm::distance(slices.centre[slice], centre[at]));
         members[at] += n;
     };
     for (int i = 0; i < count; i++)

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "geometry/bounds.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -149,7 +150,9 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         if (count >= kGroupLeast) break;
     }
     // The middle of a ring wider than a stem, such as a house's walls, is empty: its nearest point serves.
-    const auto across = [&](size_t v) { return std::hypot(points[v].x - centre.x, points[v].z - centre.z); };
+    const auto across = [&](size_t v) {
+        return portable::hypot(points[v].x - centre.x, points[v].z - centre.z);
+    };
     size_t nearest = points.size();
     for (size_t v = 0; v < points.size(); v++)
         if (in_slab(v) && (nearest == points.size() || across(v) < across(nearest))) nearest = v;
@@ -159,7 +162,7 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
     DVec3 sum(0.0);
     for (size_t v = 0; v < points.size(); v++) {
         const DVec3 p(points[v]);
-        if (!in_slab(v) || std::hypot(p.x - centre.x, p.z - centre.z) > kStemGapShare * size.y) continue;
+        if (!in_slab(v) || portable::hypot(p.x - centre.x, p.z - centre.z) > kStemGapShare * size.y) continue;
         root.seeds.push_back({static_cast<uint32_t>(v), p.y - base});
         sum += p;
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 namespace {
@@ -137,7 +139,7 @@ void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<L
     // To where the line goes into the parent's bark.
     const double sine = std::sqrt(std::max(
         0.01,
-        1.0 - std::pow(
+        1.0 - portable::pow(
                   glm::dot(back,
                            normalized_or(
                                parent[std::min(parent.size() - 1, static_cast<size_t>(meeting.station) + 1)]

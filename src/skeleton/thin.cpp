@@ -8,6 +8,7 @@
 #include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -119,12 +120,13 @@ double automatic_spacing(const std::vector<Vec3>& points, const Progress* progre
         const double count =
             static_cast<double>(guess_cells(counted, safe_layout(bounds, spacing), progress));
         if (count <= kWanted) break;
-        if (last_count > count) power = std::log(last_count / count) / std::log(spacing / last_spacing);
+        if (last_count > count)
+            power = portable::log(last_count / count) / portable::log(spacing / last_spacing);
         last_spacing = spacing;
         last_count = count;
         const double excess = count / kWanted;
-        spacing *=
-            std::clamp(std::pow(excess, 1.0 / std::clamp(power, 0.2, 3.0)), 1.01, excess > 4.0 ? 2.0 : 1.3);
+        spacing *= std::clamp(portable::pow(excess, 1.0 / std::clamp(power, 0.2, 3.0)), 1.01,
+                              excess > 4.0 ? 2.0 : 1.3);
     }
     while (count_cells(counted, safe_layout(bounds, spacing), kMostPoints, progress) > kMostPoints)
         spacing *= 1.02;

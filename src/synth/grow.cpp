@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "synth/habits.h"
 #include "tree/trunk.h"
@@ -21,7 +22,7 @@ double lerp(double a, double b, double t) {
 }
 
 DVec3 rotated(const DVec3& v, const DVec3& axis, double radians) {
-    const double c = std::cos(radians), s = std::sin(radians);
+    const double c = portable::cos(radians), s = portable::sin(radians);
     return c * v + s * glm::cross(axis, v) + (1.0 - c) * glm::dot(axis, v) * axis;
 }
 
@@ -119,7 +120,8 @@ class Grower {
     // The vertical, leaning by `lean` towards `azimuth`, degrees.
     static DVec3 tilted(double lean, double azimuth) {
         const double angle = glm::radians(lean), to = glm::radians(azimuth);
-        return {std::sin(angle) * std::cos(to), std::cos(angle), std::sin(angle) * std::sin(to)};
+        return {portable::sin(angle) * portable::cos(to), portable::cos(angle),
+                portable::sin(angle) * portable::sin(to)};
     }
 
     // Several stems from the root, each with branches like a limb's.
@@ -265,7 +267,7 @@ class Grower {
         for (NodeId id : tree_.depth_first()) {
             const double y = std::max(0.0, tree_.node(id).position.y);
             // The root flare.
-            const double flare = 1.0 + 0.30 * std::exp(-y / 0.22);
+            const double flare = 1.0 + 0.30 * portable::exp(-y / 0.22);
             const bool low_trunk = tree_.node(id).depth < 40 && radii[id] > 0.5 * base;
             tree_.set_radius(id, radii[id] * (low_trunk ? flare : 1.0));
         }
@@ -274,7 +276,7 @@ class Grower {
     std::vector<double> pipe_radii(double exponent) const {
         std::vector<double> pipes(static_cast<size_t>(tree_.id_end()), 0.0);
         const std::vector<NodeId> order = tree_.depth_first();
-        const double tip = std::pow(rules_.tip_radius, exponent);
+        const double tip = portable::pow(rules_.tip_radius, exponent);
         for (auto at = order.rbegin(); at != order.rend(); ++at) {
             const Node& node = tree_.node(*at);
             if (node.child_count == 0) pipes[*at] = tip;
@@ -283,7 +285,7 @@ class Grower {
             pipes[node.parent] += pipes[*at] + tip * length;
         }
         for (NodeId id : order)
-            pipes[id] = std::pow(pipes[id], 1.0 / exponent);
+            pipes[id] = portable::pow(pipes[id], 1.0 / exponent);
         return pipes;
     }
 

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "geometry/bounds.h"
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "synth/scan_view.h"
 #include "synth/surfaces.h"
@@ -84,7 +85,8 @@ VirtualScan scan_tree(const Tree& tree, const VirtualScanOptions& options, Progr
     for (int i = 0; i < options.stations; i++) {
         const double azimuth = turn + 2.0 * kPi * (i + random.uniform(-0.25, 0.25)) / options.stations;
         const double distance = std::max(random.uniform(8.0, 15.0), 1.3 * away);
-        eyes.push_back(base + DVec3(distance * std::cos(azimuth), 1.5, distance * std::sin(azimuth)));
+        eyes.push_back(base +
+                       DVec3(distance * portable::cos(azimuth), 1.5, distance * portable::sin(azimuth)));
     }
 
     const Beam beam{options.beam_exit, options.beam_divergence};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 
 namespace treerec {
 
@@ -91,8 +92,8 @@ ScanView::ScanView(const DVec3& eye, const DVec3& towards, double step, const Be
     // The elevation is largest where the tree is nearest: bounded by the height over the least distance.
     const double near = std::max(0.5, glm::length(DVec2(towards.x - eye.x, towards.z - eye.z)) -
                                           0.5 * glm::length(DVec2(bounds.size().x, bounds.size().z)));
-    const double high_elevation = std::atan2(std::max(0.1, bounds.max.y - eye.y), near);
-    const double low_elevation = std::atan2(std::min(-0.1, bounds.min.y - eye.y), near);
+    const double high_elevation = portable::atan2(std::max(0.1, bounds.max.y - eye.y), near);
+    const double low_elevation = portable::atan2(std::min(-0.1, bounds.min.y - eye.y), near);
     azimuth_ = low_azimuth - step;
     elevation_ = low_elevation - step;
     columns_ = static_cast<int>((high_azimuth - low_azimuth) / step) + 3;
@@ -109,10 +110,10 @@ void ScanView::draw(const Surface& surface, int32_t number) {
         const DVec2 angles = angles_to(p);
         const double range = glm::distance(p, eye_);
         const double radius = surface_radius + kRimShare * beam_.radius(range);
-        const double reach = std::asin(radius / std::max(range, 1.01 * radius));
+        const double reach = portable::asin(radius / std::max(range, 1.01 * radius));
         // Meridians draw together towards the zenith.
         const double azimuth_reach =
-            std::abs(angles.y) + reach < 1.5 ? reach / std::cos(std::abs(angles.y) + reach) : kPi;
+            std::abs(angles.y) + reach < 1.5 ? reach / portable::cos(std::abs(angles.y) + reach) : kPi;
         low_column = std::min(low_column, angles.x - azimuth_reach);
         high_column = std::max(high_column, angles.x + azimuth_reach);
         low_row = std::min(low_row, angles.y - reach);
@@ -201,13 +202,13 @@ void ScanView::collect(const std::vector<Surface>& surfaces, double noise, doubl
 DVec2 ScanView::angles_to(const DVec3& p) const {
     const DVec3 d = p - eye_;
     const double ahead = glm::dot(d, forward_), aside = glm::dot(d, right_);
-    return {std::atan2(aside, ahead), std::atan2(d.y, std::hypot(ahead, aside))};
+    return {portable::atan2(aside, ahead), portable::atan2(d.y, portable::hypot(ahead, aside))};
 }
 
 DVec3 ScanView::direction_of(int column, int row) const {
     const double azimuth = azimuth_ + column * step_, elevation = elevation_ + row * step_;
-    return std::cos(elevation) * (std::cos(azimuth) * forward_ + std::sin(azimuth) * right_) +
-           DVec3(0.0, std::sin(elevation), 0.0);
+    return portable::cos(elevation) * (portable::cos(azimuth) * forward_ + portable::sin(azimuth) * right_) +
+           DVec3(0.0, portable::sin(elevation), 0.0);
 }
 
 }  // namespace treerec

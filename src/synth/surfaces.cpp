@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 
 namespace treerec {
@@ -86,8 +87,8 @@ void add_fronds(const Tree& tree, int count, uint64_t seed, std::vector<Surface>
         const double elevation = 1.35 - 1.9 * age + random.uniform(-0.1, 0.1);
         const double azimuth = kGoldenAngle * i + random.uniform(-0.15, 0.15);
         const double piece = random.uniform(1.8, 2.6) / kPieces;
-        DVec3 heading(std::cos(elevation) * std::cos(azimuth), std::sin(elevation),
-                      std::cos(elevation) * std::sin(azimuth));
+        DVec3 heading(portable::cos(elevation) * portable::cos(azimuth), portable::sin(elevation),
+                      portable::cos(elevation) * portable::sin(azimuth));
         DVec3 p = base;
         for (int k = 0; k < kPieces; k++) {
             const double along = static_cast<double>(k) / kPieces;
@@ -96,8 +97,8 @@ void add_fronds(const Tree& tree, int count, uint64_t seed, std::vector<Surface>
             const double radius = 0.022 * (1.0 - 0.85 * along);
             surfaces.push_back({p, next, radius, 0.97 * radius, top, Shape::kCone, true});
             if (along > 0.15)
-                add_leaflets(next, heading, 0.5 * std::sin(kPi * std::min(1.0, along + 0.1)), top, random,
-                             surfaces);
+                add_leaflets(next, heading, 0.5 * portable::sin(kPi * std::min(1.0, along + 0.1)), top,
+                             random, surfaces);
             p = next;
         }
     }
@@ -112,7 +113,7 @@ void add_buttresses(const Tree& tree, int count, uint64_t seed, std::vector<Surf
         const double azimuth = turn + 2.0 * kPi * (i + random.uniform(-0.2, 0.2)) / count;
         const double height = random.uniform(0.8, 1.2);
         const double reach = root.radius * random.uniform(2.2, 3.2);
-        const DVec3 outwards(std::cos(azimuth), 0.0, std::sin(azimuth));
+        const DVec3 outwards(portable::cos(azimuth), 0.0, portable::sin(azimuth));
         for (int k = 1; k <= kRays; k++) {
             const double share = static_cast<double>(k) / kRays;
             const DVec3 up = root.position + share * height * DVec3(0.0, 1.0, 0.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/portable_math.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -77,7 +78,7 @@ void measure_crown(const Tree& tree, const BranchList& list, Measurements& resul
     double sum = 0.0;
     for (int i = 0; i < kCrownDirections; i++) {
         const double angle = 2.0 * kPi * i / kCrownDirections;
-        const DVec2 direction(std::cos(angle), std::sin(angle));
+        const DVec2 direction(portable::cos(angle), portable::sin(angle));
         double reach = 0.0;
         for (const DVec2& p : crown)
             reach = std::max(reach, glm::dot(p - axis, direction));

@@ -3,13 +3,15 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/portable_math.h"
+
 namespace treerec {
 
 void mark_trunk(Tree& tree, const TrunkOptions& options) {
     for (NodeId id : tree.depth_first())
         tree.set_flag(id, kTrunkFlag, false);
     if (tree.empty()) return;
-    const double cosine_limit = std::cos(glm::radians(options.angle_degrees));
+    const double cosine_limit = portable::cos(glm::radians(options.angle_degrees));
     tree.set_flag(tree.root(), kTrunkFlag, true);
     std::vector<NodeId> stack{tree.root()};
     while (!stack.empty()) {
