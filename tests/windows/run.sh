@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Runs what was built for Windows under Wine and compares it with what was built here. ./dev test windows calls it,
+# with everything built for both. The last line is 'N passed, N failed'.
+set -uo pipefail
+cd "$(dirname "$0")/../.."
+passed=0
+failed=0
+check() {
+    local what=$1
+    shift
+    if "$@"; then
+        echo "ok      $what"
+        passed=$((passed + 1))
+    else
+        echo "FAILED  $what"
+        failed=$((failed + 1))
+    fi
+}
+
+work=$PWD/build/windows
+rm -rf "$work/here" "$work/there"
+mkdir -p "$work/here" "$work/there"
+export WINEPREFIX=$work/wine WINEDEBUG=-all
+windows() { timeout 500 wine "$@" </dev/null 2>"$work/errors"; }
+
+python3 tests/windows/stub_table.py build/gdextension/gdextension_interface.h >"$work/stub_table.inc" &&
+    x86_64-w64-mingw32-g++-posix -std=c++20 -Wall -Wextra -Werror -O1 -static -Ibuild/gdextension -I"$work" \
+        tests/windows/stub_host.cpp -o "$work/stub_host.exe"
+check 'the stub of the engine is built' [ -x "$work/stub_host.exe" ]
+
+# What a template registers; the editor's library has more.
+runtime='LSystem LeafRule TreeEdit TreeReconstruction'
+for target in editor template_debug template_release; do
+    library=project/addons/tree_reconstruction/bin/libtree_reconstruction.windows.$target.x86_64.dll
+    windows "$work/stub_host.exe" "$library" | tr -d '\r' >"$work/$target.log"
+    check "$target: starts, finds all functions of the engine and ends" grep -q '^ended$' "$work/$target.log"
+    check "$target: no error in between" [ "$(grep -cE '^(error|missing)' "$work/$target.log")" = 0 ]
+    classes=$(sed -n 's/^class \([^ ]*\) .*/\1/p' "$work/$target.log" | LC_ALL=C sort | tr '\n' ' ')
+    if [ "$target" = editor ]; then
+        check "$target: registers the editor's classes" [ "$classes" != "$runtime " ]
+        check "$target: has the class reference" grep -qE 'methods, [1-9][0-9]* pages' "$work/$target.log"
+    else
+        check "$target: registers the classes of a game alone" [ "$classes" = "$runtime " ]
+    fi
+    x86_64-w64-mingw32-objdump -p "$library" >"$work/$target.headers"
+    check "$target: shows its entry function alone" \
+        [ "$(sed -n 's/^\t\[ *[0-9]*\] +base\[ *[0-9]*\] *[0-9a-f]* *//p' "$work/$target.headers" | grep -c tree_reconstruction_library_init)" = 1 ]
+    check "$target: and nothing else" [ "$(grep -cE '\+base\[ *[0-9]+\] +[0-9a-f]+ +Export RVA' "$work/$target.headers")" = 1 ]
+    strangers=$(sed -n 's/.*DLL Name: //p' "$work/$target.headers" | grep -viE '^(kernel32|msvcrt|api-ms-win-.*)\.dll$')
+    check "$target: needs nothing but Windows ($strangers)" [ -z "$strangers" ]
+    tests/windows/carries_editor.sh "$library"
+    carries=$?
+    if [ "$target" = editor ]; then
+        check "$target: carries the reconstruction" [ "$carries" = 0 ]
+    else
+        check "$target: carries nothing of the reconstruction" [ "$carries" = 1 ]
+    fi
+    echo "        $(stat -c %s "$library") bytes"
+done
+
+# The unit tests of what must be the same everywhere.
+windows build/windows.editor.x86_64/unit_tests.exe --gtest_brief=1 | tr -d '\r' >"$work/unit.log"
+check "unit tests: $(grep -aE 'PASSED' "$work/unit.log" | tail -n 1)" grep -q '  PASSED  ' "$work/unit.log"
+check 'unit tests: none fails' [ "$(grep -c '  FAILED  ' "$work/unit.log")" = 0 ]
+grep -A5 'Failure' "$work/unit.log" | head -n 40
+
+# The same bytes as here.
+build/linux.editor.x86_64/digests >"$work/here/digests"
+windows build/windows.editor.x86_64/digests.exe | tr -d '\r' >"$work/there/digests"
+check "digests: $(wc -l <"$work/here/digests") things that a game makes are the same" \
+    cmp "$work/here/digests" "$work/there/digests"
+diff "$work/here/digests" "$work/there/digests" | head -n 20
+
+both() {
+    (cd "$work/here" && ../../../build/linux.editor.x86_64/treerec "$@" --quiet >>log 2>&1)
+    (cd "$work/there" && windows ../../../build/windows.editor.x86_64/treerec.exe "$@" --quiet >>log 2>&1)
+}
+both synth -o . --seed 2
+both reconstruct scan.ply -o made.glb
+both reconstruct scan.ply -o made.obj
+both reconstruct scan.ply -o made.txt
+both reconstruct scan.ply -o flood.ply --skeleton flood
+both lstring made.txt -o made.lstring
+for file in scan.ply made.glb made.obj made.mtl made.txt flood.ply made.lstring; do
+    check "treerec.exe writes the same $file" cmp "$work/here/$file" "$work/there/$file"
+done
+tail -n 3 "$work/there/log"
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

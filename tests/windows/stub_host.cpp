@@ -1,0 +1,155 @@
+// Loads the extension's library on Windows as the engine does, with an engine that knows the names of all
+// functions (stub_table.py, from the real one's own list) and does next to nothing in them. Shows that the
+// library loads, finds everything it asks for, and starts and ends. Tells what it registers.
+#include <windows.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+#include <string>
+
+#include "gdextension_interface.h"
+
+namespace {
+
+enum Returns { kNumber, kFunction, kData };
+struct Offered {
+    const char* name;
+    Returns returns;
+};
+constexpr Offered kOffered[] = {
+#include "stub_table.inc"
+};
+
+int asked = 0, missing = 0, methods = 0, references = 0;
+alignas(16) unsigned char nothing[1 << 16];
+
+uint64_t give_zero() {
+    return 0;
+}
+void* give_function() {
+    return reinterpret_cast<void*>(give_zero);
+}
+void* give_data() {
+    return nothing;
+}
+
+// The few that do something. A name is the pointer to its letters, the same one for the same letters.
+void* allocate(size_t size) {
+    return std::calloc(1, size);
+}
+void* allocate2(size_t size, GDExtensionBool) {
+    return std::calloc(1, size);
+}
+void make_name(void* name, const char* letters, GDExtensionBool) {
+    static std::set<std::string> known;
+    const char* const kept = known.insert(letters).first->c_str();
+    std::memcpy(name, &kept, sizeof kept);
+}
+void copy_name(void* name, const void* const* from) {
+    std::memcpy(name, from[0], sizeof(const char*));
+}
+void compare_names(const void* one, const void* other, void* equal) {
+    *static_cast<GDExtensionBool*>(equal) = std::memcmp(one, other, sizeof(const char*)) == 0;
+}
+void* constructor_of(GDExtensionVariantType type, int32_t which) {
+    const bool copies = type == GDEXTENSION_VARIANT_TYPE_STRING_NAME && which == 1;
+    return copies ? reinterpret_cast<void*>(copy_name) : reinterpret_cast<void*>(give_zero);
+}
+void* comparison_of(GDExtensionVariantOperator which, GDExtensionVariantType one,
+                    GDExtensionVariantType other) {
+    const bool names =
+        which == GDEXTENSION_VARIANT_OP_EQUAL && one == other && one == GDEXTENSION_VARIANT_TYPE_STRING_NAME;
+    return names ? reinterpret_cast<void*>(compare_names) : reinterpret_cast<void*>(give_zero);
+}
+const char* letters_of(const void* name) {
+    const char* letters = nullptr;
+    std::memcpy(&letters, name, sizeof letters);
+    return letters ? letters : "";
+}
+void register_class(void*, const void* name, const void* parent, const void*) {
+    std::printf("class %s of %s\n", letters_of(name), letters_of(parent));
+}
+void register_method(void*, const void*, const void*) {
+    methods++;
+}
+void load_reference(const char* text, GDExtensionInt) {
+    if (text) references++;
+}
+void print_error(const char* text, const char*, const char*, int32_t, GDExtensionBool) {
+    std::printf("error %s\n", text);
+}
+
+struct Own {
+    const char* name;
+    void* function;
+};
+const Own kOwn[] = {
+    {"mem_alloc", reinterpret_cast<void*>(allocate)},
+    {"mem_alloc2", reinterpret_cast<void*>(allocate2)},
+    {"string_name_new_with_latin1_chars", reinterpret_cast<void*>(make_name)},
+    {"variant_get_ptr_constructor", reinterpret_cast<void*>(constructor_of)},
+    {"variant_get_ptr_operator_evaluator", reinterpret_cast<void*>(comparison_of)},
+    {"classdb_register_extension_class5", reinterpret_cast<void*>(register_class)},
+    {"classdb_register_extension_class_method", reinterpret_cast<void*>(register_method)},
+    {"editor_help_load_xml_from_utf8_chars_and_len", reinterpret_cast<void*>(load_reference)},
+    {"print_error", reinterpret_cast<void*>(print_error)},
+};
+
+GDExtensionInterfaceFunctionPtr get_proc_address(const char* name) {
+    asked++;
+    for (const Own& own : kOwn)
+        if (std::strcmp(own.name, name) == 0)
+            return reinterpret_cast<GDExtensionInterfaceFunctionPtr>(own.function);
+    for (const Offered& offered : kOffered) {
+        if (std::strcmp(offered.name, name) != 0) continue;
+        void* const function = offered.returns == kNumber     ? reinterpret_cast<void*>(give_zero)
+                               : offered.returns == kFunction ? reinterpret_cast<void*>(give_function)
+                                                              : reinterpret_cast<void*>(give_data);
+        return reinterpret_cast<GDExtensionInterfaceFunctionPtr>(function);
+    }
+    std::printf("missing %s\n", name);
+    missing++;
+    return nullptr;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    if (count != 2) {
+        std::fprintf(stderr, "usage: stub_host LIBRARY.dll\n");
+        return 2;
+    }
+    const HMODULE library = LoadLibraryA(arguments[1]);
+    if (!library) {
+        std::printf("not loaded: error %lu\n", GetLastError());
+        return 1;
+    }
+    const auto entry = reinterpret_cast<GDExtensionInitializationFunction>(
+        reinterpret_cast<void*>(GetProcAddress(library, "tree_reconstruction_library_init")));
+    if (!entry) {
+        std::printf("no entry function\n");
+        return 1;
+    }
+    GDExtensionInitialization initialization = {};
+    static int token = 0;
+    const bool started = entry(get_proc_address, &token, &initialization) != 0;
+    std::printf("entry %s, %d functions asked for, %d missing\n", started ? "started" : "refused", asked,
+                missing);
+    if (!started || missing || !initialization.initialize || !initialization.deinitialize) return 1;
+    for (int level = initialization.minimum_initialization_level;
+         level < GDEXTENSION_MAX_INITIALIZATION_LEVEL; level++)
+        initialization.initialize(initialization.userdata,
+                                  static_cast<GDExtensionInitializationLevel>(level));
+    std::printf("registered %d methods, %d pages of the class reference\n", methods, references);
+    std::fflush(stdout);
+    for (int level = GDEXTENSION_MAX_INITIALIZATION_LEVEL - 1;
+         level >= int(initialization.minimum_initialization_level); level--)
+        initialization.deinitialize(initialization.userdata,
+                                    static_cast<GDExtensionInitializationLevel>(level));
+    FreeLibrary(library);
+    std::printf("ended\n");
+    return 0;
+}
