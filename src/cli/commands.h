@@ -14,6 +14,8 @@ namespace treerec {
 // What several commands read in the same way: "--up x" (default z) and "--columns x,y,z". Throw UsageError.
 UpAxis up_axis_from(const Arguments& arguments);
 std::vector<std::string> columns_from(const Arguments& arguments);
+// "--levels" of a model.
+int levels_from(const Arguments& arguments);
 // "--dialect paper" (default turtle). Throws UsageError.
 LStringDialect dialect_from(const Arguments& arguments);
 

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "pipeline/export.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
@@ -13,6 +14,10 @@ UpAxis up_axis_from(const Arguments& arguments) {
 
 std::vector<std::string> columns_from(const Arguments& arguments) {
     return parse_columns(arguments.text("--columns", ""));
+}
+
+int levels_from(const Arguments& arguments) {
+    return static_cast<int>(arguments.whole("--levels", 1, 1, kMostLevels));
 }
 
 }  // namespace treerec

@@ -69,6 +69,7 @@ const Command& edit_command() {
          {"--tolerance", "M", "how far away a log's nodes are looked for (default: 1 % of the height)"},
          {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
          {"--seed", "N", "of the leaves (default 1)"},
+         {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--commands", "", "lists the commands and what they take"},
          {"--quiet", "", "print errors only"}},
@@ -95,6 +96,7 @@ void run_edit(const std::vector<std::string>& words) {
     ExportOptions exports;
     exports.textures = arguments.text("--leaves", exports.textures);
     exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    exports.levels = levels_from(arguments);
     try {
         exports.leaves = leaf_preset(exports.textures);
     } catch (const Error& error) {

@@ -96,6 +96,7 @@ const Command& grow_command() {
          {"--vary-angle", "A", "vary every segment's direction by up to so many degrees (default 0)"},
          {"--vary-length", "F", "vary every segment's length by up to this share (default 0)"},
          {"--leaves", "NAME", "the leaf preset of models (default: the grammar's, or generic; none)"},
+         {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--quiet", "", "print errors only"}},
         "STRING-OR-GRAMMAR: a file, or one of the program's own grammars: " + preset_list() + "."};
     return command;
@@ -111,6 +112,7 @@ void run_grow(const std::vector<std::string>& words) {
     const std::vector<std::string>& outs = arguments.all("-o");
     if (outs.empty()) throw UsageError("Where to? Name at least one file to write with -o.");
     ExportOptions exports;
+    exports.levels = levels_from(arguments);
     try {
         if (arguments.has("--leaves")) leaf_preset(arguments.text("--leaves", ""));
         for (const std::string& out : outs)

@@ -166,6 +166,7 @@ const Command& reconstruct_command() {
          {"--height", "M", "the tree's height in metres: sets the scale of scans that have none"},
          {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
          {"--leaves", "PRESET", leaf_names() + "or auto, the default: palm for a palm, else generic"},
+         {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
@@ -205,6 +206,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     ExportOptions exports;
     as_usage([&] { return leaf_preset(details.leaves == "auto" ? "generic" : details.leaves); });
     exports.seed = options.skeleton.seed;
+    exports.levels = levels_from(arguments);
     set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
     // Before the long work, not after it.
     for (const std::string& out : outs)

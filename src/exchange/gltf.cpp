@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <deque>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -50,12 +51,15 @@ class Builder {
     size_t add_view(std::string_view bytes, int target);
     size_t add_accessor(std::string_view bytes, size_t count, int component, const char* type, int target);
     size_t add_indices(const Mesh& mesh);
-    size_t add_mesh(const Mesh& mesh, const char* name);
+    size_t add_mesh(const Mesh& mesh, const std::string& name, int material);
+    void add_parts(size_t node, const ModelFile::Level& level, const std::string& suffix);
+    void add_levels(const ModelFile& file);
     size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap);
 
     static constexpr std::array<char, 4> kPadding{};
-    std::vector<uint16_t> short_indices_[2];  // of bark and leaves: what parts point into
-    std::vector<glm::u8vec4> wind_[2];
+    std::deque<std::vector<uint16_t>> short_indices_;  // by mesh: what parts point into
+    std::deque<std::vector<glm::u8vec4>> wind_;
+    bool has_bark_ = false;  // in any level: then its material is the first
 };
 
 size_t Builder::add_view(std::string_view bytes, int target) {
@@ -85,16 +89,16 @@ size_t Builder::add_indices(const Mesh& mesh) {
     const size_t count = mesh.indices.size();
     if (mesh.positions.size() > kMostShortIndices)
         return add_accessor(bytes_of(mesh.indices), count, kUnsignedInt, "SCALAR", kIndexBuffer);
-    std::vector<uint16_t>& indices = short_indices_[json["meshes"].size()];
+    std::vector<uint16_t>& indices = short_indices_.emplace_back();
     indices.resize(count);
     std::transform(mesh.indices.begin(), mesh.indices.end(), indices.begin(),
                    [](uint32_t index) { return static_cast<uint16_t>(index); });
     return add_accessor(bytes_of(indices), count, kUnsignedShort, "SCALAR", kIndexBuffer);
 }
 
-size_t Builder::add_mesh(const Mesh& mesh, const char* name) {
+size_t Builder::add_mesh(const Mesh& mesh, const std::string& name, int material) {
     const size_t count = mesh.positions.size();
-    std::vector<glm::u8vec4>& wind = wind_[json["meshes"].size()];
+    std::vector<glm::u8vec4>& wind = wind_.emplace_back();
     wind.resize(count);
     std::vector<std::pair<Vec3, Vec3>> bounds((count + kChunk - 1) / kChunk);
     parallel_for(count, kChunk, [&](size_t begin, size_t end) {
@@ -124,7 +128,7 @@ size_t Builder::add_mesh(const Mesh& mesh, const char* name) {
     add("TANGENT", bytes_of(mesh.tangents), kFloat, "VEC4");
     add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
     add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
-    primitive["material"] = json["meshes"].size();
+    primitive["material"] = material;
     json["meshes"].push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
     return json["meshes"].size() - 1;
 }
@@ -150,6 +154,44 @@ Json texture_info(size_t index) {
     return Json::object({{"index", index}});
 }
 
+// What is drawn of a level, as children of the node.
+void Builder::add_parts(size_t node, const ModelFile::Level& level, const std::string& suffix) {
+    const auto add = [&](const char* name, const Mesh* mesh, int material) {
+        if (!drawn(mesh)) return;
+        json["nodes"][node]["children"].push_back(json["nodes"].size());
+        json["nodes"].push_back(
+            {{"name", name + suffix}, {"mesh", add_mesh(*mesh, name + suffix, material)}});
+    };
+    add("Bark", level.bark, 0);
+    add("Leaves", level.leaves, has_bark_ ? 1 : 0);
+}
+
+// The finest level is in the scene; the others are known to it alone (MSFT_lod), in the order of their
+// detail.
+void Builder::add_levels(const ModelFile& file) {
+    // The share of a screen, 75 degrees high, that a tree as wide as high covers from that far away.
+    const auto coverage = [](double distance) {
+        constexpr double kHalfHeight = 0.767;  // the tangent of half the angle
+        return distance > 0.0 ? 0.25 / (kHalfHeight * kHalfHeight * distance * distance) : 1.0;
+    };
+    Json ids = Json::array(), coverages = Json::array();
+    json["nodes"][0]["children"] = {1};
+    json["nodes"].push_back({{"name", "Tree_LOD0"}});
+    add_parts(1, {file.bark, file.leaves}, "_LOD0");
+    for (size_t i = 0; i < file.coarser.size(); i++) {
+        const std::string suffix = "_LOD" + std::to_string(i + 1);
+        const size_t node = json["nodes"].size();
+        json["nodes"].push_back({{"name", "Tree" + suffix}});
+        add_parts(node, file.coarser[i], suffix);
+        ids.push_back(node);
+        coverages.push_back(coverage(file.coarser[i].distance));
+    }
+    coverages.push_back(0.0);  // the coarsest one to the horizon
+    json["nodes"][1]["extensions"]["MSFT_lod"]["ids"] = std::move(ids);
+    json["nodes"][1]["extras"]["MSFT_screencoverage"] = std::move(coverages);
+    json["extensionsUsed"] = {"MSFT_lod"};
+}
+
 Builder::Builder(const ModelFile& file) {
     json["asset"] = {{"version", "2.0"}, {"generator", "Godot tree reconstruction (treerec)"}};
     json["scene"] = 0;
@@ -161,18 +203,21 @@ Builder::Builder(const ModelFile& file) {
     for (const auto& [name, value] : file.extras)
         json["nodes"][0]["extras"][name] = value;
     // Geometry first: the pictures at the buffer's end can then be cut off into files of their own.
-    const auto add_part = [&](const char* name, const Mesh* mesh) {
-        if (!drawn(mesh)) return;
-        json["nodes"][0]["children"].push_back(json["nodes"].size());
-        json["nodes"].push_back({{"name", name}, {"mesh", add_mesh(*mesh, name)}});
-    };
-    add_part("Bark", file.bark);
-    add_part("Leaves", file.leaves);
+    has_bark_ = drawn(file.bark);
+    bool has_leaves = drawn(file.leaves);
+    for (const ModelFile::Level& level : file.coarser) {
+        has_bark_ |= drawn(level.bark);
+        has_leaves |= drawn(level.leaves);
+    }
+    if (file.coarser.empty() || (!has_bark_ && !has_leaves))
+        add_parts(0, {file.bark, file.leaves}, "");
+    else
+        add_levels(file);
     geometry_parts = parts.size();
     geometry_size = size;
     const std::vector<NamedPicture> all =
         file.pictures.empty() && size > 0 ? make_pictures(file.preset) : file.pictures;
-    if (drawn(file.bark)) {
+    if (has_bark_) {
         Json material, surface;
         material["name"] = "bark";
         surface["baseColorTexture"] = texture_info(add_texture(all, "bark_albedo", kRepeat));
@@ -183,7 +228,7 @@ Builder::Builder(const ModelFile& file) {
         material["pbrMetallicRoughness"] = std::move(surface);
         json["materials"].push_back(std::move(material));
     }
-    if (drawn(file.leaves)) {
+    if (has_leaves) {
         Json material, surface;
         material["name"] = "leaves";
         surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge));

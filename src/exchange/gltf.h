@@ -7,7 +7,10 @@
 namespace treerec {
 
 // Writes `path`: .glb in one file, .gltf with a .bin and PNG pictures beside it. Node "Tree" holds the extras
-// and the children "Bark" and "Leaves", each only if it has triangles. Attributes: POSITION, NORMAL, TANGENT
+// and the children "Bark" and "Leaves", each only if it has triangles. With coarser levels its child is
+// "Tree_LOD0", which has these as children, and which names "Tree_LOD1", ... as its levels of detail
+// (MSFT_lod, with MSFT_screencoverage); a program that does not know the extension shows the finest level
+// alone. Levels share materials. Attributes: POSITION, NORMAL, TANGENT
 // (without it Khronos' validator warns), TEXCOORD_0 and _WIND (the wind channels of design.md as normalized
 // bytes). Metres, Y up. Throws Error, naming the path, where it cannot write or for another extension; or
 // Cancelled.

@@ -11,8 +11,15 @@
 namespace treerec {
 
 struct ModelFile {
-    const Mesh* bark = nullptr;      // null or without triangles: left out
-    const Mesh* leaves = nullptr;    // likewise
+    const Mesh* bark = nullptr;    // null or without triangles: left out
+    const Mesh* leaves = nullptr;  // likewise
+    // Coarser levels of detail of the two, the finer first; kept in glTF.
+    struct Level {
+        const Mesh* bark = nullptr;
+        const Mesh* leaves = nullptr;
+        double distance = 0.0;  // from which on it is drawn, in heights of the tree
+    };
+    std::vector<Level> coarser;
     std::string preset = "generic";  // of the textures (foliage/leaves.h)
     // make_pictures(preset) when empty; give them to write several files at the cost of one.
     std::vector<NamedPicture> pictures;

@@ -1,5 +1,7 @@
 #include "pipeline/export.h"
 
+#include <algorithm>
+
 #include "error.h"
 #include "exchange/gltf.h"
 #include "exchange/lstring_file.h"
@@ -17,6 +19,8 @@ namespace {
 
 enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
 
+// Where a coarser level takes over, in heights of the tree: as in nodes/tree_levels.gd.
+constexpr double kSwitch[kMostLevels - 1] = {2.5, 6.0, 14.0, 30.0};
 constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
 
 Format format_of(const std::string& path) {
@@ -44,6 +48,9 @@ void require_writable_format(const std::string& path) {
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)
     : tree_(tree), options_(options), progress_(progress) {
     // "none" has leaf rules, but no look.
+    if (options_.levels < 1 || options_.levels > kMostLevels)
+        throw Error("A model has 1 to " + std::to_string(kMostLevels) + " levels of detail, not " +
+                    std::to_string(options_.levels) + ".");
     if (!leaf_preset(options_.textures).enabled) options_.textures = ExportOptions().textures;
 }
 
@@ -66,6 +73,21 @@ const Mesh& TreeExporter::leaf_cards() {
     if (!leaf_cards_)
         leaf_cards_ = bake_leaves(placed(), build_leaf_card(options_.leaves, card_level()), progress_);
     return *leaf_cards_;
+}
+
+const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
+    if (!coarser_.empty() || options_.levels == 1) return coarser_;
+    const Tree leafy = leafy_tree(tree_, options_.leaves, options_.foliage);
+    for (int level = 1; level < options_.levels; level++) {
+        TubeOptions tubes;
+        tubes.pivots = false;
+        tubes.level = level;
+        // The finest level may have flat cards already.
+        const Mesh card = build_leaf_card(options_.leaves, std::max(level, card_level()));
+        coarser_.push_back({build_branch_tubes(leafy, tubes, progress_),
+                            bake_leaves(thin_leaves(placed(), level), card, progress_)});
+    }
+    return coarser_;
 }
 
 size_t TreeExporter::triangles() {
@@ -105,6 +127,10 @@ void TreeExporter::write(const std::string& path) {
     ModelFile model;
     model.bark = &bark();
     model.leaves = &leaf_cards();
+    if (format == Format::kGltf) {
+        for (const Coarser& level : coarser())
+            model.coarser.push_back({&level.bark, &level.leaves, kSwitch[model.coarser.size()]});
+    }
     model.preset = options_.textures;
     model.pictures = pictures_;
     model.extras = {{"height_m", measured.height},
@@ -118,8 +144,8 @@ void TreeExporter::write(const std::string& path) {
 }
 
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures, const Progress* progress, const Foliage& foliage) {
-    TreeExporter(tree, {leaves, textures, seed, foliage}, progress).write(path);
+                 const std::string& textures, const Progress* progress, const Foliage& foliage, int levels) {
+    TreeExporter(tree, {leaves, textures, seed, foliage, levels}, progress).write(path);
 }
 
 }  // namespace treerec

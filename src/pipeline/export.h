@@ -19,10 +19,13 @@ struct ExportOptions {
     std::string textures = "generic";  // the preset whose bark and leaf pictures are used; "none" means these
     uint64_t seed = 1;                 // of the leaves
     Foliage foliage = {};              // what the scan saw of them
+    int levels = 1;                    // of detail in .glb and .gltf files, 1..kMostLevels
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
 // tree and the progress must outlive it; every method may throw Cancelled.
+inline constexpr int kMostLevels = 5;
+
 class TreeExporter {
   public:
     TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);
@@ -32,7 +35,7 @@ class TreeExporter {
     // Error for another extension, or if it cannot be written.
     void write(const std::string& path);
 
-    size_t triangles();  // of bark and leaves together
+    size_t triangles();  // of bark and leaves together, of the finest level
     size_t leaves();
 
   private:
@@ -40,6 +43,10 @@ class TreeExporter {
     const std::vector<LeafPlacement>& placed();
     const Mesh& leaf_cards();
     int card_level();
+    struct Coarser {
+        Mesh bark, leaves;
+    };
+    const std::vector<Coarser>& coarser();
 
     const Tree& tree_;
     ExportOptions options_;
@@ -47,6 +54,7 @@ class TreeExporter {
     std::optional<Mesh> bark_;
     std::optional<std::vector<LeafPlacement>> placed_;
     std::optional<Mesh> leaf_cards_;
+    std::vector<Coarser> coarser_;
     std::vector<NamedPicture> pictures_;
 };
 
@@ -57,6 +65,6 @@ void require_writable_format(const std::string& path);
 // One file: TreeExporter in one call.
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
                  const std::string& textures = "generic", const Progress* progress = nullptr,
-                 const Foliage& foliage = {});
+                 const Foliage& foliage = {}, int levels = 1);
 
 }  // namespace treerec

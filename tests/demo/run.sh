@@ -26,7 +26,7 @@ failed=${failed%% *}
 
 # What other programs will read: a binary and a text model with leaves, one without, and a bare stem.
 scan=build/sample/scan.ply
-bin/treerec reconstruct "$scan" -o build/demo_check.gltf --leaves maple --quiet &&
+bin/treerec reconstruct "$scan" -o build/demo_check.gltf --leaves maple --levels 4 --quiet &&
     bin/treerec reconstruct "$scan" -o build/demo_check_bare.glb --leaves none --quiet &&
     node tests/tools/validate_gltf.mjs build/demo/tree.glb build/demo_check.gltf build/demo_check_bare.glb
 if [ $? = 0 ]; then

@@ -104,6 +104,56 @@ void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh)
             ASSERT_NEAR(bytes[4 * i + static_cast<size_t>(c)] / 255.0f, mesh.colors[i][c], 0.003f);
 }
 
+TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
+    const Tree tree = test::random_tree(3, 300);
+    std::vector<Mesh> bark, leaves;
+    for (int level = 1; level < 4; level++) {
+        TubeOptions options;
+        options.level = level;
+        bark.push_back(build_branch_tubes(tree, options));
+        leaves.push_back(level == 3 ? Mesh() : bake_leaves(place_leaves(tree, leaf_preset("oak"), 1), level));
+    }
+    for (size_t i = 0; i < bark.size(); i++)
+        model_.coarser.push_back({&bark[i], &leaves[i], 2.5 * (1.0 + i)});
+    for (const char* name : {"levels.glb", "levels.gltf"}) {
+        write_gltf(path(name), model_);
+        const tinygltf::Model model = read(path(name));
+        ASSERT_EQ(model.extensionsUsed, std::vector<std::string>{"MSFT_lod"});
+        EXPECT_TRUE(model.extensionsRequired.empty());
+        ASSERT_EQ(model.scenes.at(0).nodes, std::vector<int>{0});
+        const tinygltf::Node& root = model.nodes.at(0);
+        EXPECT_TRUE(root.extras.Has("height_m"));
+        ASSERT_EQ(root.children.size(), 1u);  // the finest alone is in the scene
+        const tinygltf::Node& finest = model.nodes.at(static_cast<size_t>(root.children[0]));
+        const tinygltf::Value ids = finest.extensions.at("MSFT_lod").Get("ids");
+        const tinygltf::Value coverage = finest.extras.Get("MSFT_screencoverage");
+        ASSERT_EQ(ids.ArrayLen(), 3u);
+        ASSERT_EQ(coverage.ArrayLen(), 4u);
+        for (size_t level = 0; level < 4; level++) {
+            SCOPED_TRACE(level);
+            const int node = level == 0 ? root.children[0] : ids.Get(level - 1).GetNumberAsInt();
+            const tinygltf::Node& shown = model.nodes.at(static_cast<size_t>(node));
+            const std::string suffix = "_LOD" + std::to_string(level);
+            EXPECT_EQ(shown.name, "Tree" + suffix);
+            const bool leafy = level < 3;
+            ASSERT_EQ(shown.children.size(), leafy ? 2u : 1u);
+            if (level > 0)
+                EXPECT_LT(coverage.Get(level).GetNumberAsDouble(),
+                          coverage.Get(level - 1).GetNumberAsDouble());
+            for (size_t part = 0; part < shown.children.size(); part++) {
+                const tinygltf::Node& child = model.nodes.at(static_cast<size_t>(shown.children[part]));
+                EXPECT_EQ(child.name, (part == 0 ? "Bark" : "Leaves") + suffix);
+                const Mesh& wanted = part == 0 ? (level == 0 ? bark_ : bark[level - 1])
+                                               : (level == 0 ? leaves_ : leaves[level - 1]);
+                expect_mesh(model, child.mesh, wanted);
+                EXPECT_EQ(model.meshes.at(static_cast<size_t>(child.mesh)).primitives.at(0).material,
+                          static_cast<int>(part));
+            }
+        }
+        EXPECT_EQ(model.materials.size(), 2u);
+    }
+}
+
 TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
     for (const char* name : {"a tree.glb", "a tree.gltf"}) {
         write_gltf(path(name), model_);
