@@ -137,9 +137,8 @@ TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
             EXPECT_EQ(shown.name, "Tree" + suffix);
             const bool leafy = level < 3;
             ASSERT_EQ(shown.children.size(), leafy ? 2u : 1u);
-            if (level > 0)
-                EXPECT_LT(coverage.Get(level).GetNumberAsDouble(),
-                          coverage.Get(level - 1).GetNumberAsDouble());
+            const double before = level > 0 ? coverage.Get(level - 1).GetNumberAsDouble() : 1.0;
+            EXPECT_LT(coverage.Get(level).GetNumberAsDouble(), before);
             for (size_t part = 0; part < shown.children.size(); part++) {
                 const tinygltf::Node& child = model.nodes.at(static_cast<size_t>(shown.children[part]));
                 EXPECT_EQ(child.name, (part == 0 ? "Bark" : "Leaves") + suffix);
