@@ -75,6 +75,17 @@ func test_baking_writes_a_scene() -> void:
 	_end()
 
 
+func test_an_impostor_needs_a_window() -> void:
+	_begin(grown_tree(6))
+	var path: String = folder.path_join("oak.impostor.res")
+	await _exports().impostor.bake_to(path)
+	check("--headless" in _said[-1], _said[-1])
+	check(not FileAccess.file_exists(path), "Something was written.")
+	check(_session.jobs.get_running().is_empty(), "It goes on.")
+	check(not _undo.has_undo(), "There is a step for it.")
+	_end()
+
+
 func test_every_format_is_written_or_says_why_not() -> void:
 	_begin(_scanned())
 	for extension: String in Export._FORMATS:

@@ -91,3 +91,44 @@ func test_the_card_lies_in_the_box() -> void:
 	check_equal(mesh.surface_get_array_index_len(0), 24, "indices")
 	impostor.height = 7.0
 	check(impostor.get_mesh() != mesh, "It is the mesh of another height.")
+
+
+func test_a_baked_scene_ends_in_the_card() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var impostor: TreeImpostor = TreeImpostor.new()
+	impostor.material = ShaderMaterial.new()
+	impostor.material.shader = load("res://addons/tree_reconstruction/shaders/impostor.gdshader")
+	var texture: PortableCompressedTexture2D = PortableCompressedTexture2D.new()
+	texture.keep_compressed_buffer = true
+	texture.create_from_image(
+		Image.create_empty(16, 16, true, Image.FORMAT_RGBA8),
+		PortableCompressedTexture2D.COMPRESSION_MODE_LOSSLESS
+	)
+	impostor.material.set_shader_parameter(&"albedo_texture", texture)
+	impostor.box = made.get_aabb()
+	var own: String = folder.path_join("oak.impostor.res")
+	check_equal(ResourceSaver.save(impostor, own), OK, "saving the impostor")
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 2
+	baker.leaves = false
+	baker.collision = false
+	baker.impostor = load(own) as TreeImpostor
+	var path: String = folder.path_join("oak.scn")
+	check_equal(ResourceSaver.save(baker.bake(made), path), OK, "saving the scene")
+	check_equal(ResourceLoader.get_dependencies(path), PackedStringArray(), "what it depends on")
+	var root: Node3D = (load(path) as PackedScene).instantiate()
+	check_equal(root.get_child_count(), 3, "levels")
+	var last: MeshInstance3D = root.get_child(1)
+	var card: MeshInstance3D = root.get_child(2)
+	check_equal(String(card.name), "Impostor", "the name")
+	check_equal(card.visibility_range_begin, last.visibility_range_end, "where it begins")
+	check(card.visibility_range_begin > 10.0, "It begins at once.")
+	check_equal(card.visibility_range_end, 0.0, "where it ends")
+	check_equal(
+		(card.mesh as ArrayMesh).custom_aabb, (last.mesh as ArrayMesh).custom_aabb, "its box"
+	)
+	var material: ShaderMaterial = card.mesh.surface_get_material(0) as ShaderMaterial
+	check("#define TREE_BAKED" in material.shader.code, "It is not a baked one.")
+	check(not "#include" in material.shader.code, "It needs the addon.")
+	check(material.get_shader_parameter(&"albedo_texture") is Texture2D, "It lost its picture.")
+	root.free()

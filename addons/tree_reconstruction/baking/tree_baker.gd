@@ -45,6 +45,9 @@ var bark_material: Material
 ## The leaves' material; without one, that of the tree's leaf preset.
 var leaf_material: Material
 
+## What is shown of the tree beyond the last level, if it is given: see [TreeImpostorBaker].
+var impostor: TreeImpostor
+
 
 ## What was built of a tree, before it becomes nodes.
 class Parts:
@@ -108,10 +111,12 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	var root: Node3D = Node3D.new()
 	root.name = _name_of(tree)
 	var meshes: Array[ArrayMesh] = make_meshes(tree, parts)
-	var switches: PackedFloat32Array = Levels.distances(parts.height, levels, distances)
+	if impostor != null:
+		meshes.append(_plain_card(tree, parts, meshes))
+	var switches: PackedFloat32Array = Levels.distances(parts.height, meshes.size(), distances)
 	for level: int in meshes.size():
 		var part: MeshInstance3D = MeshInstance3D.new()
-		part.name = "Level%d" % level
+		part.name = "Level%d" % level if level < parts.bark.size() else "Impostor"
 		part.mesh = meshes[level]
 		if level > 0:
 			part.visibility_range_begin = switches[level - 1]
@@ -163,6 +168,15 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 		mesh.custom_aabb = parts.box.grow(_SWAY * maxf(parts.height, 0.1))
 		meshes.append(mesh)
 	return meshes
+
+
+func _plain_card(tree: TreeReconstruction, parts: Parts, meshes: Array[ArrayMesh]) -> ArrayMesh:
+	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
+	var card: ArrayMesh = impostor.make_mesh(PlainMaterials.plain(impostor.material, values, {}))
+	# The engine measures distances from the middle of the box.
+	if not meshes.is_empty():
+		card.custom_aabb = meshes[0].custom_aabb
+	return card
 
 
 # What a TreeInstance3D sets for its instance.

@@ -21,6 +21,8 @@ class Job:
 	var stage: String = ""
 	## The user has asked for its end. Work without a [member worker] looks at this.
 	var cancelled: bool = false
+	## Whether [member progress] says how far it is.
+	var measured: bool = false
 
 	var _work: Callable
 	var _done: Callable
@@ -40,12 +42,31 @@ func start(title: String, work: Callable, done: Callable, worker: TreeReconstruc
 	var job: Job = Job.new()
 	job.title = title
 	job.worker = worker
+	job.measured = worker != null
 	job._work = work
 	job._done = done
 	_jobs.append(job)
 	job._task = WorkerThreadPool.add_task(job._run, false, title)
 	changed.emit()
 	return job
+
+
+## Shows work that goes on by itself on the main thread, for whoever does it: it sets the job's
+## [member Job.progress] and [member Job.stage], looks at [member Job.cancelled], and ends with
+## [method finish].
+func begin(title: String) -> Job:
+	var job: Job = Job.new()
+	job.title = title
+	job.measured = true
+	_jobs.append(job)
+	changed.emit()
+	return job
+
+
+## Ends what [method begin] began.
+func finish(job: Job) -> void:
+	_jobs.erase(job)
+	changed.emit()
 
 
 ## The jobs at work, the oldest first.
@@ -66,6 +87,8 @@ func update() -> void:
 	if _jobs.is_empty():
 		return
 	for job: Job in _jobs.duplicate():
+		if job._task < 0:
+			continue
 		if WorkerThreadPool.is_task_completed(job._task):
 			WorkerThreadPool.wait_for_task_completion(job._task)
 			_jobs.erase(job)
@@ -82,6 +105,7 @@ func shut_down() -> void:
 	for job: Job in _jobs:
 		cancel(job)
 	for job: Job in _jobs:
-		WorkerThreadPool.wait_for_task_completion(job._task)
+		if job._task >= 0:
+			WorkerThreadPool.wait_for_task_completion(job._task)
 	_jobs.clear()
 	changed.emit()

@@ -3,12 +3,14 @@ extends "section.gd"
 ## Takes the tree out of the addon: as a plain scene, as meshes, as a file of another program.
 
 const Files := preload("files.gd")
+const Impostor := preload("impostor.gd")
 const _FORMATS: PackedStringArray = ["glb", "gltf", "obj", "ply", "txt", "csv", "lstring"]
 
 var levels: SpinBox
 var collision: CheckBox
 var bake: Button
 var meshes: Button
+var impostor: Impostor
 var export_button: Button
 var log_button: Button
 
@@ -89,6 +91,7 @@ func _build() -> void:
 		&"ArrayMesh"
 	)
 	meshes.pressed.connect(_on_meshes_pressed)
+	impostor = Impostor.new(session, _files)
 	export_button = Widgets.button(
 		"Export…",
 		"Writes a model (GLB, glTF, OBJ) or the skeleton (PLY, treefile, CSV, L-string).",
@@ -99,12 +102,12 @@ func _build() -> void:
 		"Save edits…", "Writes all edits as text. It can be done again on another tree.", &"Script"
 	)
 	log_button.pressed.connect(_on_log_pressed)
-	body.add_child(buttons([bake, meshes, export_button, log_button]))
+	body.add_child(buttons([bake, meshes, impostor.button, export_button, log_button]))
 
 
 func _refresh() -> void:
 	var empty: bool = session.tree == null or session.tree.is_empty()
-	for button: Button in [bake, meshes, export_button]:
+	for button: Button in [bake, meshes, impostor.button, export_button]:
 		button.disabled = empty
 	log_button.disabled = empty or session.tree.edit_log.is_empty()
 
@@ -117,6 +120,7 @@ func _build_parts(path: String, done: Callable) -> void:
 	baker.wind = session.node.wind
 	baker.bark_material = session.node.bark_material
 	baker.leaf_material = session.node.leaf_material
+	baker.impostor = session.node.get(&"impostor") as TreeImpostor
 	session.jobs.start(
 		tr("Baking %s") % path.get_file(),
 		_bake.bind(baker, session.tree),

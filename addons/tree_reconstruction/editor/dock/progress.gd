@@ -29,9 +29,8 @@ class Line:
 		bar.size_flags_vertical = Control.SIZE_SHRINK_CENTER
 		bar.max_value = 1.0
 		bar.step = 0.0
-		# Without a worker nobody says how far it is.
-		bar.indeterminate = job.worker == null
-		bar.show_percentage = job.worker != null
+		bar.indeterminate = not job.measured
+		bar.show_percentage = job.measured
 		bar.tooltip_text = "How far the work is."
 		add_child(title)
 		var below: HBoxContainer = HBoxContainer.new()

@@ -1,0 +1,81 @@
+@tool
+extends RefCounted
+## The button that bakes an impostor: what is shown of the tree from very far away.
+
+const Session := preload("../session.gd")
+const Jobs := preload("../jobs.gd")
+const Files := preload("files.gd")
+const Widgets := preload("widgets.gd")
+
+var button: Button
+
+var _session: Session
+var _files: Files
+
+
+func _init(session: Session, files: Files) -> void:
+	_session = session
+	_files = files
+	button = (
+		Widgets
+		. button(
+			"Bake impostor…",
+			"Takes pictures of the tree from all sides: one card with them is shown from very far away.",
+			&"QuadMesh"
+		)
+	)
+	button.pressed.connect(_on_pressed)
+
+
+## Writes the impostor of the edited tree and lets the edited node show it, as one step of the
+## history. The pictures are taken over many frames.
+func bake_to(path: String) -> void:
+	var tree: TreeReconstruction = _session.tree
+	var node: TreeInstance3D = _session.node
+	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
+	baker.leaves = node.leaves
+	baker.bark_material = node.bark_material
+	baker.leaf_material = node.leaf_material
+	var job: Jobs.Job = _session.jobs.begin(button.tr("Baking %s") % path.get_file())
+	_follow(baker, job)
+	var made: TreeImpostor = await baker.bake(tree)
+	_session.jobs.finish(job)
+	if made == null:
+		_session.say(baker.get_error_message(), _session.Kind.ERROR)
+		return
+	var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
+	if error != OK:
+		_session.say(
+			button.tr("%s can't be written: %s.") % [path, error_string(error)], _session.Kind.ERROR
+		)
+		return
+	made.take_over_path(path)
+	Files.tell_editor(path)
+	_session.say(button.tr("The impostor is in %s.") % path)
+	# The user may have gone on to another tree meanwhile.
+	if &"impostor" in node and _session.node == node and node.reconstruction == tree:
+		_session.set_value(button.tr("Bake Impostor"), node, &"impostor", made)
+
+
+# Shows how far it is, and ends it when the user asks for that.
+func _follow(baker: TreeImpostorBaker, job: Jobs.Job) -> void:
+	var frames: SceneTree = Engine.get_main_loop() as SceneTree
+	await frames.process_frame
+	while job in _session.jobs.get_running():
+		job.progress = baker.get_progress()
+		job.stage = baker.get_stage()
+		if job.cancelled:
+			baker.cancel()
+			return
+		await frames.process_frame
+	# The plugin goes, or the work has ended.
+	baker.cancel()
+
+
+func _on_pressed() -> void:
+	_files.ask(
+		button.tr("Bake Impostor"),
+		Files.beside(_session.tree, "impostor.res"),
+		PackedStringArray(["*.res;" + button.tr("Impostor")]),
+		bake_to
+	)
