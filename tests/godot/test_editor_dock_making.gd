@@ -67,6 +67,21 @@ func test_baking_writes_a_scene() -> void:
 	var root: Node = (load(path) as PackedScene).instantiate()
 	check_equal(root.get_child_count(), 2, "levels")
 	root.free()
+	_exports().form.select(_exports().form.get_item_index(TreeBaker.Form.MULTIMESH))
+	_exports().lightmap.button_pressed = true
+	_exports().levels.value = 1
+	path = folder.path_join("apart.scn")
+	_exports().bake_to(path)
+	await _finish()
+	root = (load(path) as PackedScene).instantiate()
+	var bark: MeshInstance3D = root.get_node("Level0")
+	check(bark.get_node("Leaves") is MultiMeshInstance3D, "The leaves are no multimesh.")
+	var format: int = (bark.mesh as ArrayMesh).surface_get_format(0)
+	check((format & Mesh.ARRAY_FORMAT_TEX_UV2) != 0, "There is no place for a lightmap.")
+	root.free()
+	_exports().form.select(_exports().form.get_item_index(TreeBaker.Form.JOINED))
+	_exports().lightmap.button_pressed = false
+	_exports().levels.value = 2
 	_exports().bake_meshes_to(folder.path_join("oak.res"))
 	await _finish()
 	for level: int in 2:

@@ -1,6 +1,9 @@
 extends "./suite.gd"
 ## Baked trees need nothing of the addon.
 
+# The pixels along each side of the picture in which the charts of a lightmap are looked for.
+const _CHARTS: int = 512
+
 # Runs in a project that has never seen the addon.
 const _GAME: String = """
 extends SceneTree
@@ -157,3 +160,133 @@ func test_a_material_of_the_users_own_stays() -> void:
 	var meshes: Array[ArrayMesh] = baker.make_meshes(made, baker.build(made))
 	check_equal(meshes[0].get_surface_count(), 1, "surfaces without leaves")
 	check_equal(meshes[0].surface_get_material(0), baker.bark_material, "the material")
+
+
+func test_leaves_as_a_multimesh_need_no_addon_either() -> void:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 2
+	baker.form = TreeBaker.Form.MULTIMESH
+	baker.collision = false
+	var made: TreeReconstruction = _made()
+	var path: String = folder.path_join("oak.scn")
+	check_equal(ResourceSaver.save(baker.bake(made), path), OK, "saving")
+	check_equal(ResourceLoader.get_dependencies(path), PackedStringArray(), "what it depends on")
+	var root: Node3D = (load(path) as PackedScene).instantiate()
+	var script: String = (root.get_script() as GDScript).source_code
+	check(not "TreeReconstruction" in script and not "res://" in script, "It asks for the addon.")
+	tree.root.add_child(root)
+	root.position = Vector3(3.0, 1.0, -2.0)
+	await tree.process_frame
+	for i: int in 2:
+		var level: MeshInstance3D = root.get_node("Level%d" % i)
+		check_equal((level.mesh as ArrayMesh).get_surface_count(), 1, "surfaces of the bark")
+		var leaves: MultiMeshInstance3D = level.get_node("Leaves")
+		@warning_ignore("integer_division")
+		var count: int = made.build_leaf_buffer(i).size() / 20
+		check_equal(leaves.multimesh.instance_count, count, "leaves of level %d" % i)
+		check_equal(leaves.multimesh.buffer, made.build_leaf_buffer(i), "their places")
+		check_equal(leaves.visibility_range_begin, level.visibility_range_begin, "where they begin")
+		check_equal(leaves.visibility_range_end, level.visibility_range_end, "where they end")
+		check(leaves.custom_aabb.encloses(leaves.multimesh.get_aabb()), "Leaves stick out.")
+		var told: Variant = leaves.get_instance_shader_parameter(&"tree_origin")
+		check_equal(told, root.position, "where the leaves think that their tree is")
+	root.free()
+
+
+# No two triangles of a level's bark have a texel in common, and all are in the picture.
+func test_charts_of_a_lightmap_do_not_overlap() -> void:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 2
+	baker.lightmap_uv2 = true
+	baker.collision = false
+	var made: TreeReconstruction = _made()
+	var root: Node3D = baker.bake(made).instantiate()
+	for level: int in 2:
+		var node: MeshInstance3D = root.get_node("Level%d" % level)
+		var mesh: ArrayMesh = node.mesh as ArrayMesh
+		check(mesh.lightmap_size_hint.x > 16, "The lightmap has no size.")
+		check_equal(node.gi_mode, GeometryInstance3D.GI_MODE_STATIC, "how the bark is lit")
+		var leaves: MeshInstance3D = node.get_node("Leaves")
+		check_equal(leaves.gi_mode, GeometryInstance3D.GI_MODE_DYNAMIC, "how the leaves are lit")
+		var arrays: Array = mesh.surface_get_arrays(0)
+		var plain: Array = made.build_mesh_arrays(level)
+		check_equal(
+			(arrays[Mesh.ARRAY_INDEX] as PackedInt32Array).size(),
+			(plain[Mesh.ARRAY_INDEX] as PackedInt32Array).size(),
+			"triangles"
+		)
+		_check_charts(arrays)
+		_check_kept(arrays, plain)
+	root.free()
+
+
+func _check_charts(arrays: Array) -> void:
+	var uvs: PackedVector2Array = arrays[Mesh.ARRAY_TEX_UV2]
+	var indices: PackedInt32Array = arrays[Mesh.ARRAY_INDEX]
+	var outside: int = 0
+	for uv: Vector2 in uvs:
+		if not Rect2(0.0, 0.0, 1.0, 1.0).grow(1e-4).has_point(uv):
+			outside += 1
+	check_equal(outside, 0, "vertices outside the lightmap")
+	var owner: PackedInt32Array = []
+	owner.resize(_CHARTS * _CHARTS)
+	var covered: int = 0
+	var twice: int = 0
+	for at: int in range(0, indices.size(), 3):
+		# A little smaller, so that neighbours don't share the texels of their edge.
+		var corners: PackedVector2Array = []
+		var middle: Vector2 = (uvs[indices[at]] + uvs[indices[at + 1]] + uvs[indices[at + 2]]) / 3.0
+		for i: int in 3:
+			corners.append(_CHARTS * (middle + 0.999 * (uvs[indices[at + i]] - middle)))
+		var box: Rect2 = Rect2(corners[0], Vector2.ZERO).expand(corners[1]).expand(corners[2])
+		for y: int in range(floori(box.position.y), ceili(box.end.y)):
+			for x: int in range(floori(box.position.x), ceili(box.end.x)):
+				var point: Vector2 = Vector2(x + 0.5, y + 0.5)
+				if not Geometry2D.point_is_inside_triangle(
+					point, corners[0], corners[1], corners[2]
+				):
+					continue
+				covered += 1
+				if owner[y * _CHARTS + x] != 0:
+					twice += 1
+				owner[y * _CHARTS + x] = at + 1
+	@warning_ignore("integer_division")
+	check(covered > _CHARTS * _CHARTS / 20, "Only %d texels are covered." % covered)
+	check_equal(twice, 0, "texels covered twice")
+
+
+# All that the shaders need is still there, vertex by vertex.
+func _check_kept(arrays: Array, plain: Array) -> void:
+	var mesh: ArrayMesh = ArrayMesh.new()
+	mesh.add_surface_from_arrays(
+		Mesh.PRIMITIVE_TRIANGLES, plain, [], {}, TreeReconstruction.MESH_FLAGS
+	)
+	var known: Dictionary[PackedByteArray, bool] = {}
+	for vertex: PackedByteArray in _vertices(mesh.surface_get_arrays(0)):
+		known[vertex] = true
+	var strange: int = 0
+	var seen: Dictionary[PackedByteArray, bool] = {}
+	for vertex: PackedByteArray in _vertices(arrays):
+		if not known.has(vertex):
+			strange += 1
+		seen[vertex] = true
+	check_equal(strange, 0, "vertices that the bark doesn't have")
+	check_equal(seen.size(), known.size(), "vertices that it has")
+
+
+# Each vertex with all that belongs to it, but its place in the lightmap.
+func _vertices(arrays: Array) -> Array[PackedByteArray]:
+	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
+	var kinds: Array[int] = []
+	for kind: int in Mesh.ARRAY_MAX:
+		if arrays[kind] != null and not kind in [Mesh.ARRAY_INDEX, Mesh.ARRAY_TEX_UV2]:
+			kinds.append(kind)
+	var found: Array[PackedByteArray] = []
+	for i: int in places.size():
+		var vertex: Array = []
+		for kind: int in kinds:
+			@warning_ignore("integer_division")
+			var each: int = arrays[kind].size() / places.size()
+			vertex.append(arrays[kind].slice(each * i, each * i + each))
+		found.append(var_to_bytes(vertex))
+	return found

@@ -26,11 +26,13 @@ static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
 
 ## A copy of [param material] with its shader and textures in itself, and with [param values] set
 ## where its shader has them. A material that has nothing of the addon is returned as it is.
-## [param pictures] are those of [method plain_pictures].
+## [param pictures] are those of [method plain_pictures]. [param joined] is whether the leaves are
+## one mesh, or the instances of a multimesh.
 static func plain(
 	material: Material,
 	values: Dictionary[StringName, Variant],
-	pictures: Dictionary[String, Texture2D]
+	pictures: Dictionary[String, Texture2D],
+	joined: bool = true
 ) -> Material:
 	var shaded: ShaderMaterial = material as ShaderMaterial
 	if shaded == null or shaded.shader == null or not _is_addons(shaded.shader):
@@ -38,7 +40,7 @@ static func plain(
 	var made: ShaderMaterial = ShaderMaterial.new()
 	made.resource_name = material.resource_path.get_file().get_basename()
 	made.shader = Shader.new()
-	made.shader.code = _code_of(shaded.shader)
+	made.shader.code = _code_of(shaded.shader, joined)
 	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
 		var value: Variant = shaded.get_shader_parameter(uniform.name)
 		if value is Texture2D and _is_addons(value):
@@ -56,7 +58,7 @@ static func plain(
 
 
 # Its code with all that it includes, for a tree without a TreeInstance3D.
-static func _code_of(shader: Shader) -> String:
+static func _code_of(shader: Shader, joined: bool) -> String:
 	var include: RegEx = RegEx.create_from_string('#include\\s+"([^"]+)"')
 	var code: String = shader.code
 	var found: RegExMatch = include.search(code)
@@ -70,6 +72,8 @@ static func _code_of(shader: Shader) -> String:
 			+ code.substr(found.get_end())
 		)
 		found = include.search(code)
+	if not joined:
+		return code
 	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
 	var end: int = type.search(code).get_end()
 	return code.left(end) + "\n#define TREE_BAKED\n" + code.substr(end)

@@ -11,12 +11,24 @@ extends RefCounted
 ## baker.levels = 3
 ## ResourceSaver.save(baker.bake(tree), "res://trees/oak.scn")
 ## [/codeblock]
-## The numbers of a tree's leaves are its vertices then, so it needs more memory than a
-## [TreeInstance3D], and no longer follows its scan, its rules or its edits.
+## The leaves are vertices then, unless [member form] says otherwise, so it needs more memory than a
+## [TreeInstance3D]; and it no longer follows its scan, its rules or its edits.
+
+## How the leaves are drawn.
+enum Form {
+	## Leaves and bark are two surfaces of one mesh per level. Two draws for a tree, or for all
+	## trees of a [MultiMesh] or of a tool that scatters meshes.
+	JOINED,
+	## Each level has a mesh of bark and a [MultiMeshInstance3D] of leaves below it, in a fraction
+	## of the memory. The scene has a short script of its own, which tells the leaves where they are.
+	MULTIMESH,
+}
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.15
+const LeavesApart := preload("leaves_apart.gd")
+const Lightmap := preload("lightmap.gd")
 const PlainMaterials := preload("plain_materials.gd")
 const Collision := preload("../nodes/tree_collision.gd")
 const Levels := preload("../nodes/tree_levels.gd")
@@ -29,6 +41,16 @@ var levels: int = Levels.COUNT:
 ## The distances in metres from which on the next level is shown, one less than there are levels.
 ## Empty: chosen by the tree's height.
 var distances: PackedFloat32Array = []
+
+## How the leaves are drawn.
+var form: Form = Form.JOINED
+
+## Whether the bark gets the second texture coordinates that a [LightmapGI] needs. The leaves are
+## nodes of their own then, lit by the lightmap's probes. Only the editor can do this.
+var lightmap_uv2: bool = false
+
+## The length of a texel of the lightmap in metres.
+var lightmap_texel_size: float = 0.1
 
 ## Whether the tree bears its leaves.
 var leaves: bool = true
@@ -54,8 +76,13 @@ class Parts:
 	extends RefCounted
 	## The surface arrays of the bark of each level.
 	var bark: Array[Array] = []
-	## The surface arrays of the leaves of each level; empty without leaves.
+	## The surface arrays of the leaves of each level: all of them, or, with
+	## [constant TreeBaker.MULTIMESH], one; empty without leaves.
 	var leaves: Array[Array] = []
+	## With [constant TreeBaker.MULTIMESH]: see [method TreeReconstruction.build_leaf_buffer].
+	var buffers: Array[PackedFloat32Array] = []
+	## The size of the bark's lightmap of each level, if there is one.
+	var lightmaps: Array[Vector2i] = []
 	## See [method TreeReconstruction.build_capsules].
 	var capsules: Array[Dictionary] = []
 	## The box around all levels, at rest.
@@ -78,11 +105,14 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 	for level: int in levels:
 		if cancelled.is_valid() and cancelled.call():
 			return null
-		parts.bark.append(tree.build_mesh_arrays(level))
-		var joined: Array = []
-		if leaves:
-			joined = tree.build_joined_leaf_arrays(level)
-		parts.leaves.append(joined)
+		_build_bark(tree, level, parts)
+		var built: Array = []
+		if leaves and form == Form.JOINED:
+			built = tree.build_joined_leaf_arrays(level)
+		elif leaves:
+			built = tree.build_leaf_form_arrays(level)
+			parts.buffers.append(tree.build_leaf_buffer(level))
+		parts.leaves.append(built)
 	if collision:
 		parts.capsules = tree.build_capsules()
 	parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
@@ -90,11 +120,27 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 	for place: Vector3 in _places(parts.bark[0]):
 		parts.height = maxf(parts.height, place.y)
 	var first: bool = true
-	for arrays: Array in parts.bark + parts.leaves:
+	for arrays: Array in parts.bark + (parts.leaves if form == Form.JOINED else [] as Array[Array]):
 		for place: Vector3 in _places(arrays):
 			parts.box = AABB(place, Vector3.ZERO) if first else parts.box.expand(place)
 			first = false
+	for buffer: PackedFloat32Array in parts.buffers:
+		parts.box = LeavesApart.box_around(parts.box, buffer)
 	return parts
+
+
+func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
+	var arrays: Array = tree.build_mesh_arrays(level)
+	var size: Vector2i = Vector2i.ZERO
+	if lightmap_uv2 and not arrays.is_empty():
+		var unwrapped: Lightmap.Unwrapped = Lightmap.unwrap(arrays, lightmap_texel_size)
+		if unwrapped.arrays.is_empty():
+			push_error("Only the editor's program can make coordinates for a lightmap.")
+		else:
+			arrays = unwrapped.arrays
+			size = unwrapped.size
+	parts.bark.append(arrays)
+	parts.lightmaps.append(size)
 
 
 ## Makes a scene of what [method build] returned for the same tree, on the main thread.
@@ -114,18 +160,27 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	if impostor != null:
 		meshes.append(_plain_card(tree, parts, meshes))
 	var switches: PackedFloat32Array = Levels.distances(parts.height, meshes.size(), distances)
+	var apart: Array[GeometryInstance3D] = _make_leaves(tree, parts)
 	for level: int in meshes.size():
 		var part: MeshInstance3D = MeshInstance3D.new()
 		part.name = "Level%d" % level if level < parts.bark.size() else "Impostor"
 		part.mesh = meshes[level]
-		if level > 0:
-			part.visibility_range_begin = switches[level - 1]
-			part.visibility_range_begin_margin = Levels.margin(switches[level - 1])
-		if level + 1 < meshes.size():
-			part.visibility_range_end = switches[level]
-			part.visibility_range_end_margin = Levels.margin(switches[level])
+		var drawn: Array[GeometryInstance3D] = [part]
 		root.add_child(part)
 		part.owner = root
+		if level < apart.size():
+			drawn.append(apart[level])
+			part.add_child(apart[level])
+			apart[level].owner = root
+		for each: GeometryInstance3D in drawn:
+			if level > 0:
+				each.visibility_range_begin = switches[level - 1]
+				each.visibility_range_begin_margin = Levels.margin(switches[level - 1])
+			if level + 1 < meshes.size():
+				each.visibility_range_end = switches[level]
+				each.visibility_range_end_margin = Levels.margin(switches[level])
+	if form == Form.MULTIMESH and not apart.is_empty():
+		LeavesApart.teach(root, _shader_values(tree, parts.height))
 	if not parts.capsules.is_empty():
 		var body: StaticBody3D = StaticBody3D.new()
 		body.name = "Wood"
@@ -140,12 +195,16 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	return root
 
 
-## The meshes of all levels, the finest first, each with a surface of bark and one of leaves. They
-## share their materials and their box.
+## The meshes of all levels, the finest first, each with a surface of bark and one of leaves, unless
+## the leaves are nodes of their own. They share their materials and their box.
 func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
 	var bark: Material = PlainMaterials.plain(_bark_of(tree), values, parts.pictures)
-	var leaf: Material = PlainMaterials.plain(_leaf_of(tree), values, parts.pictures)
+	var leaf: Material = (
+		null
+		if _are_leaves_apart()
+		else PlainMaterials.plain(_leaf_of(tree), values, parts.pictures)
+	)
 	var meshes: Array[ArrayMesh] = []
 	for level: int in parts.bark.size():
 		var mesh: ArrayMesh = ArrayMesh.new()
@@ -155,17 +214,11 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 			)
 			mesh.surface_set_name(mesh.get_surface_count() - 1, "bark")
 			mesh.surface_set_material(mesh.get_surface_count() - 1, bark)
-		if not parts.leaves[level].is_empty():
-			mesh.add_surface_from_arrays(
-				Mesh.PRIMITIVE_TRIANGLES,
-				parts.leaves[level],
-				[],
-				{},
-				TreeReconstruction.JOINED_LEAF_FLAGS
-			)
-			mesh.surface_set_name(mesh.get_surface_count() - 1, "leaves")
-			mesh.surface_set_material(mesh.get_surface_count() - 1, leaf)
-		mesh.custom_aabb = parts.box.grow(_SWAY * maxf(parts.height, 0.1))
+		if not parts.leaves[level].is_empty() and not _are_leaves_apart():
+			_add_leaves(mesh, parts.leaves[level], leaf)
+		if parts.lightmaps[level] != Vector2i.ZERO:
+			mesh.lightmap_size_hint = parts.lightmaps[level]
+		mesh.custom_aabb = _box_of(parts)
 		meshes.append(mesh)
 	return meshes
 
@@ -177,6 +230,56 @@ func _plain_card(tree: TreeReconstruction, parts: Parts, meshes: Array[ArrayMesh
 	if not meshes.is_empty():
 		card.custom_aabb = meshes[0].custom_aabb
 	return card
+
+
+func _are_leaves_apart() -> bool:
+	return form == Form.MULTIMESH or lightmap_uv2
+
+
+static func _add_leaves(mesh: ArrayMesh, arrays: Array, material: Material) -> void:
+	mesh.add_surface_from_arrays(
+		Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.JOINED_LEAF_FLAGS
+	)
+	mesh.surface_set_name(mesh.get_surface_count() - 1, "leaves")
+	mesh.surface_set_material(mesh.get_surface_count() - 1, material)
+
+
+# The leaves of each level as nodes, or none.
+func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[GeometryInstance3D]:
+	var made: Array[GeometryInstance3D] = []
+	if not leaves or not _are_leaves_apart() or parts.leaves[0].is_empty():
+		return made
+	var joined: bool = form == Form.JOINED
+	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
+	var material: Material = PlainMaterials.plain(_leaf_of(tree), values, parts.pictures, joined)
+	for level: int in parts.leaves.size():
+		var node: GeometryInstance3D
+		if joined:
+			var mesh: ArrayMesh = ArrayMesh.new()
+			if not parts.leaves[level].is_empty():
+				_add_leaves(mesh, parts.leaves[level], material)
+			node = MeshInstance3D.new()
+			(node as MeshInstance3D).mesh = mesh
+		else:
+			node = MultiMeshInstance3D.new()
+			(node as MultiMeshInstance3D).multimesh = LeavesApart.multimesh(
+				parts.buffers[level], parts.leaves[level], material
+			)
+		node.name = "Leaves"
+		node.custom_aabb = _box_of(parts)
+		# No lightmap has a place for each leaf; its probes light them.
+		node.gi_mode = (
+			GeometryInstance3D.GI_MODE_DYNAMIC
+			if lightmap_uv2
+			else GeometryInstance3D.GI_MODE_STATIC
+		)
+		made.append(node)
+	return made
+
+
+# With all that the wind may move.
+static func _box_of(parts: Parts) -> AABB:
+	return parts.box.grow(_SWAY * maxf(parts.height, 0.1))
 
 
 # What a TreeInstance3D sets for its instance.

@@ -7,6 +7,8 @@ const Impostor := preload("impostor.gd")
 const _FORMATS: PackedStringArray = ["glb", "gltf", "obj", "ply", "txt", "csv", "lstring"]
 
 var levels: SpinBox
+var form: OptionButton
+var lightmap: CheckBox
 var collision: CheckBox
 var bake: Button
 var meshes: Button
@@ -27,12 +29,12 @@ func close() -> void:
 
 ## Writes the tree as a scene that needs neither the addon nor its library.
 func bake_to(path: String) -> void:
-	_build_parts(path, _on_built_scene)
+	_bake(path, _write_scene)
 
 
 ## Writes the mesh of each level into a file of its own, named after [param path].
 func bake_meshes_to(path: String) -> void:
-	_build_parts(path, _on_built_meshes)
+	_bake(path, _write_meshes)
 
 
 ## Writes the tree in the format that the extension of [param path] names.
@@ -40,7 +42,7 @@ func export_to(path: String) -> void:
 	var worker: TreeReconstructor = TreeReconstructor.new()
 	session.jobs.start(
 		tr("Writing %s") % path.get_file(),
-		_export.bind(worker, session.tree, path),
+		_export.bind(worker, session.tree, path, int(levels.value)),
 		_on_exported.bind(worker, path),
 		worker
 	)
@@ -68,12 +70,24 @@ func _build() -> void:
 				Widgets
 				. line(
 					"Levels of detail",
-					"How many meshes take turns by their distance. Each has about a quarter of the triangles.",
+					"How many meshes take turns by distance, in GLB too. Each has a quarter of the triangles.",
 					levels
 				)
 			)
 		)
 	)
+	form = OptionButton.new()
+	form.add_item("One mesh per level", TreeBaker.Form.JOINED)
+	form.add_item("Bark and a multimesh of leaves", TreeBaker.Form.MULTIMESH)
+	body.add_child(
+		Widgets.line(
+			"Leaves", "One mesh suits tools that scatter. A multimesh takes much less memory.", form
+		)
+	)
+	lightmap = CheckBox.new()
+	lightmap.text = "With lightmap UV2"
+	lightmap.tooltip_text = "Gives the bark the second coordinates that a LightmapGI needs."
+	body.add_child(lightmap)
 	collision = CheckBox.new()
 	collision.text = "With collision"
 	collision.tooltip_text = "Adds a body of capsules along the trunk and the stout branches."
@@ -112,9 +126,12 @@ func _refresh() -> void:
 	log_button.disabled = empty or session.tree.edit_log.is_empty()
 
 
-func _build_parts(path: String, done: Callable) -> void:
+# Builds and writes it on a worker: packing and writing alone would hold the editor for some frames.
+func _bake(path: String, write: Callable) -> void:
 	var baker: TreeBaker = TreeBaker.new()
 	baker.levels = int(levels.value)
+	baker.form = form.get_selected_id() as TreeBaker.Form
+	baker.lightmap_uv2 = lightmap.button_pressed
 	baker.collision = collision.button_pressed
 	baker.leaves = session.node.leaves
 	baker.wind = session.node.wind
@@ -123,45 +140,52 @@ func _build_parts(path: String, done: Callable) -> void:
 	baker.impostor = session.node.get(&"impostor") as TreeImpostor
 	session.jobs.start(
 		tr("Baking %s") % path.get_file(),
-		_bake.bind(baker, session.tree),
-		done.bind(baker, session.tree, path)
+		_bake_and_write.bind(baker, session.tree, path, write),
+		_on_baked
 	)
 
 
-static func _bake(
-	job: Session.Jobs.Job, baker: TreeBaker, tree: TreeReconstruction
-) -> TreeBaker.Parts:
-	return baker.build(tree, func() -> bool: return job.cancelled)
+static func _bake_and_write(
+	job: Session.Jobs.Job, baker: TreeBaker, tree: TreeReconstruction, path: String, write: Callable
+) -> Dictionary[String, Error]:
+	var parts: TreeBaker.Parts = baker.build(tree, func() -> bool: return job.cancelled)
+	if parts == null or job.cancelled:
+		return {}
+	return write.call(baker, tree, parts, path)
 
 
-func _on_built_scene(
-	parts: TreeBaker.Parts,
-	_job: Session.Jobs.Job,
-	baker: TreeBaker,
-	tree: TreeReconstruction,
-	path: String
-) -> void:
+# What was written, and how that ended.
+static func _write_scene(
+	baker: TreeBaker, tree: TreeReconstruction, parts: TreeBaker.Parts, path: String
+) -> Dictionary[String, Error]:
 	var scene: PackedScene = baker.make_scene(tree, parts)
-	_tell(path, ResourceSaver.save(scene, path, ResourceSaver.FLAG_COMPRESS))
+	return {path: ResourceSaver.save(scene, path, ResourceSaver.FLAG_COMPRESS)}
 
 
-func _on_built_meshes(
-	parts: TreeBaker.Parts,
-	_job: Session.Jobs.Job,
-	baker: TreeBaker,
-	tree: TreeReconstruction,
-	path: String
-) -> void:
+static func _write_meshes(
+	baker: TreeBaker, tree: TreeReconstruction, parts: TreeBaker.Parts, path: String
+) -> Dictionary[String, Error]:
+	var written: Dictionary[String, Error] = {}
 	var made: Array[ArrayMesh] = baker.make_meshes(tree, parts)
 	for level: int in made.size():
 		var each: String = "%s_level%d.%s" % [path.get_basename(), level, path.get_extension()]
-		_tell(each, ResourceSaver.save(made[level], each, ResourceSaver.FLAG_COMPRESS))
+		written[each] = ResourceSaver.save(made[level], each, ResourceSaver.FLAG_COMPRESS)
+	return written
+
+
+func _on_baked(written: Dictionary[String, Error], _job: Session.Jobs.Job) -> void:
+	for path: String in written:
+		_tell(path, written[path])
 
 
 static func _export(
-	_job: Session.Jobs.Job, worker: TreeReconstructor, tree: TreeReconstruction, path: String
+	_job: Session.Jobs.Job,
+	worker: TreeReconstructor,
+	tree: TreeReconstruction,
+	path: String,
+	model_levels: int
 ) -> Error:
-	return worker.export_file(tree, path)
+	return worker.export_file(tree, path, model_levels)
 
 
 func _on_exported(
