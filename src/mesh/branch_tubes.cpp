@@ -17,6 +17,7 @@ constexpr double kCollar = 0.35;           // how much wider a branch leaves its
 constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
 constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
+constexpr double kCutRadius = 0.025;       // metres; no branch ends by itself so thick: those are cut flat
 constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
 constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
@@ -191,6 +192,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     if (!tube.foot) tube.flare = {};
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
+    tube.cut = tube.round_tip && out.back().radius >= kCutRadius;
+    tube.base = branch.attach == kNoNode && !tube.foot;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
     frame_rings(out.data() + tube.first_ring, tube.rings);

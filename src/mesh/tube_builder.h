@@ -30,6 +30,8 @@ struct Tube {
     uint32_t rings = 0;  // 0: not drawn
     uint32_t sides = 0;
     bool round_tip = false;
+    bool cut = false;             // the tip is a cut face
+    bool base = false;            // closed where it begins
     bool point = false;           // the last ring is only the apex
     double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
     double parent_radius = 0.0;   // metres, 0 for the trunk
@@ -47,8 +49,9 @@ struct Tube {
     }
     // A collar has two rows at one place, and no faces between them.
     size_t spans() const { return rows() - (collar.rows ? 2u : 1u); }
-    size_t vertices() const { return rings ? rows() * (sides + 1) + sides : 0; }
-    size_t indices() const { return rings ? spans() * sides * 6 + sides * 3 : 0; }
+    size_t caps() const { return base ? sides + 2 : 0; }
+    size_t vertices() const { return rings ? rows() * (sides + 1) + sides + caps() : 0; }
+    size_t indices() const { return rings ? spans() * sides * 6 + sides * 3 + (base ? sides * 3 : 0) : 0; }
 };
 
 // Everything that the tubes of one tree share.

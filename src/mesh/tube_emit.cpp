@@ -8,7 +8,8 @@ namespace treerec::tubes {
 
 namespace {
 
-constexpr double kCrease = 0.2;  // of the light: how much darker it is halfway up a collar
+constexpr double kCrease = 0.2;       // of the light: how much darker it is halfway up a collar
+constexpr double kHeartwood = 0.008;  // metres: cut faces look like wood so thin, without bark
 
 }  // namespace
 
@@ -145,23 +146,43 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     if (tube.round_tip) {
         for (uint32_t j = 0; j < stride; j++) {
             const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
-                radial * 0.7746 + normal * 0.6325, (y * circle[j].x - x * circle[j].y), per_side * j, repeats,
-                length + 0.66 * last_ring.radius, last_ring.radius, color);
+            const DVec3 around = y * circle[j].x - x * circle[j].y;
+            if (tube.cut) {
+                put(last_ring.centre + (radial * 0.97 + normal * 0.015) * last_ring.radius, normal, around,
+                    per_side * j, repeats_of(index, kHeartwood), length, kHeartwood, color);
+            } else {
+                put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
+                    radial * 0.7746 + normal * 0.6325, around, per_side * j, repeats,
+                    length + 0.66 * last_ring.radius, last_ring.radius, color);
+            }
         }
     }
-    const DVec3 apex = last_ring.centre + normal * (0.98 * last_ring.radius);
+    if (tube.base) {
+        const DVec3 down = -run[0].normal;
+        const Vec4 dim =
+            color_at(run[0].centre, 0.0, light_at(tube, run[0].radius, run[0].centre, 0.0, 1.0), phase);
+        for (uint32_t j = 0; j < stride; j++) {
+            const DVec3 radial = run[0].x * circle[j].x + run[0].y() * circle[j].y;
+            put(run[0].centre + radial * run[0].radius, down, run[0].x, per_side * j,
+                repeats_of(index, kHeartwood), 0.0, kHeartwood, dim);
+        }
+        put(run[0].centre, down, run[0].x, 0.5, repeats_of(index, kHeartwood), -run[0].radius, kHeartwood,
+            dim);
+    }
+    const DVec3 apex = last_ring.centre + normal * ((tube.cut ? 0.02 : 0.98) * last_ring.radius);
+    const double shown = tube.cut ? kHeartwood : last_ring.radius;
     for (uint32_t j = 0; j < sides; j++) {
         const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
         const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
         // A drawn-out point is lit like the wood below it.
         const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
-        put(apex, outward, tangent, per_side * (j + 0.5), repeats, length + 1.2 * last_ring.radius,
-            last_ring.radius, color);
+        put(apex, outward, tangent, per_side * (j + 0.5), repeats_of(index, shown),
+            length + (tube.cut ? 1.0 : 1.2) * last_ring.radius, shown, color);
     }
     size_t at = tube.first_index;
     const uint32_t base = static_cast<uint32_t>(tube.first_vertex);
     const uint32_t rows = static_cast<uint32_t>(tube.rows());
+    const uint32_t apexes = base + rows * stride + static_cast<uint32_t>(tube.caps());
     const uint32_t first_row = tube.collar.rows ? 1 : 0;
     const auto join_rows = [&](uint32_t low, uint32_t high) {
         for (uint32_t j = 0; j < sides; j++) {
@@ -178,7 +199,12 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         join_rows(row, row + 1);
     for (uint32_t j = 0; j < sides; j++) {
         const uint32_t a = base + (rows - 1) * stride + j;
-        for (uint32_t corner : {a, a + 1, base + rows * stride + j})
+        for (uint32_t corner : {a, a + 1, apexes + j})
+            mesh.indices[at++] = corner;
+    }
+    for (uint32_t j = 0; tube.base && j < sides; j++) {
+        const uint32_t a = base + rows * stride + j;
+        for (uint32_t corner : {a + 1, a, base + rows * stride + stride})
             mesh.indices[at++] = corner;
     }
 }
