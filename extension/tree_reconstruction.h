@@ -158,6 +158,9 @@ class TreeReconstruction : public godot::Resource {
 
     // Physics (tree_reconstruction_physics.cpp).
     godot::TypedArray<godot::Dictionary> build_capsules(int p_maximum, double p_minimum_radius) const;
+    godot::TypedArray<godot::Dictionary> build_convex_parts(int p_maximum, double p_minimum_radius,
+                                                            bool p_trunk_only) const;
+    godot::Dictionary weigh(double p_density) const;
     // tree_reconstruction_variants.cpp
     godot::Ref<TreeReconstruction> make_variant(int64_t p_seed, double p_amount, double p_age) const;
 

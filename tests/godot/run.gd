@@ -1,7 +1,7 @@
 extends SceneTree
 ## Runs the tests of this folder in the engine:
 ##
-##     godot --headless --path project --script tests/godot/run.gd [-- --rendering]
+##     godot --headless --path project --script tests/godot/run.gd [-- --rendering] [--only=SUITE]
 ##
 ## Suites named render_*.gd need a window and run only with --rendering, the others (test_*.gd) only
 ## without. The last line is 'N passed, N failed'; the exit code is 1 if any failed.
@@ -52,6 +52,9 @@ func _initialize() -> void:
 func _run() -> void:
 	var here: String = (get_script() as Script).resource_path.get_base_dir()
 	var prefix: String = "render_" if "--rendering" in OS.get_cmdline_user_args() else "test_"
+	for argument: String in OS.get_cmdline_user_args():
+		if argument.begins_with("--only="):
+			prefix = argument.trim_prefix("--only=")
 	var folder: String = OS.get_cache_dir().path_join(
 		"treerec_godot_tests_%d" % OS.get_process_id()
 	)

@@ -36,6 +36,15 @@ echo "-- headless"
 timeout 300 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" >"$log" 2>&1
 count headless
 
+# What collides, with the engine's other physics. The setting is read when the engine starts.
+echo "-- headless, Jolt"
+override=project/override.cfg
+trap 'rm -f "$log" "$override"' EXIT
+printf '[physics]\n\n3d/physics_engine="Jolt Physics"\n' >"$override"
+timeout 200 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" -- --only=test_collision >"$log" 2>&1
+rm -f "$override"
+count Jolt
+
 for renderer in "opengl3 gl_compatibility" "vulkan mobile" "vulkan forward_plus"; do
     read -r driver method <<<"$renderer"
     echo "-- $method"

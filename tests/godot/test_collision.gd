@@ -117,3 +117,182 @@ func test_a_felled_tree_falls() -> void:
 	check(instance.fell(999999) == null, "A node that isn't there was cut.")
 	body.free()
 	instance.free()
+
+
+# A trunk with two limbs side by side, level, at 1.5 m.
+func _rails() -> TreeReconstruction:
+	var nodes: Array[Array] = [[-1, 0.0, 0.0, 0.0, 0.12, NODE_TRUNK | NODE_MEASURED]]
+	for i: int in range(1, 6):
+		nodes.append([i - 1, 0.0, 0.5 * i, 0.0, 0.12 - 0.01 * i, NODE_TRUNK])
+	for side: float in [-0.11, 0.11]:
+		nodes.append([3, 0.2, 1.5, side, 0.06, 0])
+		nodes.append([nodes.size() - 1, 1.5, 1.5, side, 0.05, 0])
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = skeleton(nodes)
+	return made
+
+
+# Runs the physics for `seconds` of its own time, in its usual steps but faster than the clock.
+func _simulate(seconds: float) -> void:
+	var usual: int = Engine.physics_ticks_per_second
+	var most: int = Engine.max_physics_steps_per_frame
+	Engine.time_scale = 8.0
+	Engine.physics_ticks_per_second = 8 * usual
+	Engine.max_physics_steps_per_frame = 64
+	for i: int in int(seconds * usual):
+		await tree.physics_frame
+	Engine.time_scale = 1.0
+	Engine.physics_ticks_per_second = usual
+	Engine.max_physics_steps_per_frame = most
+
+
+func _ball(at: Vector3, radius: float) -> RigidBody3D:
+	var ball: RigidBody3D = RigidBody3D.new()
+	var part: CollisionShape3D = CollisionShape3D.new()
+	part.shape = SphereShape3D.new()
+	(part.shape as SphereShape3D).radius = radius
+	ball.add_child(part)
+	ball.position = at
+	tree.root.add_child(ball)
+	return ball
+
+
+func _ground() -> StaticBody3D:
+	var ground: StaticBody3D = StaticBody3D.new()
+	var part: CollisionShape3D = CollisionShape3D.new()
+	part.shape = BoxShape3D.new()
+	(part.shape as BoxShape3D).size = Vector3(60, 2, 60)
+	part.position.y = -1.0
+	ground.add_child(part)
+	tree.root.add_child(ground)
+	return ground
+
+
+func test_a_ball_rests_on_limbs_of_each_kind() -> void:
+	for kind: TreeInstance3D.CollisionKind in TreeInstance3D.CollisionKind.values():
+		var instance: TreeInstance3D = await _instance(_rails())
+		instance.collision_kind = kind
+		await _settle(instance)
+		var ball: RigidBody3D = _ball(Vector3(0.7, 2.0, 0.0), 0.15)
+		var limb: Object = await _hit(instance, Vector3(1.2, 3, 0.11), Vector3(1.2, 0.5, 0.11))
+		await _simulate(1.5)
+		if kind == TreeInstance3D.CollisionKind.TRUNK_ONLY:
+			check(limb == null, "A ray hit a limb that is not there.")
+			check(ball.position.y < 1.0, "The ball hangs at %s." % ball.position)
+		else:
+			check(limb is StaticBody3D, "Kind %d: the ray hit %s." % [kind, limb])
+			check(absf(ball.position.y - 1.65) < 0.1, "Kind %d: %s" % [kind, ball.position])
+		ball.free()
+		instance.free()
+
+
+func test_convex_parts_hold_the_budget() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	for maximum: int in [1, 5, 40]:
+		var parts: Array[Dictionary] = made.build_convex_parts(maximum, 0.005)
+		check(parts.size() <= maximum and not parts.is_empty(), "%d parts" % parts.size())
+		for part: Dictionary in parts:
+			check_equal((part["points"] as PackedVector3Array).size(), 16, "points")
+	check(
+		made.build_convex_parts(40, 0.005, true).size() < made.build_convex_parts(40, 0.005).size(),
+		"The trunk alone has as many parts as the tree."
+	)
+	expect_error("between 1 and 10000")
+	check_equal(made.build_convex_parts(0).size(), 0, "parts of no budget")
+	expect_error("more than 0 kg")
+	check(made.weigh(-1.0).is_empty(), "Wood weighs less than nothing.")
+
+
+func test_a_felled_trunk_comes_to_lie() -> void:
+	for kind: TreeInstance3D.CollisionKind in [0, 1]:
+		var ground: StaticBody3D = _ground()
+		var instance: TreeInstance3D = await _instance(_rails())
+		instance.collision_kind = kind
+		await _settle(instance)
+		var body: RigidBody3D = instance.fell(2, 800.0, true)
+		check_equal(_bodies(instance).size(), 1, "the stump's bodies")
+		var wood: Dictionary = (body.get_child(0) as TreeInstance3D).reconstruction.weigh(800.0)
+		check_near(body.mass, wood["mass"], 1e-3 * body.mass, "the mass")
+		check(body.inertia.is_equal_approx(wood["inertia"]), "The inertia is %s." % body.inertia)
+		await _settle(instance)
+		await _settle(body.get_child(0) as TreeInstance3D)
+		body.apply_impulse(Vector3(0.8, 0, 0.5) * body.mass, Vector3(0, 0.5, 0))
+		await _simulate(5.0)
+		check(body.linear_velocity.length() < 0.5, "It still moves: %s" % body.linear_velocity)
+		check(body.global_position.y < 0.9, "It stands: %s" % body.global_position)
+		check(
+			body.global_position.y > -0.1, "It fell through the ground: %s" % body.global_position
+		)
+		body.free()
+		instance.free()
+		ground.free()
+
+
+func test_a_fallen_piece_is_cut_again() -> void:
+	var instance: TreeInstance3D = await _instance(_rails())
+	var body: RigidBody3D = instance.fell(1)
+	var fallen: TreeInstance3D = body.get_child(0)
+	body.linear_velocity = Vector3(1, 2, 3)
+	body.angular_velocity = Vector3(0, 0, 0.5)
+	var whole: float = body.mass
+	var places: PackedVector3Array = []
+	for id: int in fallen.reconstruction.get_node_ids():
+		places.append(fallen.global_transform * fallen.reconstruction.get_node_position(id))
+	var trunk: PackedInt32Array = fallen.reconstruction.get_node_ids()
+	var second: RigidBody3D = fallen.fell(trunk[2])
+	check(second != null and second.get_parent() == tree.root, "It is not beside the first.")
+	check_near(body.mass + second.mass, whole, 0.02 * whole, "both masses")
+	# Each node is where it was.
+	for half: TreeInstance3D in [fallen, second.get_child(0) as TreeInstance3D]:
+		for id: int in half.reconstruction.get_node_ids():
+			var at: Vector3 = half.global_transform * half.reconstruction.get_node_position(id)
+			var nearest: float = INF
+			for place: Vector3 in places:
+				nearest = minf(nearest, place.distance_to(at))
+			check(nearest < 1e-3, "A node moved by %s m." % nearest)
+	# They fly on as one: the velocity of each is that of the whole at its centre.
+	var apart: Vector3 = second.global_position - body.global_position
+	var wanted: Vector3 = body.linear_velocity + Vector3(0, 0, 0.5).cross(apart)
+	check(second.linear_velocity.is_equal_approx(wanted), "%s" % second.linear_velocity)
+	for part: RigidBody3D in [body, second]:
+		var shapes: int = 0
+		for child: Node in part.get_children(true):
+			shapes += 1 if child is CollisionShape3D else 0
+		check(shapes > 0, "A half has no shape.")
+	second.free()
+	body.free()
+	instance.free()
+
+
+func test_the_thinnest_piece_has_a_shape() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	var instance: TreeInstance3D = await _instance(made)
+	var twig: int = -1
+	for id: int in made.get_leaves():
+		if made.get_node_radius(id) < 0.02:
+			twig = id
+	for kind: TreeInstance3D.CollisionKind in TreeInstance3D.CollisionKind.values():
+		instance.collision_kind = kind
+		instance.reconstruction = made
+		var body: RigidBody3D = instance.fell(twig)
+		check(body.get_child_count(true) > 1, "Kind %d has no shape." % kind)
+		body.free()
+	instance.free()
+
+
+func test_felling_leaves_nothing_behind() -> void:
+	var made: TreeReconstruction = _rails()
+	var before: int = 0
+	for round_of: int in 4:
+		var instance: TreeInstance3D = await _instance(made)
+		var body: RigidBody3D = instance.fell(2, 800.0, true)
+		await _settle(instance)
+		await _settle(body.get_child(0) as TreeInstance3D)
+		body.free()
+		instance.free()
+		await tree.process_frame
+		var now: int = int(Performance.get_monitor(Performance.OBJECT_COUNT))
+		if round_of == 1:
+			before = now
+		elif round_of > 1:
+			check(now <= before, "%d objects stayed." % (now - before))

@@ -1,31 +1,52 @@
 @tool
 extends RefCounted
-## Makes the shapes of physics bodies of a tree's capsules.
+## Makes the shapes of physics bodies of a tree's wood.
+
+## What the shapes are: see [enum TreeInstance3D.CollisionKind].
+enum Kind { CAPSULES, CONVEX_PARTS, TRUNK_ONLY }
 
 
-## Gives [param body] a shape for each capsule (see [method TreeReconstruction.build_capsules]), in
-## place of those that it has. [param frame] takes the capsules' places to the body's; their radii
-## follow its mean scale.
+## What [method fill] makes shapes of: at most [param maximum], of wood that is at least [param
+## minimum_radius] metres thick from its middle. It may run on any thread.
+static func gather(
+	of: TreeReconstruction, kind: int, maximum: int, minimum_radius: float
+) -> Array[Dictionary]:
+	if kind == Kind.CAPSULES:
+		return of.build_capsules(maximum, minimum_radius)
+	return of.build_convex_parts(maximum, minimum_radius, kind == Kind.TRUNK_ONLY)
+
+
+## Gives [param body] a shape for each capsule (see [method TreeReconstruction.build_capsules]) or
+## convex part (see [method TreeReconstruction.build_convex_parts]), in place of those that it has.
+## [param frame] takes their places to the body's; capsules' radii follow its mean scale.
 static func fill(
-	body: CollisionObject3D, capsules: Array[Dictionary], frame: Transform3D = Transform3D.IDENTITY
+	body: CollisionObject3D, parts: Array[Dictionary], frame: Transform3D = Transform3D.IDENTITY
 ) -> void:
-	var size: Vector3 = frame.basis.get_scale()
-	var mean: float = (size.x + size.y + size.z) / 3.0
 	for child: Node in body.get_children(true):
 		if child is CollisionShape3D:
 			body.remove_child(child)
 			child.queue_free()
-	for capsule: Dictionary in capsules:
-		var from: Vector3 = frame * (capsule["from"] as Vector3)
-		var to: Vector3 = frame * (capsule["to"] as Vector3)
-		var radius: float = capsule["radius"] * mean
-		var shape: CapsuleShape3D = CapsuleShape3D.new()
-		shape.radius = radius
-		shape.height = from.distance_to(to) + 2.0 * radius
-		var part: CollisionShape3D = CollisionShape3D.new()
-		part.shape = shape
-		part.transform = Transform3D(_upright_along(to - from), 0.5 * (from + to))
-		body.add_child(part, false, Node.INTERNAL_MODE_BACK)
+	for part: Dictionary in parts:
+		var node: CollisionShape3D = CollisionShape3D.new()
+		if part.has("points"):
+			var shape: ConvexPolygonShape3D = ConvexPolygonShape3D.new()
+			shape.points = frame * (part["points"] as PackedVector3Array)
+			node.shape = shape
+		else:
+			_set_capsule(node, part, frame)
+		body.add_child(node, false, Node.INTERNAL_MODE_BACK)
+
+
+static func _set_capsule(node: CollisionShape3D, capsule: Dictionary, frame: Transform3D) -> void:
+	var size: Vector3 = frame.basis.get_scale()
+	var from: Vector3 = frame * (capsule["from"] as Vector3)
+	var to: Vector3 = frame * (capsule["to"] as Vector3)
+	var radius: float = capsule["radius"] * (size.x + size.y + size.z) / 3.0
+	var shape: CapsuleShape3D = CapsuleShape3D.new()
+	shape.radius = radius
+	shape.height = from.distance_to(to) + 2.0 * radius
+	node.shape = shape
+	node.transform = Transform3D(_upright_along(to - from), 0.5 * (from + to))
 
 
 # A frame whose Y axis goes along `way`.

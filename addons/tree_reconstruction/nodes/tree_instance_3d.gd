@@ -12,7 +12,18 @@ extends MeshInstance3D
 ## Emitted when the mesh and the leaves match the properties again.
 signal rebuilt
 
+## What other bodies collide with: see [member collision_kind].
+enum CollisionKind {
+	## Capsules along the trunk and the stout branches: the cheapest.
+	CAPSULES,
+	## Tapered prisms along them, with flat ends: a cut trunk stands on its cut.
+	CONVEX_PARTS,
+	## Tapered prisms along the trunk alone.
+	TRUNK_ONLY,
+}
+
 const Collision := preload("tree_collision.gd")
+const Felling := preload("tree_felling.gd")
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.15
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
@@ -90,7 +101,13 @@ static var threaded: bool = true
 		collision = value
 		rebuild()
 
-## How many capsules the body has at most. They go where they are worth most.
+## What the body is made of.
+@export var collision_kind: CollisionKind = CollisionKind.CAPSULES:
+	set(value):
+		collision_kind = value
+		rebuild()
+
+## How many shapes the body has at most. They go where they are worth most.
 @export_range(1, 256) var collision_shapes: int = 32:
 	set(value):
 		collision_shapes = value
@@ -135,45 +152,24 @@ func rebuild() -> void:
 
 
 ## Cuts the tree at node [param id] and lets what grows above it fall: it becomes a [RigidBody3D]
-## beside this node, with its own wood, leaves and weight, and is returned. This tree keeps what is
-## below, in a copy of its own of [member reconstruction]; others that share it stay whole.
-## [param density] is that of green wood in kg per cubic metre. Returns [code]null[/code], with an
-## error, where nothing can be cut.
-func fell(id: int, density: float = 800.0) -> RigidBody3D:
-	if reconstruction == null or get_parent() == null:
-		push_error("Only a tree in a scene can be felled.")
-		return null
-	var stump: TreeReconstruction = reconstruction.duplicate() as TreeReconstruction
-	var edit: TreeEdit = stump.edit("cut node=%d" % id)
-	if edit == null:
-		return null
-	# With the leaves, rules and seed of the whole.
-	var top: TreeReconstruction = reconstruction.duplicate() as TreeReconstruction
-	top.skeleton = (edit.get_removed_wood()[0] as TreeReconstruction).skeleton
-	top.edit_log = ""
-	var body: RigidBody3D = RigidBody3D.new()
-	var fallen: TreeInstance3D = TreeInstance3D.new()
-	fallen.lod = lod
-	fallen.leaves = leaves
-	fallen.wind = false
-	fallen.bark_material = bark_material
-	fallen.leaf_material = leaf_material
-	fallen.reconstruction = top
-	# Bodies can't be scaled, so what is in them is.
-	var size: Vector3 = transform.basis.get_scale()
-	var center: Vector3 = top.get_aabb().get_center()
-	fallen.transform = Transform3D(Basis.from_scale(size), -center * size)
-	body.add_child(fallen)
-	Collision.fill(
-		body, top.build_capsules(collision_shapes, collision_minimum_radius), fallen.transform
-	)
-	body.mass = maxf(top.measure()["volume"] * size.x * size.y * size.z * density, 0.1)
-	body.collision_layer = collision_layer
-	body.collision_mask = collision_mask
-	body.transform = Transform3D(transform.basis.orthonormalized(), transform * center)
-	reconstruction = stump
-	add_sibling(body)
-	return body
+## beside this node, with its own wood, leaves, weight and moments, and is returned. This tree keeps
+## what is below, in a copy of its own of [member reconstruction]; others that share it stay whole.
+## With [param stump_body] that collides, too. A tree that is a fallen piece already can be cut
+## again: then both halves are bodies, and keep their motion. [param density] is that of green wood
+## in kg per cubic metre. Returns [code]null[/code], with an error, where nothing can be cut.
+func fell(id: int, density: float = 800.0, stump_body: bool = false) -> RigidBody3D:
+	return Felling.fell(self, id, density, stump_body)
+
+
+## Gives this tree's body the shapes of its [member reconstruction] as it is now, without waiting
+## for the build that a change starts.
+func update_collision_now() -> void:
+	var parts: Array[Dictionary] = []
+	if collision and reconstruction != null:
+		parts = Collision.gather(
+			reconstruction, collision_kind, collision_shapes, collision_minimum_radius
+		)
+	_apply_collision(parts)
 
 
 ## Whether a build is waiting or under way.
@@ -252,6 +248,7 @@ func _start() -> void:
 	job.source = reconstruction
 	job.capsules_wanted = collision_shapes if collision else 0
 	job.capsule_radius = collision_minimum_radius
+	job.capsule_kind = collision_kind
 	job.lod = lod
 	job.leaves = leaves
 	job.revision = reconstruction.get_bark_revision()
@@ -446,13 +443,14 @@ class BuildJob:
 	var buffer: PackedFloat32Array
 	var capsules_wanted: int = 0
 	var capsule_radius: float
+	var capsule_kind: int
 	var capsules: Array[Dictionary] = []
 	var bark_time: float
 	var leaf_time: float
 
 	func run() -> void:
 		if capsules_wanted > 0:
-			capsules = source.build_capsules(capsules_wanted, capsule_radius)
+			capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 		var started: int = Time.get_ticks_usec()
 		if with_bark:
 			bark = source.build_mesh_arrays(lod)

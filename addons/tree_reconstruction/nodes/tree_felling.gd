@@ -1,0 +1,142 @@
+@tool
+extends RefCounted
+## Cuts a tree in two, and gives what comes off the body of a thing that falls.
+
+const Collision := preload("tree_collision.gd")
+
+# Properties that the fallen piece takes over.
+const _COPIED: PackedStringArray = [
+	"lod",
+	"levels",
+	"leaves",
+	"bark_material",
+	"leaf_material",
+	"layers",
+	"cast_shadow",
+	"gi_mode",
+	"collision_kind",
+	"collision_shapes",
+	"collision_minimum_radius",
+	"collision_layer",
+	"collision_mask",
+]
+# Of a node's flags in a skeleton.
+const _TRUNK: int = 1
+
+
+## See [method TreeInstance3D.fell].
+static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool) -> RigidBody3D:
+	if tree.reconstruction == null or tree.get_parent() == null:
+		push_error("Only a tree in a scene can be felled.")
+		return null
+	if not density > 0.0:
+		push_error("Wood weighs more than 0 kg per cubic metre; green wood about 800.")
+		return null
+	var stump: TreeReconstruction = tree.reconstruction.duplicate() as TreeReconstruction
+	var edit: TreeEdit = stump.edit("cut node=%d" % id)
+	if edit == null:
+		return null
+	# With the leaves, rules and seed of the whole.
+	var top: TreeReconstruction = tree.reconstruction.duplicate() as TreeReconstruction
+	top.skeleton = _lying((edit.get_removed_wood()[0] as TreeReconstruction).skeleton)
+	top.edit_log = ""
+	var fallen: TreeInstance3D = TreeInstance3D.new()
+	for property: String in _COPIED:
+		if property in tree:
+			fallen.set(property, tree.get(property))
+	fallen.wind = false
+	fallen.reconstruction = top
+	var body: RigidBody3D = RigidBody3D.new()
+	body.collision_layer = tree.collision_layer
+	body.collision_mask = tree.collision_mask
+	body.add_child(fallen)
+	# A piece of what has fallen already: both halves go on as bodies.
+	var holder: RigidBody3D = tree.get_parent() as RigidBody3D
+	var beside: Node3D = holder if holder != null else tree
+	var place: Transform3D = tree.transform
+	if holder != null:
+		place = holder.transform * tree.transform
+	var parts: Array[Dictionary] = _parts_of(fallen)
+	_shorten(parts, top.get_node_position(top.get_root()))
+	_mount(body, fallen, place, parts, density)
+	if holder != null:
+		_share_motion(holder, body)
+		var before: Vector3 = holder.transform.origin
+		tree.reconstruction = stump
+		_mount(holder, tree, place, _parts_of(tree), density)
+		holder.linear_velocity += holder.angular_velocity.cross(holder.transform.origin - before)
+	else:
+		tree.reconstruction = stump
+		if stump_body:
+			tree.collision = true
+		# At once: the piece must not meet the shapes of the whole tree.
+		tree.update_collision_now()
+	beside.add_sibling(body)
+	return body
+
+
+# Wood that lies has no foot in the ground.
+static func _lying(skeleton: Dictionary) -> Dictionary:
+	var wood: Dictionary = skeleton.duplicate()
+	var flags: PackedByteArray = wood["flags"]
+	for i: int in flags.size():
+		flags[i] &= ~_TRUNK
+	wood["flags"] = flags
+	return wood
+
+
+# However thin it is, it has a shape: else it would fall through the ground.
+static func _parts_of(tree: TreeInstance3D) -> Array[Dictionary]:
+	var of: TreeReconstruction = tree.reconstruction
+	var parts: Array[Dictionary] = Collision.gather(
+		of, tree.collision_kind, tree.collision_shapes, tree.collision_minimum_radius
+	)
+	if parts.is_empty():
+		parts = Collision.gather(of, tree.collision_kind, 1, 0.0)
+	return parts
+
+
+# The round end of the piece's first capsule would reach into the round end of the stump's.
+static func _shorten(parts: Array[Dictionary], cut: Vector3) -> void:
+	for part: Dictionary in parts:
+		if not part.has("radius") or not (part["from"] as Vector3).is_equal_approx(cut):
+			continue
+		var way: Vector3 = part["to"] - part["from"]
+		var most: float = maxf(way.length() - 0.01, 0.0)
+		part["from"] += way.normalized() * minf(2.0 * part["radius"], most)
+
+
+# Puts the body where the wood's centre of mass is, along its principal axes, so that it turns as
+# the wood would, and the tree into it where it is. `place`: of the tree, beside the body. Bodies
+# can't be scaled, so what is in them is.
+static func _mount(
+	body: RigidBody3D,
+	tree: TreeInstance3D,
+	place: Transform3D,
+	parts: Array[Dictionary],
+	density: float
+) -> void:
+	var wood: Dictionary = tree.reconstruction.weigh(density)
+	var size: Vector3 = place.basis.get_scale()
+	var volume: float = size.x * size.y * size.z
+	var axes: Basis = wood["axes"]
+	body.transform = Transform3D(
+		place.basis.orthonormalized() * axes, place * (wood["center"] as Vector3)
+	)
+	tree.transform = body.transform.affine_inverse() * place
+	Collision.fill(body, parts, tree.transform)
+	body.mass = maxf(wood["mass"] * volume, 0.1)
+	body.center_of_mass_mode = RigidBody3D.CENTER_OF_MASS_MODE_CUSTOM
+	body.center_of_mass = Vector3.ZERO
+	# Of a thread, an engine's solver can make nothing.
+	var least: float = 1e-3 * body.mass
+	body.inertia = (((wood["inertia"] as Vector3) * pow(volume, 5.0 / 3.0)).max(
+		Vector3.ONE * least
+	))
+
+
+# What comes off a body that moves goes on moving as it did.
+static func _share_motion(from: RigidBody3D, to: RigidBody3D) -> void:
+	to.angular_velocity = from.angular_velocity
+	var apart: Vector3 = to.transform.origin - from.transform.origin
+	to.linear_velocity = from.linear_velocity + from.angular_velocity.cross(apart)
