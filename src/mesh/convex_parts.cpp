@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "mesh/limb_pieces.h"
 #include "tree/branches.h"
 
@@ -17,7 +18,7 @@ void add_ring(std::vector<DVec3>& points, const DVec3& centre, const DVec3& x, c
               int sides) {
     for (int j = 0; j < sides; j++) {
         const double angle = 2.0 * kPi * j / sides;
-        points.push_back(centre + (x * std::cos(angle) + y * std::sin(angle)) * radius);
+        points.push_back(centre + (x * portable::cos(angle) + y * portable::sin(angle)) * radius);
     }
 }
 
@@ -31,7 +32,7 @@ std::vector<ConvexPart> fit_convex_parts(const Tree& tree, const ConvexOptions& 
     if (options.sides < 3 || options.sides > 32) throw Error("A convex part has between 3 and 32 sides.");
     std::vector<ConvexPart> parts;
     const double step = 2.0 * kPi / options.sides;
-    const double wider = std::sqrt(step / std::sin(step));
+    const double wider = std::sqrt(step / portable::sin(step));
     const Tree* wood = &tree;
     Tree trunk;
     std::vector<NodeId> ids;  // by id of the trunk alone
