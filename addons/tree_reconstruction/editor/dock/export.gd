@@ -106,6 +106,13 @@ func _build() -> void:
 	)
 	meshes.pressed.connect(_on_meshes_pressed)
 	impostor = Impostor.new(session, _files)
+	body.add_child(
+		Widgets.line(
+			"Impostor size",
+			"How wide its pictures are together, in pixels. 1024 will do for a forest.",
+			impostor.size
+		)
+	)
 	export_button = Widgets.button(
 		"Export…",
 		"Writes a model (GLB, glTF, OBJ) or the skeleton (PLY, treefile, CSV, L-string).",

@@ -8,6 +8,10 @@ const Files := preload("files.gd")
 const Widgets := preload("widgets.gd")
 
 var button: Button
+## How wide the pictures are together.
+var size: OptionButton
+## How many there are in a row.
+var views: int = 12
 
 var _session: Session
 var _files: Files
@@ -25,6 +29,9 @@ func _init(session: Session, files: Files) -> void:
 		)
 	)
 	button.pressed.connect(_on_pressed)
+	var pixels: Array = [1024, 2048, 4096]
+	size = Widgets.choice(PackedStringArray(["1024", "2048", "4096"]), pixels)
+	Widgets.choose(size, 2048)
 
 
 ## Writes the impostor of the edited tree and lets the edited node show it, as one step of the
@@ -33,6 +40,8 @@ func bake_to(path: String) -> void:
 	var tree: TreeReconstruction = _session.tree
 	var node: TreeInstance3D = _session.node
 	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
+	baker.resolution = size.get_selected_metadata()
+	baker.views = views
 	baker.leaves = node.leaves
 	baker.bark_material = node.bark_material
 	baker.leaf_material = node.leaf_material
@@ -41,6 +50,7 @@ func bake_to(path: String) -> void:
 	var made: TreeImpostor = await baker.bake(tree)
 	_session.jobs.finish(job)
 	if made == null:
+		# Nothing, where the user cancelled it.
 		_session.say(baker.get_error_message(), _session.Kind.ERROR)
 		return
 	var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
