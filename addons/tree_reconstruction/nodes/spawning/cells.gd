@@ -4,8 +4,6 @@ extends RefCounted
 ## detail a multimesh of whole trees. They come and go with the camera, a few per frame.
 
 const Stand := preload("stand.gd")
-const TreeLevels := preload("../tree_levels.gd")
-const _LEVELS_PARAMETER: StringName = &"tree_levels"
 # How much earlier a cell is made than it is seen, in metres and by its size.
 const _AHEAD: float = 4.0
 const _AHEAD_SHARE: float = 0.25
@@ -86,21 +84,13 @@ func clear() -> void:
 	count = 0
 
 
-## An individual is ready: these levels of detail, the finest first, take their turns at [param
-## distances], and the last one ends at [param farthest].
-func add_individual(
-	place: int, mine: Array[Turn], distances: PackedFloat32Array, farthest: float
-) -> void:
+## An individual is ready: these are its levels of detail, the finest first.
+func add_individual(place: int, mine: Array[Turn]) -> void:
 	for level: int in mine.size():
-		var turn: Turn = mine[level]
-		turn.begin = distances[level - 1] if level > 0 else 0.0
-		turn.end = distances[level] if level < distances.size() else farthest
-		turn.begin_margin = TreeLevels.margin(turn.begin)
-		turn.end_margin = TreeLevels.margin(turn.end)
 		# A forest that ends before a level begins has none of it.
-		turn.end = minf(turn.end, farthest)
-		begins[level] = minf(begins[level], turn.begin - turn.begin_margin)
-		ends[level] = maxf(ends[level], turn.end + turn.end_margin)
+		if mine[level].begin < mine[level].end:
+			begins[level] = minf(begins[level], mine[level].begin - mine[level].begin_margin)
+			ends[level] = maxf(ends[level], mine[level].end + mine[level].end_margin)
 	turns[place] = mine
 	var cells: Array[Array] = []
 	for level: int in _shown.size():
@@ -269,11 +259,6 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	var off: float = 0.0
 	if turn.by_tree:
 		off = 0.5 * feet.size.length() + feet.get_center().distance_to(box.get_center())
-		RenderingServer.instance_geometry_set_shader_parameter(
-			part.get_instance(),
-			_LEVELS_PARAMETER,
-			Vector4(turn.begin, turn.begin_margin, turn.end, turn.end_margin)
-		)
 	part.visibility_range_begin = maxf(turn.begin - turn.begin_margin - off, 0.0)
 	part.visibility_range_end = turn.end + turn.end_margin + off
 	if not turn.by_tree:

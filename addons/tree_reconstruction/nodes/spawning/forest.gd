@@ -32,8 +32,6 @@ var _individuals: Individuals = Individuals.new()
 var _cells: Cells = Cells.new()
 var _bodies: Bodies = Bodies.new()
 var _region: Region
-# What stands for a tree that is far away, if there is an impostor.
-var _card: ArrayMesh
 # Whether each tree knows its level of detail; else a cell shows one.
 var _by_tree: bool = false
 # Plans whose materials are being read.
@@ -60,7 +58,6 @@ func start(with_individuals: bool, threaded: bool) -> void:
 		_individuals.threaded = threaded
 		_individuals.budget = _node.memory_budget_mb * _MEGABYTE
 		_waiting = _plans(from)
-	_make_card(from[0])
 	_region = _make_region(_sizes(from))
 	_region.start(threaded)
 
@@ -228,40 +225,37 @@ func _start_cells() -> void:
 func _add_to_cells(ready: PackedInt32Array) -> void:
 	for index: int in ready:
 		var one: Individual = _individuals.ready[index]
-		var distances: PackedFloat32Array = TreeLevels.distances(
-			one.height, _count_levels(), _node.level_distances
-		)
-		_cells.add_individual(index, _turns(one), distances, _node.view_distance)
+		_cells.add_individual(index, _turns(one))
 		_bodies.touch()
 
 
 # The levels of an individual, and the card that stands for it where it is far away.
 func _turns(one: Individual) -> Array[Cells.Turn]:
 	var turns: Array[Cells.Turn] = []
-	for mesh: ArrayMesh in one.meshes:
+	for level: int in one.turns.size():
 		var turn: Cells.Turn = Cells.Turn.new()
-		turn.mesh = mesh
+		turn.begin = one.turns[level].x
+		turn.begin_margin = one.turns[level].y
+		turn.end = one.turns[level].z
+		turn.end_margin = one.turns[level].w
 		turn.by_tree = _by_tree
-		turns.append(turn)
-	if _card != null:
-		var turn: Cells.Turn = Cells.Turn.new()
-		turn.mesh = _card
-		turn.scale = one.height / _node.impostor.height
-		turn.by_tree = _by_tree and Materials.knows_levels(_node.impostor.material)
+		if level < one.meshes.size():
+			turn.mesh = one.meshes[level]
+		else:
+			turn.scale = one.height / _node.impostor.height
+			turn.mesh = _make_card(one)
+			turn.by_tree = _by_tree and Materials.knows_levels(_node.impostor.material)
 		turns.append(turn)
 	return turns
 
 
-func _make_card(from: TreeReconstruction) -> void:
-	_card = null
+func _make_card(one: Individual) -> ArrayMesh:
 	var impostor: TreeImpostor = _node.impostor
-	if impostor == null or impostor.material == null:
-		return
 	var values: Dictionary[StringName, Variant] = {
-		&"tree_height": impostor.height, &"tree_wind": 1.0
+		&"tree_height": impostor.height, &"tree_wind": 1.0, &"tree_levels": one.turns.back()
 	}
-	values.merge(Materials.season_values(from.leaf_rule, 0.0))
-	_card = impostor.make_mesh(Materials.for_trees(impostor.material, values))
+	values.merge(one.season)
+	return impostor.make_mesh(Materials.for_trees(impostor.material, values))
 
 
 func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
@@ -272,8 +266,10 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 		plan.number = seed_of(index)
 		plan.amount = _node.amount
 		plan.age = age_of(index)
-		# The card is one of them, too.
-		plan.levels = mini(_node.levels, TreeLevels.MOST - (1 if _node.impostor != null else 0))
+		plan.turn_count = _count_levels()
+		plan.levels = mini(_node.levels, plan.turn_count)
+		plan.level_distances = _node.level_distances
+		plan.farthest = _node.view_distance
 		plan.leaves = _node.leaves
 		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
 		plan.bark_material = _node.bark_material
@@ -286,6 +282,9 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 				plan.amount,
 				plan.age,
 				plan.levels,
+				plan.turn_count,
+				plan.level_distances,
+				plan.farthest,
 				plan.leaves,
 				plan.capsules_wanted,
 				plan.bark_material,
@@ -328,7 +327,8 @@ func _read(path: String) -> Material:
 
 # With the card.
 func _count_levels() -> int:
-	return mini(_node.levels + (1 if _card != null else 0), TreeLevels.MOST)
+	var card: bool = _node.impostor != null and _node.impostor.material != null
+	return mini(_node.levels + (1 if card else 0), TreeLevels.MOST)
 
 
 # How large the cells of each level are.

@@ -3,6 +3,7 @@ extends RefCounted
 ## One individual of a forest: how a worker builds it, step by step, and its meshes.
 
 const Materials := preload("materials.gd")
+const TreeLevels := preload("../tree_levels.gd")
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.15
 # Of one vertex, as the engine keeps it, and of one index.
@@ -36,6 +37,11 @@ var bark_material: Material
 var leaf_material: Material
 ## What the leaves' material takes on (see [method Materials.season_values]).
 var season: Dictionary[StringName, Variant] = {}
+## How many levels take turns, with those of other meshes that come after these, and where.
+var turn_count: int = 4
+var level_distances: PackedFloat32Array = []
+## Where the last one ends, in metres.
+var farthest: float = 300.0
 ## What others that would be the same have in common with it.
 var key: String
 
@@ -45,6 +51,9 @@ var stale: bool = false
 ## What was built.
 var surfaces: Array[Surface] = []
 var meshes: Array[ArrayMesh] = []
+## By level: where it begins, how far before and after that it mixes with the one before, and the
+## same for where it ends, in metres.
+var turns: Array[Vector4] = []
 var triangles: PackedInt32Array = []
 var capsules: Array[Dictionary] = []
 var box: AABB
@@ -82,16 +91,32 @@ func step() -> bool:
 ## Makes the meshes, still empty, and their materials: on the main thread, whose renderer says what
 ## is in a shader.
 func prepare() -> void:
-	var values: Dictionary[StringName, Variant] = {&"tree_height": height, &"tree_wind": 1.0}
-	var bark: Material = Materials.for_trees(bark_material, values)
-	values.merge(season)
-	var leaf: Material = Materials.for_trees(leaf_material, values)
+	var distances: PackedFloat32Array = TreeLevels.distances(height, turn_count, level_distances)
+	for level: int in turn_count:
+		var turn: Vector4 = Vector4.ZERO
+		turn.x = distances[level - 1] if level > 0 else 0.0
+		turn.z = distances[level] if level < distances.size() else farthest
+		turns.append(
+			Vector4(
+				turn.x, TreeLevels.margin(turn.x), minf(turn.z, farthest), TreeLevels.margin(turn.z)
+			)
+		)
 	for level: int in levels:
 		var mesh: ArrayMesh = ArrayMesh.new()
 		mesh.custom_aabb = box
 		meshes.append(mesh)
-	for surface: Surface in surfaces:
-		surface.material = bark if surface.name == "bark" else leaf
+		# What each tree needs to know is the material's, not the instance's: in Compatibility there is
+		# room for the values of 256 instances.
+		var values: Dictionary[StringName, Variant] = {
+			&"tree_height": height, &"tree_wind": 1.0, &"tree_levels": turns[level]
+		}
+		for surface: Surface in surfaces:
+			if surface.level == level and surface.name == "bark":
+				surface.material = Materials.for_trees(bark_material, values)
+		values.merge(season)
+		for surface: Surface in surfaces:
+			if surface.level == level and surface.name != "bark":
+				surface.material = Materials.for_trees(leaf_material, values)
 
 
 ## Gives the engine the next surface. [code]false[/code] after the last one.
