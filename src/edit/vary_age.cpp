@@ -12,7 +12,7 @@
 
 #include "edit/vary.h"
 #include "edit/vary_parts.h"
-#include "geometry/portable_power.h"
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 
 namespace treerec {
@@ -42,8 +42,8 @@ void VariantMaker::look_at_growth() {
             twig_radii.push_back(radii_[limb.end - 1]);
         }
         if (!(limb.length > 0.0 && limb.radius > 0.0)) continue;
-        lengths.push_back(portable_log(limb.length));
-        radii.push_back(portable_log(limb.radius));
+        lengths.push_back(portable::log(limb.length));
+        radii.push_back(portable::log(limb.radius));
     }
     twig_length_ = median(twig_lengths);
     twig_radius_ = median(twig_radii);
@@ -64,7 +64,7 @@ void VariantMaker::look_at_growth() {
 void VariantMaker::set_age(Work& work, double age) const {
     if (age == 1.0) return;
     work.size = 0.5 * age * (3.0 - age);
-    work.gauge = portable_power(work.size, allometry_);
+    work.gauge = portable::pow(work.size, allometry_);
 }
 
 bool VariantMaker::is_yet_to_grow(const Work& work, const Limb& limb, uint64_t key) const {

@@ -54,6 +54,8 @@ engine --import --quit-after 2000
 engine --script res://make_tree.gd -- "$PWD/build/sample/scan.ply" || { tail -n 20 "$log"; }
 wanted=$(sed -n 's/^digest //p' "$log")
 check 'the editor makes the tree' [ -n "$wanted" ]
+forest=$(sed -n 's/^forest //p' "$log")
+check 'the editor makes a forest' [ "${forest%% *}" -gt 10 ]
 engine --import --quit-after 2000
 for kind in release debug; do
     engine --export-$kind Linux "$work/out/$kind.x86_64"
@@ -77,6 +79,7 @@ for kind in release debug; do
     (cd "$work/out" && timeout 120 "./$kind.x86_64" --headless) >"$work/$kind.log" 2>&1
     check "the $kind game runs" grep -q '^digest ' "$work/$kind.log"
     check "the $kind game makes the same bytes as the editor" grep -q "^digest $wanted\$" "$work/$kind.log"
+    check "the $kind game grows the same forest as the editor" grep -q "^forest $forest\$" "$work/$kind.log"
     check "the $kind game has no class of the editor's" grep -q '^editor false$' "$work/$kind.log"
     ! grep -E 'ERROR|WARNING' "$work/$kind.log"
     check "the $kind game says nothing else" [ $? = 0 ]

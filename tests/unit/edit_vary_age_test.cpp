@@ -9,7 +9,6 @@
 #include "edit/delta.h"
 #include "edit/vary.h"
 #include "error.h"
-#include "geometry/portable_power.h"
 #include "geometry/random.h"
 #include "random_tree.h"
 #include "synth/grow.h"
@@ -23,19 +22,6 @@ double thinnest(const Tree& tree) {
     for (const NodeId id : tree.depth_first())
         least = std::min(least, tree.node(id).radius);
     return least;
-}
-
-TEST(PortablePower, AgreesWithTheLibrarys) {
-    Random random(1);
-    for (int i = 0; i < 100000; i++) {
-        const double x = std::exp(random.uniform(-30.0, 30.0));
-        ASSERT_NEAR(portable_log(x), std::log(x), 1e-15 * std::max(1.0, std::abs(std::log(x)))) << x;
-        const double y = random.uniform(-40.0, 40.0);
-        ASSERT_NEAR(portable_exp(y), std::exp(y), 1e-14 * std::exp(y)) << y;
-        ASSERT_NEAR(portable_power(x, 1.5), std::pow(x, 1.5), 1e-12 * std::pow(x, 1.5)) << x;
-    }
-    EXPECT_EQ(portable_log(1.0), 0.0);
-    EXPECT_EQ(portable_exp(0.0), 1.0);
 }
 
 TEST(VaryAge, OneIsTheVariantAsItWas) {

@@ -3,6 +3,31 @@ extends RefCounted
 ## what grammars grow.
 
 
+## All that a forest is: where its trees stand, and the meshes of its individuals.
+static func of_forest(forest: TreeVariantSpawner3D) -> String:
+	var all: HashingContext = HashingContext.new()
+	all.start(HashingContext.HASH_SHA256)
+	all.update(forest.get_digest().to_ascii_buffer())
+	for index: int in forest.variants:
+		var tree: TreeReconstruction = forest.get_variant(index)
+		for lod: int in forest.levels:
+			all.update(var_to_bytes(tree.build_mesh_arrays(lod)))
+			all.update(var_to_bytes(tree.build_joined_leaf_arrays(lod)))
+	return all.finish().hex_encode()
+
+
+## The forest of the game.
+static func make_forest(tree: TreeReconstruction) -> TreeVariantSpawner3D:
+	var forest: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
+	forest.source = tree
+	forest.variants = 3
+	forest.levels = 3
+	forest.seed = 12
+	forest.region_size = Vector2(60.0, 60.0)
+	forest.clumping = 0.5
+	return forest
+
+
 static func of(tree: TreeReconstruction) -> String:
 	var all: HashingContext = HashingContext.new()
 	all.start(HashingContext.HASH_SHA256)

@@ -9,6 +9,10 @@ func _ready() -> void:
 	var tree: TreeInstance3D = $Tree
 	await tree.rebuilt
 	print("digest ", Digest.of(tree.reconstruction))
+	var forest: TreeVariantSpawner3D = Digest.make_forest(tree.reconstruction)
+	add_child(forest)
+	await forest.finished
+	print("forest ", forest.get_tree_count(), " ", Digest.of_forest(forest))
 	print("triangles ", tree.get_triangle_count())
 	print("editor ", ClassDB.class_exists(&"TreeReconstructor"))
 	var arguments: PackedStringArray = OS.get_cmdline_user_args()

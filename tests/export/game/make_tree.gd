@@ -5,6 +5,10 @@ const Digest: GDScript = preload("res://digest.gd")
 
 
 func _initialize() -> void:
+	_run.call_deferred()
+
+
+func _run() -> void:
 	var maker: TreeReconstructor = TreeReconstructor.new()
 	var made: TreeReconstruction = maker.reconstruct_file(OS.get_cmdline_user_args()[0], {})
 	if made == null:
@@ -13,4 +17,9 @@ func _initialize() -> void:
 		return
 	ResourceSaver.save(made, "res://tree.res", ResourceSaver.FLAG_COMPRESS)
 	print("digest ", Digest.of(made))
+	var forest: TreeVariantSpawner3D = Digest.make_forest(made)
+	root.add_child(forest)
+	await forest.finished
+	print("forest ", forest.get_tree_count(), " ", Digest.of_forest(forest))
+	forest.free()
 	quit()

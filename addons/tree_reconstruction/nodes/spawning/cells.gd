@@ -205,10 +205,11 @@ func _make(level: int, key: Vector2i, place: int) -> void:
 	var buffer: PackedFloat32Array = []
 	var box: AABB
 	var cell: Stand.Cell = stand.grids[level].cells.get(key)
-	if cell != null:
-		for id: int in cell.ids:
-			if stand_in(stand.individuals[id]) != place:
-				continue
+	var kinds: Array = cell.ids.keys() if cell != null else []
+	for kind: int in kinds:
+		if stand_in(kind) != place:
+			continue
+		for id: int in cell.ids[kind]:
 			var at: int = Stand.FLOATS * id
 			var foot: Vector3 = stand.place_of(id)
 			box = box.expand(foot) if not buffer.is_empty() else AABB(foot, Vector3.ZERO)

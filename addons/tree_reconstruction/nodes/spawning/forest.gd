@@ -16,6 +16,8 @@ const TreeLevels := preload("../tree_levels.gd")
 const META: StringName = Bodies.META
 # Cells over the distance at which their level ends.
 const _CELL_SHARE: float = 0.6
+# Likewise over the view's distance, of cells that all levels share.
+const _SHARED_CELL: float = 0.15
 const _LEAST_CELL: float = 6.0
 # How deep the feet of trees are in the ground, in metres.
 const _SINK: float = 0.03
@@ -36,6 +38,8 @@ var _region: Region
 var _by_tree: bool = false
 # Plans whose materials are being read.
 var _waiting: Array[Individual] = []
+# What the materials are made with, kept until they are.
+var _shaders: Array[Shader] = []
 # Materials that the engine's thread reads.
 var _asked: PackedStringArray = []
 
@@ -306,7 +310,15 @@ func _have_materials() -> bool:
 		if plan.leaf_material == null:
 			plan.leaf_material = _read(Materials.preset_path(plan.source, "leaf"))
 		all = all and plan.bark_material != null and plan.leaf_material != null
-	return all
+	if not all:
+		return false
+	# One shader per frame.
+	for plan: Individual in _waiting:
+		for material: Material in [plan.bark_material, plan.leaf_material]:
+			if Materials.needs_shader(material):
+				_shaders.append(Materials.shader_for(material))
+				return false
+	return true
 
 
 func _read(path: String) -> Material:
@@ -348,7 +360,7 @@ func _sizes(from: Array[TreeReconstruction]) -> PackedFloat32Array:
 		var end: float = distances[level] if level < distances.size() else _node.view_distance
 		# Where a cell shows one level, all levels have the same cells.
 		if not _by_tree and not distances.is_empty():
-			end = distances[0]
+			end = maxf(distances[0], _SHARED_CELL * _node.view_distance)
 		sizes.append(maxf(_CELL_SHARE * minf(end, _node.view_distance), _LEAST_CELL))
 	return sizes
 

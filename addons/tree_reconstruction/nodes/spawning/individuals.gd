@@ -146,6 +146,9 @@ func _decide() -> void:
 			one.prepare()
 		_uploads.append(_decided)
 		_decided += 1
+		if not one.is_given():
+			# Its materials have taken enough of this frame.
+			return
 
 
 func _upload() -> PackedInt32Array:

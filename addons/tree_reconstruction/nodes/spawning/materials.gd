@@ -9,6 +9,8 @@ const _DEFINES: String = "\n#define TREE_BAKED\n#define TREE_WIND_GLOBALS\n"
 
 # By their paths; they go when the last material does.
 static var _shaders: Dictionary[String, WeakRef] = {}
+# The names of their uniforms, likewise.
+static var _uniforms: Dictionary[String, Array] = {}
 
 
 ## A copy of [param material] for whole trees with [param values]. A material that has no shader of
@@ -20,13 +22,27 @@ static func for_trees(material: Material, values: Dictionary[StringName, Variant
 	var made: ShaderMaterial = ShaderMaterial.new()
 	made.shader = _shader_of(shaded.shader)
 	made.render_priority = shaded.render_priority
-	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
-		var value: Variant = shaded.get_shader_parameter(uniform.name)
+	for name: StringName in _uniforms[shaded.shader.resource_path]:
+		var value: Variant = shaded.get_shader_parameter(name)
 		if value != null:
-			made.set_shader_parameter(uniform.name, value)
+			made.set_shader_parameter(name, value)
 	for name: StringName in values:
 		made.set_shader_parameter(name, values[name])
 	return made
+
+
+## The shader that [method for_trees] gives a copy of [param material], made now unless something
+## has it: that takes some milliseconds.
+static func shader_for(material: Material) -> Shader:
+	return _shader_of((material as ShaderMaterial).shader) if _is_ours(material) else null
+
+
+## Whether [method shader_for] would have to make it.
+static func needs_shader(material: Material) -> bool:
+	if not _is_ours(material):
+		return false
+	var path: String = (material as ShaderMaterial).shader.resource_path
+	return not _shaders.has(path) or _shaders[path].get_ref() == null
 
 
 ## Whether the material's shader is the addon's, which shows each tree of a multimesh at its own
@@ -84,6 +100,10 @@ static func _shader_of(shader: Shader) -> Shader:
 		known = Shader.new()
 		known.code = _code_of(shader)
 		_shaders[path] = weakref(known)
+		var names: Array = []
+		for uniform: Dictionary in shader.get_shader_uniform_list():
+			names.append(StringName(uniform.name))
+		_uniforms[path] = names
 	return known
 
 

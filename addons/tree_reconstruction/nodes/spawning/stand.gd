@@ -16,28 +16,32 @@ class Grid:
 	func cell_at(at: Vector3) -> Vector2i:
 		return Vector2i(floori(at.x / size), floori(at.z / size))
 
-	func add(id: int, at: Vector3) -> void:
+	func add(id: int, individual: int, at: Vector3) -> void:
 		var key: Vector2i = cell_at(at)
 		var cell: Cell = cells.get(key)
 		if cell == null:
 			cell = Cell.new()
 			cell.box = AABB(at, Vector3.ZERO)
 			cells[key] = cell
-		cell.ids.append(id)
+		if not cell.ids.has(individual):
+			cell.ids[individual] = PackedInt32Array()
+		cell.ids[individual].append(id)
 		cell.box = cell.box.expand(at)
 
-	func remove(id: int, at: Vector3) -> void:
+	func remove(id: int, individual: int, at: Vector3) -> void:
 		var key: Vector2i = cell_at(at)
 		var cell: Cell = cells[key]
-		cell.ids.remove_at(cell.ids.find(id))
+		cell.ids[individual].remove_at(cell.ids[individual].find(id))
+		if cell.ids[individual].is_empty():
+			cell.ids.erase(individual)
 		if cell.ids.is_empty():
 			cells.erase(key)
 
 
-## What stands in one cell. The box is around the feet of its trees.
+## What stands in one cell: by individual, the ids of the trees. The box is around their feet.
 class Cell:
 	extends RefCounted
-	var ids: PackedInt32Array = []
+	var ids: Dictionary[int, PackedInt32Array] = {}
 	var box: AABB
 
 
@@ -114,7 +118,7 @@ func add(frame: Transform3D) -> int:
 	individuals.append((Scatter.mix(key, 3) & 0x7fffffff) % variety)
 	largest = maxf(largest, axes.y.length())
 	for grid: Grid in grids:
-		grid.add(id, frame.origin)
+		grid.add(id, individuals[id], frame.origin)
 	count += 1
 	return id
 
@@ -122,7 +126,7 @@ func add(frame: Transform3D) -> int:
 ## Takes a tree away. Its id is never given again.
 func remove(id: int) -> void:
 	for grid: Grid in grids:
-		grid.remove(id, place_of(id))
+		grid.remove(id, individuals[id], place_of(id))
 	individuals[id] = -1
 	count -= 1
 
@@ -158,12 +162,13 @@ func near(at: Vector3, reach: float) -> PackedInt32Array:
 	var high: Vector2i = grid.cell_at(at + Vector3.ONE * reach)
 	var distances: PackedFloat32Array = []
 	for key: Vector2i in keys_between(grid, low, high):
-		for id: int in grid.cells[key].ids:
-			var distance: float = place_of(id).distance_to(at)
-			if distance <= reach:
-				var place: int = distances.bsearch(distance, false)
-				distances.insert(place, distance)
-				found.insert(place, id)
+		for ids: PackedInt32Array in grid.cells[key].ids.values():
+			for id: int in ids:
+				var distance: float = place_of(id).distance_to(at)
+				if distance <= reach:
+					var place: int = distances.bsearch(distance, false)
+					distances.insert(place, distance)
+					found.insert(place, id)
 	return found
 
 
