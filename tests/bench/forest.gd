@@ -7,7 +7,7 @@ const VIEW: Vector2i = Vector2i(480, 270)
 const DENSITY: float = 2.0
 const FRAMES: int = 4
 # Copies are added until they have taken so long.
-const PATIENCE_MS: int = 60_000
+const PATIENCE_MS: int = 40_000
 const MEGABYTE: float = 1_000_000.0
 
 var _source: TreeReconstruction
@@ -76,7 +76,7 @@ func _measure(count: int, spawner: bool) -> void:
 		var forest: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
 		forest.source = _source
 		forest.region_size = Vector2.ONE * _side(count)
-		forest.density = 1.3 * DENSITY
+		forest.density = DENSITY
 		forest.minimum_distance = 3.0
 		forest.clumping = 0.0
 		forest.view_distance = 400.0

@@ -21,5 +21,7 @@ func _run() -> void:
 	root.add_child(forest)
 	await forest.finished
 	print("forest ", forest.get_tree_count(), " ", Digest.of_forest(forest))
+	# Not while it says that it has finished.
+	await process_frame
 	forest.free()
 	quit()

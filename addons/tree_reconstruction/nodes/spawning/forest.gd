@@ -15,7 +15,7 @@ const TreeLevels := preload("../tree_levels.gd")
 ## Where a body keeps the id of its tree.
 const META: StringName = Bodies.META
 # Cells over the distance at which their level ends.
-const _CELL_SHARE: float = 0.6
+const _CELL_SHARE: float = 0.45
 # Likewise over the view's distance, of cells that all levels share.
 const _SHARED_CELL: float = 0.15
 const _LEAST_CELL: float = 6.0
