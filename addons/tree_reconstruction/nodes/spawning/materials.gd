@@ -48,13 +48,15 @@ static func needs_shader(material: Material) -> bool:
 ## Whether the material's shader is the addon's, which shows each tree of a multimesh at its own
 ## level of detail.
 static func knows_levels(material: Material) -> bool:
-	return _is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels")
+	return (
+		_is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels_gone")
+	)
 
 
 ## Whether the shaders of the presets do.
 static func presets_know_levels() -> bool:
 	var code: String = (load(_ADDON + "shaders/leaf.gdshader") as Shader).code
-	return code.contains("tree_levels")
+	return code.contains("tree_levels_gone")
 
 
 ## Where the material is that a tree's leaf preset has for its [code]bark[/code] or
