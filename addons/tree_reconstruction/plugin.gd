@@ -41,6 +41,8 @@ func _enter_tree() -> void:
 		speaker.set_translation_domain(DOMAIN)
 	_session.view.restore(EditorInterface.get_editor_settings())
 	_session.said.connect(_on_said)
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+	files.resources_reload.connect(_session.local_trees.forget_changes)
 	for path: String in _PARTS:
 		var part: RefCounted = _load(path).new()
 		part.set_translation_domain(DOMAIN)
@@ -61,6 +63,8 @@ func _exit_tree() -> void:
 	for part: RefCounted in _parts:
 		part.call(&"exit")
 	_parts.clear()
+	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
+	files.resources_reload.disconnect(_session.local_trees.forget_changes)
 	_session.said.disconnect(_on_said)
 	_session.view.keep(EditorInterface.get_editor_settings())
 	_session.shut_down()

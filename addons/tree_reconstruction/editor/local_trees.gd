@@ -97,6 +97,12 @@ func get_unsaved() -> PackedStringArray:
 	return paths
 
 
+## These files were changed by another program and loaded again: their trees are as saved.
+func forget_changes(paths: PackedStringArray) -> void:
+	for path: String in paths:
+		_changed.erase(path)
+
+
 ## Writes [param tree] into its file now, whether it has changed or not.
 func save_tree(tree: TreeReconstruction) -> Error:
 	var error: Error = _write(tree, tree.resource_path)
@@ -129,8 +135,10 @@ static func _write(tree: TreeReconstruction, path: String) -> Error:
 	if error != OK and FileAccess.file_exists(part):
 		DirAccess.remove_absolute(part)
 	if Engine.is_editor_hint():
-		# The engine lists what is saved.
+		# The engine lists what is saved. It has to know that the file is ours, too: what it finds
+		# changed when its user comes back, it loads again, over edits that came since.
 		EditorInterface.get_resource_filesystem().update_file(part)
+		EditorInterface.get_resource_filesystem().update_file(path)
 	return error
 
 

@@ -42,3 +42,31 @@ func run() -> void:
 		FileAccess.get_file_as_string("res://edit.tscn").length() < 2000,
 		"The scene's file holds more than the node."
 	)
+
+	await step("coming back to the editor loads nothing over what is not saved")
+	branch = clear_nodes(node, large_branches(of))[0]
+	await user.click(node_on_screen(node, branch))
+	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
+	await user.key("Delete")
+	await until(func() -> bool: return bytes(of) != after, "another branch is cut")
+	var unsaved: PackedByteArray = bytes(of)
+	await user.go()
+	await user.come()
+	await user.frames(90)
+	check_equal(bytes(of), unsaved, "the tree after coming back")
+	check_equal(session().get(&"local_trees").get_unsaved().size(), 1, "trees to save")
+	await user.key("ctrl+z")
+	await until(func() -> bool: return bytes(of) == after, "the tree is as saved")
+	await save_scene()
+
+	await step("a tree whose file another program changes is as its file, and not to be saved")
+	# A second of the file's time must pass for the engine to see the difference.
+	OS.delay_msec(1100)
+	saved.seed += 1
+	var other: String = OS.get_environment("TREE_EDITOR_TEST").path_join("other.res")
+	ResourceSaver.save(saved, other)
+	await user.go()
+	await user.ask(["copy", other, ProjectSettings.globalize_path("res://edit_tree.res")])
+	await user.come()
+	await until(func() -> bool: return of.seed == saved.seed, "the file is loaded again")
+	check_equal(session().get(&"local_trees").get_unsaved().size(), 0, "trees to save")
