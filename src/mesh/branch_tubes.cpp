@@ -242,7 +242,7 @@ void Builder::join(size_t index) {
     const Branch& branch = list.branches[index];
     Tube& tube = tubes[index];
     if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode) return;
-    if (rings_of(index)[1].radius < kCollarRadius) return;
+    if (tree.node(list.nodes[branch.begin]).radius < kWebRadius) return;
     const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
     if (tubes[host].rings < 2) return;
     std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];

@@ -112,12 +112,14 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
 // One line of a branch's tube, from corner to corner, and where it comes out of the parent's bark.
 struct Generator {
     DVec3 crossing, top, foot;
-    DVec3 way;           // unit, up the branch at the crossing
-    double exit;         // metres along
-    double end;          // metres along: where the web ends
-    BarkPlace at;        // the foot's
-    DVec3 bark;          // the parent's normal at the crossing,
-    double host_radius;  // and its radius there
+    DVec3 way;            // unit, up the branch at the crossing
+    double exit;          // metres along
+    double end;           // metres along: where the web ends
+    BarkPlace at;         // the foot's
+    size_t span;          // of the host, where that is
+    DVec3 outward, side;  // of the branch, at the end of the web
+    DVec3 bark;           // the parent's normal at the crossing,
+    double host_radius;   // and its radius there
 };
 
 class CollarMaker {
@@ -188,8 +190,8 @@ class CollarMaker {
     bool set_foot(uint32_t index);
     bool hide_foot();
     void find_middle();
-    CollarVertex web(uint32_t column, double share, double row_radius) const;
-    void dress_as_host(CollarVertex& vertex) const;
+    CollarVertex web(uint32_t index, double share, double row_radius) const;
+    void dress_as_host(CollarVertex& vertex, const BarkPlace& at) const;
     Collar write(std::vector<CollarVertex>& out) const;
 
     const TubeShape branch_;
@@ -217,7 +219,7 @@ bool CollarMaker::find_exit(uint32_t index) {
         // By false position, halving the weight of an end that stays (the Illinois rule).
         double a = 0.0, b = 1.0, t = 0.0;
         int kept = 0;
-        for (int i = 0; i < 5; i++) {
+        for (int i = 0; i < 4; i++) {
             t = (a * high - b * low) / (high - low);
             const double there = round_height(host_, glm::mix(inside, next, t), hint);
             if (there == HUGE_VAL) return false;
@@ -238,9 +240,13 @@ bool CollarMaker::find_exit(uint32_t index) {
         line.way = normalized_or(next - inside, branch_.rings[ring].normal);
         const Ring &before = branch_.rings[ring - 1], &after = branch_.rings[ring];
         line.exit = before.along + (after.along - before.along) * t;
-        const BarkPlace at = locate(host_, line.crossing, hint);
-        line.bark = at.normal;
-        line.host_radius = at.radius;
+        const Between at = find_span(host_, line.crossing, hint);
+        const Ring &under = host_.rings[at.span], &over = host_.rings[at.span + 1];
+        line.host_radius = under.radius + (over.radius - under.radius) * at.t;
+        const DVec3 centre = glm::mix(under.centre, over.centre, at.t);
+        const double slope = (over.radius - under.radius) / std::max(over.along - under.along, 1e-30);
+        const DVec3 radial = normalized_or(line.crossing - centre, under.x);
+        line.bark = normalized_or(radial - under.normal * std::clamp(slope, -1.0, 1.0), radial);
         return true;
     }
     return false;
@@ -257,6 +263,8 @@ bool CollarMaker::reach_up() {
         if (up < kLeastUp * own) return false;
         line.end = line.exit + up;
         line.top = point_at(j, line.end);
+        line.outward = outward_at(j, line.end);
+        line.side = side_at(j, line.end);
     }
     return true;
 }
@@ -276,6 +284,7 @@ bool CollarMaker::set_foot(uint32_t index) {
     for (int attempt = 0; attempt < 3; attempt++, down *= 0.5) {
         line.at = locate(host_, line.crossing + away * down, hint);
         if (line.at.beyond) continue;
+        line.span = hint;
         line.foot = line.at.centre + line.at.radial * (line.at.surface - kSink * line.at.radius);
         return true;
     }
@@ -288,6 +297,7 @@ bool CollarMaker::hide_foot() {
         bool hidden = true;
         for (uint32_t j = 0; j < branch_.sides; j++) {
             Generator &one = lines_[j], &other = lines_[(j + 1) % branch_.sides];
+            if (one.span == other.span) continue;  // one frustum is convex
             size_t hint = span_;
             const BarkPlace between = locate(host_, 0.5 * (one.foot + other.foot), hint);
             if (between.beyond) return false;
@@ -311,13 +321,12 @@ void CollarMaker::find_middle() {
 }
 
 // On the curve from the foot over the crossing to the top, tangent to both barks; share: 0 .. 1 along it.
-CollarVertex CollarMaker::web(uint32_t column, double share, double row_radius) const {
-    const uint32_t index = column % branch_.sides;
+CollarVertex CollarMaker::web(uint32_t index, double share, double row_radius) const {
     const Generator& line = lines_[index];
     const double a = (1.0 - share) * (1.0 - share), b = 2.0 * share * (1.0 - share), c = share * share;
     CollarVertex vertex;
     vertex.position = line.foot * a + line.crossing * b + line.top * c;
-    const DVec3 own = outward_at(index, line.end);
+    const DVec3& own = line.outward;
     DVec3 normal = line.at.normal * (1.0 - share) + own * share;
     if (share > 0.0 && share < 1.0) {
         const DVec3 way = normalized_or(
@@ -325,10 +334,9 @@ CollarVertex CollarMaker::web(uint32_t column, double share, double row_radius) 
         normal -= way * glm::dot(normal, way);
     }
     vertex.normal = normalized_or(normal, own);
-    const DVec3 side = side_at(index, line.end);
-    vertex.tangent =
-        normalized_or(side - vertex.normal * glm::dot(side, vertex.normal), any_perpendicular(vertex.normal));
-    vertex.around = static_cast<double>(column) / branch_.sides;
+    const DVec3& side = line.side;
+    vertex.tangent = normalized_or(side - vertex.normal * glm::dot(side, vertex.normal), side);
+    vertex.around = static_cast<double>(index) / branch_.sides;
     const double up = glm::distance(vertex.position, line.top);
     vertex.v = line.end - up;
     vertex.along = std::max(vertex.v, 0.0);
@@ -340,11 +348,8 @@ CollarVertex CollarMaker::web(uint32_t column, double share, double row_radius) 
 }
 
 // The parent's picture, where it would be if the parent's bark went on up to there.
-void CollarMaker::dress_as_host(CollarVertex& vertex) const {
-    size_t hint = span_;
-    const BarkPlace at = locate(host_, vertex.position, hint);
-    vertex.tangent = normalized_or(at.side - vertex.normal * glm::dot(at.side, vertex.normal),
-                                   any_perpendicular(vertex.normal));
+void CollarMaker::dress_as_host(CollarVertex& vertex, const BarkPlace& at) const {
+    vertex.tangent = normalized_or(at.side - vertex.normal * glm::dot(at.side, vertex.normal), at.side);
     // Not across the parent's seam: on either side of it the picture goes on from the branch's middle.
     const double rounds = at.corner / host_.sides;
     vertex.around = rounds + std::round(middle_ / host_.sides - rounds);
@@ -372,29 +377,45 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
     for (size_t i = 0; i < collar.next_ring; i++)
         slant += branch_.rings[i].along > first + gap && branch_.rings[i].along < until - gap;
     slant = std::min(slant, 3u);
-    const auto row = [&](double share, bool as_host) {
-        const double radius = own + (1.0 - share) * (1.0 - share) * down;
-        for (uint32_t column = 0; column <= branch_.sides; column++) {
-            out.push_back(web(column, share, radius));
-            if (as_host) dress_as_host(out.back());
-        }
+    // The last column is the first one, a round further.
+    const auto close_row = [&](bool as_host) {
+        out.push_back(out[out.size() - branch_.sides]);
+        if (!as_host) out.back().around = 1.0;
         collar.rows++;
     };
+    const auto row = [&](double share) {
+        const double radius = own + (1.0 - share) * (1.0 - share) * down;
+        for (uint32_t j = 0; j < branch_.sides; j++)
+            out.push_back(web(j, share, radius));
+    };
     const bool thick = own > kThickRadius;
-    row(0.0, true);
-    row(thick ? 1.0 / 3.0 : 0.5, false);
-    row(thick ? 1.0 / 3.0 : 0.5, true);
-    if (thick) row(2.0 / 3.0, false);
-    row(1.0, false);
+    const double turn = thick ? 1.0 / 3.0 : 0.5;  // where the picture changes
+    row(0.0);
+    for (uint32_t j = 0; j < branch_.sides; j++)
+        dress_as_host(out[out.size() - branch_.sides + j], lines_[j].at);
+    close_row(true);
+    row(turn);
+    close_row(false);
+    size_t hint = span_;
+    for (uint32_t j = 0; j < branch_.sides; j++) {
+        out.push_back(out[out.size() - branch_.sides - 1]);
+        dress_as_host(out.back(), locate(host_, out.back().position, hint));
+    }
+    close_row(true);
+    if (thick) {
+        row(2.0 / 3.0);
+        close_row(false);
+    }
+    row(1.0);
+    close_row(false);
     for (uint32_t i = 1; i <= slant; i++) {
         const double share = static_cast<double>(i) / (slant + 1);
         double radius = 0.0;
         for (uint32_t j = 0; j < branch_.sides; j++)
             radius += radius_at(lines_[j].end + (until - lines_[j].end) * share) / branch_.sides;
-        for (uint32_t column = 0; column <= branch_.sides; column++) {
-            const uint32_t index = column % branch_.sides;
+        for (uint32_t index = 0; index < branch_.sides; index++) {
             const double along = lines_[index].end + (until - lines_[index].end) * share;
-            CollarVertex vertex = web(column, 1.0, radius);
+            CollarVertex vertex = web(index, 1.0, radius);
             vertex.position = point_at(index, along);
             vertex.normal = outward_at(index, along);
             const DVec3 side = side_at(index, along);
@@ -404,7 +425,7 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
             vertex.radius = radius;
             out.push_back(vertex);
         }
-        collar.rows++;
+        close_row(false);
     }
     return collar;
 }
