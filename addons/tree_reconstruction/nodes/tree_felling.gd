@@ -20,6 +20,8 @@ const _COPIED: PackedStringArray = [
 	"collision_layer",
 	"collision_mask",
 ]
+# Metres between the flat ends of the piece's shape and the stump's.
+const _GAP: float = 0.03
 # Of a node's flags in a skeleton.
 const _TRUNK: int = 1
 
@@ -96,14 +98,32 @@ static func _parts_of(tree: TreeInstance3D) -> Array[Dictionary]:
 	return parts
 
 
-# The round end of the piece's first capsule would reach into the round end of the stump's.
+# The piece's first shape must not reach into the stump's last one, which would throw it off: round
+# ends would, and flat ones that touch exactly are not sure to be taken for apart.
 static func _shorten(parts: Array[Dictionary], cut: Vector3) -> void:
 	for part: Dictionary in parts:
-		if not part.has("radius") or not (part["from"] as Vector3).is_equal_approx(cut):
-			continue
-		var way: Vector3 = part["to"] - part["from"]
-		var most: float = maxf(way.length() - 0.01, 0.0)
-		part["from"] += way.normalized() * minf(2.0 * part["radius"], most)
+		if part.has("points"):
+			_lift_end(part, cut)
+		elif (part["from"] as Vector3).is_equal_approx(cut):
+			var way: Vector3 = part["to"] - part["from"]
+			var most: float = maxf(way.length() - 0.01, 0.0)
+			part["from"] += way.normalized() * minf(2.0 * part["radius"], most)
+
+
+static func _lift_end(part: Dictionary, cut: Vector3) -> void:
+	var points: PackedVector3Array = part["points"]
+	@warning_ignore("integer_division")
+	var sides: int = points.size() / 2
+	var low: Vector3 = Vector3.ZERO
+	var high: Vector3 = Vector3.ZERO
+	for i: int in sides:
+		low += points[i] / sides
+		high += points[sides + i] / sides
+	if low.distance_to(cut) > 1e-3:
+		return
+	for i: int in sides:
+		points[i] += (high - low) * minf(_GAP / low.distance_to(high), 0.5)
+	part["points"] = points
 
 
 # Puts the body where the wood's centre of mass is, along its principal axes, so that it turns as
