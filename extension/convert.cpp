@@ -17,12 +17,14 @@ using treerec::DVec3;
 using treerec::NodeId;
 
 const int64_t kSurfaceFlags = (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
-                              (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT);
+                              (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT) |
+                              (int64_t(Mesh::ARRAY_CUSTOM_RG_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT);
 
 const int64_t kJoinedLeafFlags =
     (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
     (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT) |
-    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT);
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT) |
+    (int64_t(Mesh::ARRAY_CUSTOM_RG_HALF) << Mesh::ARRAY_FORMAT_CUSTOM3_SHIFT);
 
 std::string to_std(const String& p_text) {
     const CharString bytes = p_text.utf8();
@@ -73,6 +75,9 @@ Array to_surface_arrays(const treerec::Mesh& p_mesh) {
     }
     if (!p_mesh.radii.empty()) {
         arrays[Mesh::ARRAY_CUSTOM1] = copy_values<PackedFloat32Array>(p_mesh.radii);
+    }
+    if (!p_mesh.wind.empty()) {
+        arrays[Mesh::ARRAY_CUSTOM2] = copy_values<PackedFloat32Array>(p_mesh.wind);
     }
     PackedInt32Array indices;
     indices.resize(int64_t(p_mesh.indices.size()));

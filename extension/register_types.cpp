@@ -8,6 +8,7 @@
 #include "leaf_rule.h"
 #include "tree_edit.h"
 #include "tree_reconstruction.h"
+#include "wind_globals.h"
 
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
@@ -69,6 +70,7 @@ extern "C" GDExtensionBool GDE_EXPORT tree_reconstruction_library_init(
     const GDExtensionBinding::InitObject binding(p_get_proc_address, p_library, r_initialization);
     binding.register_initializer(initialize_tree_reconstruction);
     binding.register_terminator(terminate_tree_reconstruction);
+    binding.register_startup_callback(add_wind_globals);
     binding.set_minimum_library_initialization_level(MODULE_INITIALIZATION_LEVEL_SCENE);
     return binding.init();
 }

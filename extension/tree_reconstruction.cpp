@@ -13,6 +13,7 @@
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 #include "tree/measure.h"
+#include "wind_globals.h"
 
 using namespace godot;
 using treerec::NodeId;
@@ -317,6 +318,10 @@ Array TreeReconstruction::build_leaf_card_arrays(int p_lod) {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] { return to_surface_arrays(treerec::build_leaf_card(p_lod)); });
+}
+
+Dictionary TreeReconstruction::get_wind_globals() {
+    return ::get_wind_globals();
 }
 
 PackedStringArray TreeReconstruction::get_leaf_preset_names() {

@@ -120,6 +120,7 @@ class TreeReconstruction : public godot::Resource {
     godot::Array build_joined_leaf_arrays(int p_lod) const;
     static godot::Array build_leaf_card_arrays(int p_lod);
     static godot::PackedStringArray get_leaf_preset_names();
+    static godot::Dictionary get_wind_globals();
 
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);

@@ -174,7 +174,10 @@ Array TreeReconstruction::build_leaf_form_arrays(int p_lod) const {
     });
 }
 
-static PackedByteArray to_bytes(const treerec::MeshArray<std::array<int8_t, 4>>& p_values) {
+// Four bytes for each vertex.
+template <typename T>
+static PackedByteArray to_bytes(const treerec::MeshArray<T>& p_values) {
+    static_assert(sizeof(T) == 4);
     PackedByteArray bytes;
     bytes.resize(int64_t(4 * p_values.size()));
     std::memcpy(bytes.ptrw(), p_values.data(), 4 * p_values.size());
@@ -192,6 +195,7 @@ Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
         if (!arrays.is_empty()) {
             arrays[Mesh::ARRAY_CUSTOM1] = to_bytes(joined.lengthwise);
             arrays[Mesh::ARRAY_CUSTOM2] = to_bytes(joined.across);
+            arrays[Mesh::ARRAY_CUSTOM3] = to_bytes(joined.wind);
         }
         return arrays;
     });

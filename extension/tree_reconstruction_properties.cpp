@@ -279,6 +279,8 @@ void TreeReconstruction::_bind_methods() {
                          &TreeReconstruction::build_joined_leaf_arrays, DEFVAL(0));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("build_leaf_card_arrays", "lod"),
                                 &TreeReconstruction::build_leaf_card_arrays, DEFVAL(0));
+    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_wind_globals"),
+                                &TreeReconstruction::get_wind_globals);
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_leaf_preset_names"),
                                 &TreeReconstruction::get_leaf_preset_names);
 

@@ -53,6 +53,17 @@ func _enter_tree() -> void:
 	set_process(true)
 
 
+# The user switched it on in the project's settings, or off.
+func _enable_plugin() -> void:
+	if ClassDB.class_exists(&"TreeReconstruction") and _load("wind_globals.gd").call(&"add") > 0:
+		_save_settings()
+
+
+func _disable_plugin() -> void:
+	if ClassDB.class_exists(&"TreeReconstruction") and _load("wind_globals.gd").call(&"remove") > 0:
+		_save_settings()
+
+
 func _exit_tree() -> void:
 	if _session == null:
 		return
@@ -129,6 +140,12 @@ func _on_said(sentence: String, kind: int) -> void:
 		EditorInterface.get_editor_toaster().push_toast(sentence, EditorToaster.SEVERITY_WARNING)
 	elif kind == _session.Kind.ERROR:
 		EditorInterface.get_editor_toaster().push_toast(sentence, EditorToaster.SEVERITY_ERROR)
+
+
+static func _save_settings() -> void:
+	var error: Error = ProjectSettings.save()
+	if error != OK:
+		push_error("The project's settings could not be saved: %s." % error_string(error))
 
 
 static func _load(path: String) -> GDScript:

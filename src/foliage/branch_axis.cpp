@@ -15,6 +15,7 @@ constexpr double kTwigRadius = 0.015;  // metres; below it nobody sees how a twi
 struct Knot {
     DVec3 position;
     double radius;
+    double way;  // metres of chords up to it
 };
 
 // Direction at the knot between two chords: nearer to that of the shorter, as a circle through the knots has.
@@ -56,17 +57,22 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
     double room = 0.3 * departure.share * departure.reach;
     const NodeId start = branch.attach != kNoNode ? branch.attach : nodes[0];
     size_t next_node = branch.attach != kNoNode ? 0 : 1;
-    Knot from{tree.node(start).position, tree.node(nodes[0]).radius}, to{};
+    Knot from{tree.node(start).position, tree.node(nodes[0]).radius, 0.0}, to{};
     const DVec3 tip = tree.node(nodes.back()).position;
+    // Of the last node looked at, knot or not.
+    double way = 0.0;
+    DVec3 before = from.position;
     const auto next_knot = [&](const Knot& last_knot, Knot& knot) {
         while (next_node < nodes.size()) {
             const Node& node = tree.node(nodes[next_node++]);
+            way += glm::distance(node.position, before);
+            before = node.position;
             const double apart = std::max({0.25 * std::min(last_knot.radius, node.radius), room, least});
             const bool last = next_node == nodes.size();
             if (glm::distance(node.position, last_knot.position) <= (last ? least : apart)) continue;
             // Just below the tip, the tip stands for both.
             if (!last && glm::distance(node.position, tip) <= apart) continue;
-            knot = {node.position, node.radius};
+            knot = {node.position, node.radius, way};
             room = 0.0;
             return true;
         }
@@ -105,7 +111,7 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
                             portable::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
         const int pieces = std::clamp(static_cast<int>(std::ceil(bend / kBendPerPoint)), 1, kMostPieces);
         for (int i = 1; i <= pieces; i++) {
-            AxisPoint point{to.position, end_direction, to.radius, 0.0};
+            AxisPoint point{to.position, end_direction, to.radius, 0.0, to.way};
             if (i < pieces) {
                 const double t = static_cast<double>(i) / pieces, t2 = t * t, t3 = t2 * t;
                 const DVec3 m0 = start_direction * start_speed, m1 = end_direction * length;
@@ -116,6 +122,7 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
                                       (3.0 * t2 - 4.0 * t + 1.0) * m0 + (3.0 * t2 - 2.0 * t) * m1,
                                   chord);
                 point.radius = from.radius + (to.radius - from.radius) * t;
+                point.way = from.way + (to.way - from.way) * t;
             }
             const double step = glm::distance(point.position, points.back().position);
             if (step <= 0.5 * least) continue;
@@ -144,7 +151,8 @@ AxisPoint axis_at(const std::vector<AxisPoint>& points, double along, size_t& hi
     const double t = std::clamp((along - a.along) / (b.along - a.along), 0.0, 1.0);
     return {a.position + (b.position - a.position) * t,
             normalized_or(a.direction + (b.direction - a.direction) * t, a.direction),
-            a.radius + (b.radius - a.radius) * t, a.along + (b.along - a.along) * t};
+            a.radius + (b.radius - a.radius) * t, a.along + (b.along - a.along) * t,
+            a.way + (b.way - a.way) * t};
 }
 
 }  // namespace treerec

@@ -9,10 +9,11 @@
 namespace treerec {
 
 struct AxisPoint {
-    DVec3 position;   // metres, tree space
-    DVec3 direction;  // unit, towards the tip
-    double radius;    // metres
-    double along;     // metres from the branch's start
+    DVec3 position;    // metres, tree space
+    DVec3 direction;   // unit, towards the tip
+    double radius;     // metres
+    double along;      // metres from the branch's start
+    double way = 0.0;  // the same along the straight chords between nodes
 };
 
 // Points along a cubic through the branch's nodes, dense where it bends, in order; the first is where the

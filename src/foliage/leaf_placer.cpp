@@ -46,6 +46,7 @@ LeafPlacer::LeafPlacer(const Tree& t, const LeafRules& r, uint64_t s)
       rules(r),
       list(list_branches(t)),
       crown(measure_crown(t)),
+      wind(t, list, crown.height),
       size(scaled(r, crown.height)),
       seed(s) {}
 
@@ -93,6 +94,8 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     const double stout = size.maximum_radius > 0.0 ? at.radius / size.maximum_radius : 1.0;
     leaf.stiffness = static_cast<float>(std::clamp(stout, 0.0, 1.0));
     leaf.sway = static_cast<float>(crown.sway(at.position));
+    leaf.wind = wind.codes(static_cast<size_t>(list.branch_of[static_cast<size_t>(tip)]), at.way,
+                           position - at.position);
     leaf.occlusion = static_cast<float>(0.35 + 0.65 * crown.openness(position));
     leaf.terminal = terminal ? 1.0f : 0.0f;
     const double hold = number_of(branch_key ^ kFallKey, number);

@@ -7,6 +7,7 @@
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
 #include "foliage/leaves.h"
+#include "foliage/wind.h"
 #include "tree/branches.h"
 #include "tree/tree.h"
 
@@ -22,6 +23,7 @@ struct LeafPlacer {
     const LeafRules& rules;
     const BranchList list;
     const Crown crown;
+    const WindGroups wind;
     const ScaledLeaf size;
     const uint64_t seed;
 

@@ -19,9 +19,10 @@ struct LeafPlacement {
     Vec3 x, y, z;
     Vec3 outward;
     float size = 0.1f;       // metres
+    Vec2 wind{0.0f};         // WindGroups::codes() of limb and bough (INSTANCE_CUSTOM.y, w)
     float phase = 0.0f;      // 0..1 (INSTANCE_CUSTOM.x)
     float hue = 0.0f;        // 0..1 (INSTANCE_CUSTOM.z)
-    float stiffness = 0.0f;  // 0..1 of its branch (INSTANCE_CUSTOM.w)
+    float stiffness = 0.0f;  // 0..1 of its branch
     float sway = 0.0f;       // 0..1, the bark's COLOR.r at its place
     float occlusion = 1.0f;  // 1 open to the sky .. 0 deep in the crown
     float terminal = 0.0f;   // 1 at a twig's end, else 0

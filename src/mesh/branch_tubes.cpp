@@ -111,7 +111,8 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const double slack = kAxisSlack * (1 << level);
     const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
-        out.push_back({point.position, point.direction, std::max(point.radius, least), point.along});
+        out.push_back({point.position, point.direction, std::max(point.radius, least), point.along,
+                       DVec3(0.0), point.way});
     };
     // Whether the straight way from one point to another passes by a point between.
     const auto misses = [&](size_t from, size_t to) {
@@ -290,6 +291,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     if (options.pivots) {
         mesh.custom0.resize(vertices);
         mesh.radii.resize(vertices);
+        mesh.wind.resize(vertices);
     }
     mesh.indices.resize(indices);
     parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {

@@ -18,7 +18,7 @@ struct TubeOptions {
     // whatever their width, instead of as many as fit around it and a seam that the bark's shader blends
     // over.
     bool whole_repeats = false;
-    bool pivots = true;  // custom0 and radii are filled; files have no place for them
+    bool pivots = true;  // custom0, radii and wind are filled; files have no place for them
 };
 
 // Vertices carry normals, tangents, UVs (u around in repeats, v along in metres), wind channels.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "foliage/wind.h"
 
 namespace treerec {
 
@@ -39,6 +40,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
     mesh.indices.resize(leaves.size() * corner_indices);
     joined.lengthwise.resize(vertices);
     joined.across.resize(vertices);
+    joined.wind.resize(vertices);
     size_t v = 0, index = 0;
     for (size_t i = 0; i < leaves.size(); i++) {
         if (progress && i % kLeavesBetweenChecks == 0) progress->check();
@@ -48,6 +50,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
         const Vec4 petiole(leaf.position, leaf.phase);
         const std::array<int8_t, 4> lengthwise = to_bytes(leaf.y, leaf.stiffness);
         const std::array<int8_t, 4> across = to_bytes(leaf.x, leaf.hue);
+        const std::array<uint16_t, 2> wind = {half_code(leaf.wind.x), half_code(leaf.wind.y)};
         for (size_t k = 0; k < corner_indices; k++)
             mesh.indices[index++] = static_cast<uint32_t>(v + card.indices[k]);
         for (size_t k = 0; k < corners; k++, v++) {
@@ -59,6 +62,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
             mesh.custom0[v] = petiole;
             joined.lengthwise[v] = lengthwise;
             joined.across[v] = across;
+            joined.wind[v] = wind;
         }
     }
     return joined;

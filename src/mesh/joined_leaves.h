@@ -19,6 +19,8 @@ struct JoinedLeaves {
     // By vertex, in 1/127: the way along the leaf, unit, and the stiffness of its branch; the way across it,
     // and its hue.
     MeshArray<std::array<int8_t, 4>> lengthwise, across;
+    // By vertex, halves: WindGroups::codes() of limb and bough.
+    MeshArray<std::array<uint16_t, 2>> wind;
 };
 
 // The card at every leaf. Empty without leaves. Throws Error for more vertices than an index can count, or

@@ -94,9 +94,9 @@ std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves) {
             *out++ = 0.5f + 0.5f * outward[axis];
         *out++ = leaf.occlusion;
         *out++ = leaf.phase;
-        *out++ = leaf.size;
+        *out++ = leaf.wind.x;
         *out++ = leaf.hue;
-        *out++ = leaf.stiffness;
+        *out++ = leaf.wind.y;
     }
     return buffer;
 }

@@ -36,7 +36,8 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const 
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, int level);
 
 // Godot's MultiMesh buffer: per leaf 12 floats of transform (3 rows of 4), 4 of colour (the outward direction
-// in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, size, hue, stiffness).
+// in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, wind code of the limb,
+// hue, wind code of the bough; see foliage/wind.h).
 std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves);
 
 }  // namespace treerec

@@ -7,6 +7,7 @@
 
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
+#include "foliage/wind.h"
 #include "geometry/portable_math.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/collar.h"
@@ -61,6 +62,7 @@ struct Builder {
     const TubeOptions& options;
     const BranchList list;
     const Crown crown;
+    const WindGroups wind;
     const double least;                    // metres: the smallest radius and half the smallest ring distance
     std::vector<Tube> tubes;               // by branch
     std::vector<std::vector<Ring>> rings;  // by chunk of branches
@@ -73,6 +75,7 @@ struct Builder {
           options(o),
           list(list_branches(t)),
           crown(measure_crown(t)),
+          wind(t, list, crown.height),
           least(kLeastShare * crown.coordinate),
           tubes(list.branches.size()),
           rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
@@ -117,6 +120,8 @@ struct Builder {
     float phase_of(size_t index) const {
         return static_cast<float>(branch_phase(list.nodes[list.branches[index].end - 1]));
     }
+    // The wind's codes at a place of the drawn tube, so many metres along.
+    Vec2 wind_at(size_t index, double along, const DVec3& place) const;
     double repeats_of(size_t index, double radius) const;
     void emit(size_t index, Mesh& mesh) const;
     bool too_thin(const Branch& branch) const;

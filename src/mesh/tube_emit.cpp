@@ -33,6 +33,19 @@ double Builder::repeats_of(size_t index, double radius) const {
     return std::max(1.0, std::round(2.0 * kPi * rings_of(index)[1].radius / width));
 }
 
+Vec2 Builder::wind_at(size_t index, double along, const DVec3& place) const {
+    const Ring* const run = rings_of(index);
+    const Ring* const end = run + tubes[index].rings;
+    const Ring* upper =
+        std::upper_bound(run, end, along, [](double a, const Ring& r) { return a < r.along; });
+    upper = std::clamp(upper, run + 1, end - 1);
+    const Ring& lower = upper[-1];
+    const double t =
+        std::clamp((along - lower.along) / std::max(upper->along - lower.along, 1e-30), 0.0, 1.0);
+    const DVec3 centre = lower.centre + (upper->centre - lower.centre) * t;
+    return wind.codes(index, lower.way + (upper->way - lower.way) * t, place - centre);
+}
+
 void Builder::emit(size_t index, Mesh& mesh) const {
     const Branch& branch = list.branches[index];
     const Tube& tube = tubes[index];
@@ -51,6 +64,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     }
     const double per_side = 1.0 / sides;
     size_t vertex = tube.first_vertex;
+    Vec2 code{0.0f};  // the wind's, of the vertex that is put next
     const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double around,
                          double repeats, double v, double radius, const Vec4& color) {
         mesh.positions[vertex] = Vec3(position);
@@ -61,6 +75,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         if (options.pivots) {
             mesh.custom0[vertex] = custom0;
             mesh.radii[vertex] = static_cast<float>(radius);
+            mesh.wind[vertex] = code;
         }
         vertex++;
     };
@@ -78,6 +93,9 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
         const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
         const double light = (bark + (own - bark) * from.own) * crease;
+        // The foot moves as the bark that it stands on.
+        code =
+            foot ? wind_at(host, from.host_along, from.position) : wind_at(index, from.along, from.position);
         const bool as_host = foot || (i >= 2 * stride && i < 3 * stride);
         put(from.position, from.normal, from.tangent, from.around,
             repeats_of(as_host ? host : index, from.radius), from.v, from.radius,
@@ -103,6 +121,8 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         const double shown = flares ? mean_radius(tube.flare, ring) : ring.radius;
         const double ring_repeats = repeats_of(index, shown);
         const double blend = i == 0 ? 0.0 : blend_at(ring);
+        const bool free = wind.is_free(index, ring.way);
+        code = wind.codes(index, ring.way);
         for (uint32_t j = 0; j < stride; j++) {
             const DVec3 radial = ring.x * circle[j].x + y * circle[j].y;
             DVec3 tangent = (y * circle[j].x - ring.x * circle[j].y);
@@ -136,10 +156,12 @@ void Builder::emit(size_t index, Mesh& mesh) const {
                 outward = normalized_or(outward + away * blend, outward);
                 tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
             }
+            if (!free) code = wind.codes(index, ring.way, position - ring.centre);
             put(position, outward, tangent, per_side * j, ring_repeats, v, shown, corner_color);
         }
     }
     // The tip: a dome, or a point as high as the tip is wide.
+    code = wind.codes(index, last_ring.way);
     const DVec3 normal = last_ring.normal, x = last_ring.x, y = last_ring.y();
     const Vec4 color = color_at(last_ring.centre, length,
                                 light_at(tube, run[0].radius, last_ring.centre, length, 1.0), phase);

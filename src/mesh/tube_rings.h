@@ -13,8 +13,9 @@ struct Ring {
     DVec3 centre;
     DVec3 normal;  // unit, towards the tip
     double radius;
-    double along;  // from the branch's start
-    DVec3 x{0.0};  // unit, across the normal: where the ring's first corner lies; set by frame_rings()
+    double along;      // from the branch's start
+    DVec3 x{0.0};      // unit, across the normal: where the ring's first corner lies; set by frame_rings()
+    double way = 0.0;  // AxisPoint::way
     DVec3 y() const { return glm::cross(normal, x); }  // a quarter turn on
 };
 

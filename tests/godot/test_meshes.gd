@@ -93,7 +93,9 @@ func test_leaves_sit_on_the_tree() -> void:
 		check(box.has_point(place), "A leaf hangs in the air at %s." % place)
 		for channel: int in range(12, FLOATS_PER_LEAF):
 			var value: float = buffer[i + channel]
-			check(value >= 0.0 and value <= 10.0, "Channel %d is %f." % [channel, value])
+			# Codes of the wind are as large as a half can be.
+			var most: float = 65504.0 if channel in [17, 19] else 10.0
+			check(value >= 0.0 and value <= most, "Channel %d is %f." % [channel, value])
 		if failures.size() > 3:
 			return
 

@@ -138,7 +138,6 @@ func test_all_leaves_are_there() -> void:
 		check_near(arrays[Mesh.ARRAY_CUSTOM0][at + 3], custom[0], 1e-3, "the phase")
 		var bytes: PackedByteArray = arrays[Mesh.ARRAY_CUSTOM1]
 		check_near(bytes.decode_s8(at + 1) / 127.0, frame.basis.y.normalized().y, 0.01, "its way")
-		check_near(bytes.decode_s8(at + 3) / 127.0, custom[3], 0.01, "the stiffness")
 		bytes = arrays[Mesh.ARRAY_CUSTOM2]
 		check_near(bytes.decode_s8(at + 3) / 127.0, custom[2], 0.01, "the hue")
 

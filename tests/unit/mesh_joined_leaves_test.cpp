@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "foliage/wind.h"
 #include "mesh/leaf_cards.h"
 #include "random_tree.h"
 
@@ -42,7 +43,9 @@ TEST(JoinedLeaves, SayOfEachVertexWhatTheBufferSaysOfItsLeaf) {
                     ASSERT_NEAR(joined.across[v][axis], 127.0f * leaves[i].x[static_cast<int>(axis)], 0.51f);
                 }
                 ASSERT_NEAR(joined.across[v][3], 127.0f * b[18], 0.51f);
-                ASSERT_NEAR(joined.lengthwise[v][3], 127.0f * b[19], 0.51f);
+                ASSERT_NEAR(joined.lengthwise[v][3], 127.0f * leaves[i].stiffness, 0.51f);
+                ASSERT_EQ(joined.wind[v][0], half_code(b[17]));
+                ASSERT_EQ(joined.wind[v][1], half_code(b[19]));
             }
             for (size_t k = 0; k < card.indices.size(); k++)
                 ASSERT_EQ(joined.mesh.indices[i * card.indices.size() + k], i * corners + card.indices[k]);

@@ -27,12 +27,14 @@ static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
 ## A copy of [param material] with its shader and textures in itself, and with [param values] set
 ## where its shader has them. A material that has nothing of the addon is returned as it is.
 ## [param pictures] are those of [method plain_pictures]. [param joined] is whether the leaves are
-## one mesh, or the instances of a multimesh.
+## one mesh, or the instances of a multimesh. With [param global_wind] its wind is that of the
+## project's shader globals, which must be there then.
 static func plain(
 	material: Material,
 	values: Dictionary[StringName, Variant],
 	pictures: Dictionary[String, Texture2D],
-	joined: bool = true
+	joined: bool = true,
+	global_wind: bool = false
 ) -> Material:
 	var shaded: ShaderMaterial = material as ShaderMaterial
 	if shaded == null or shaded.shader == null or not _is_addons(shaded.shader):
@@ -40,7 +42,7 @@ static func plain(
 	var made: ShaderMaterial = ShaderMaterial.new()
 	made.resource_name = material.resource_path.get_file().get_basename()
 	made.shader = Shader.new()
-	made.shader.code = _code_of(shaded.shader, joined)
+	made.shader.code = _code_of(shaded.shader, joined, global_wind)
 	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
 		var value: Variant = shaded.get_shader_parameter(uniform.name)
 		if value is Texture2D and _is_addons(value):
@@ -58,7 +60,7 @@ static func plain(
 
 
 # Its code with all that it includes, for a tree without a TreeInstance3D.
-static func _code_of(shader: Shader, joined: bool) -> String:
+static func _code_of(shader: Shader, joined: bool, global_wind: bool) -> String:
 	var include: RegEx = RegEx.create_from_string('#include\\s+"([^"]+)"')
 	var code: String = shader.code
 	var found: RegExMatch = include.search(code)
@@ -72,11 +74,11 @@ static func _code_of(shader: Shader, joined: bool) -> String:
 			+ code.substr(found.get_end())
 		)
 		found = include.search(code)
-	if not joined:
-		return code
 	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
 	var end: int = type.search(code).get_end()
-	return code.left(end) + "\n#define TREE_BAKED\n" + code.substr(end)
+	var defines: String = "\n#define TREE_BAKED\n" if joined else "\n"
+	defines += "#define TREE_WIND_%s\n" % ("GLOBALS" if global_wind else "LOCAL")
+	return code.left(end) + defines + code.substr(end)
 
 
 static func _plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:

@@ -26,7 +26,7 @@ enum Form {
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 # How far the wind moves a tree beyond its box, over its height.
-const _SWAY: float = 0.15
+const _SWAY: float = 0.25
 const LeavesApart := preload("leaves_apart.gd")
 const Lightmap := preload("lightmap.gd")
 const PlainMaterials := preload("plain_materials.gd")
@@ -57,6 +57,12 @@ var leaves: bool = true
 
 ## Whether the wind moves it.
 var wind: bool = true
+
+## Whether its wind is that of the project, as of a [TreeInstance3D]: it follows [TreeWind] and
+## gives way to [TreePusher3D]. Then it needs the project's shader globals
+## [code]tree_wind_…[/code], which the addon's plugin adds. Otherwise it has a wind of its own, in
+## its materials.
+var global_wind: bool = false
 
 ## Whether there is a [StaticBody3D] of capsules along its stout wood.
 var collision: bool = true
@@ -199,11 +205,13 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 ## the leaves are nodes of their own. They share their materials and their box.
 func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var bark: Material = PlainMaterials.plain(_bark_of(tree), values, parts.pictures)
+	var bark: Material = PlainMaterials.plain(
+		_bark_of(tree), values, parts.pictures, true, global_wind
+	)
 	var leaf: Material = (
 		null
 		if _are_leaves_apart()
-		else PlainMaterials.plain(_leaf_of(tree), values, parts.pictures)
+		else PlainMaterials.plain(_leaf_of(tree), values, parts.pictures, true, global_wind)
 	)
 	var meshes: Array[ArrayMesh] = []
 	for level: int in parts.bark.size():
@@ -225,7 +233,9 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 
 func _plain_card(tree: TreeReconstruction, parts: Parts, meshes: Array[ArrayMesh]) -> ArrayMesh:
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var card: ArrayMesh = impostor.make_mesh(PlainMaterials.plain(impostor.material, values, {}))
+	var card: ArrayMesh = impostor.make_mesh(
+		PlainMaterials.plain(impostor.material, values, {}, true, global_wind)
+	)
 	# The engine measures distances from the middle of the box.
 	if not meshes.is_empty():
 		card.custom_aabb = meshes[0].custom_aabb
@@ -251,7 +261,9 @@ func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[GeometryInsta
 		return made
 	var joined: bool = form == Form.JOINED
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var material: Material = PlainMaterials.plain(_leaf_of(tree), values, parts.pictures, joined)
+	var material: Material = PlainMaterials.plain(
+		_leaf_of(tree), values, parts.pictures, joined, global_wind
+	)
 	for level: int in parts.leaves.size():
 		var node: GeometryInstance3D
 		if joined:

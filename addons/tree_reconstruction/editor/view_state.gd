@@ -52,6 +52,11 @@ var wind: bool = false:
 	set(value):
 		wind = value
 		changed.emit()
+## Which of the wind's channels the tree is coloured by: a TreeWind.Channel. Not kept.
+var channel: int = 0:
+	set(value):
+		channel = value
+		changed.emit()
 ## The scan's axes at the tree's foot.
 var axes: bool = false:
 	set(value):

@@ -25,7 +25,7 @@ enum CollisionKind {
 const Collision := preload("tree_collision.gd")
 const Felling := preload("tree_felling.gd")
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
-const _WIND_MARGIN: float = 0.15
+const _WIND_MARGIN: float = 0.25
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 # What the leaves take over from this node.
 const _SHARED: PackedStringArray = [

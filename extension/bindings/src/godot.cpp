@@ -18,6 +18,7 @@ namespace {
 
 GDExtensionBinding::Callback initializer = nullptr;
 GDExtensionBinding::Callback terminator = nullptr;
+GDExtensionMainLoopStartupCallback startup = nullptr;
 GDExtensionInitializationLevel minimum_level = GDEXTENSION_INITIALIZATION_CORE;
 
 // What must be released while the engine is still there. The names stay where they are, and get their text
@@ -193,6 +194,11 @@ void GDExtensionBinding::InitObject::register_terminator(Callback p_callback) co
     internal::terminator = p_callback;
 }
 
+void GDExtensionBinding::InitObject::register_startup_callback(
+    GDExtensionMainLoopStartupCallback p_callback) const {
+    internal::startup = p_callback;
+}
+
 void GDExtensionBinding::InitObject::set_minimum_library_initialization_level(
     ModuleInitializationLevel p_level) const {
     internal::minimum_level = GDExtensionInitializationLevel(p_level);
@@ -208,6 +214,12 @@ GDExtensionBool GDExtensionBinding::InitObject::init() const {
             api.print_error(text.c_str(), __func__, __FILE__, __LINE__, true);
         }
         return false;
+    }
+    if (internal::startup != nullptr) {
+        const auto register_callbacks = reinterpret_cast<GDExtensionInterfaceRegisterMainLoopCallbacks>(
+            get_proc_address("register_main_loop_callbacks"));
+        const GDExtensionMainLoopCallbacks callbacks{internal::startup, nullptr, nullptr};
+        register_callbacks(library, &callbacks);
     }
     initialization->minimum_initialization_level = internal::minimum_level;
     initialization->userdata = nullptr;

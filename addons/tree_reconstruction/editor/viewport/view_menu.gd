@@ -15,6 +15,7 @@ var _session: Session
 var _shortcuts: Shortcuts
 var _actions: Array[StringName] = []
 var _colors: PopupMenu
+var _channels: PopupMenu
 
 
 func _init(session: Session, shortcuts: Shortcuts) -> void:
@@ -33,6 +34,7 @@ func _init(session: Session, shortcuts: Shortcuts) -> void:
 	_colors.id_pressed.connect(
 		func(id: int) -> void: _session.view.point_colors = id as ViewState.PointColors
 	)
+	_channels.id_pressed.connect(func(id: int) -> void: _session.view.channel = id)
 
 
 ## Sets the marks, and the keys as the user has set them.
@@ -49,6 +51,8 @@ func update() -> void:
 			popup.set_item_checked(index, _session.view.get(Actions.SHOWN[action]))
 	for id: int in _colors.item_count:
 		_colors.set_item_checked(id, _session.view.point_colors == id)
+	for id: int in _channels.item_count:
+		_channels.set_item_checked(id, _session.view.channel == id)
 
 
 func _fill() -> void:
@@ -75,6 +79,7 @@ func _fill() -> void:
 		true,
 		tr("Wood that sways is hard to edit, so the wind rests unless this is on.")
 	)
+	_add_channels()
 	_add(&"show_axes", tr("Axes and Height"), true, tr("The tree's axes, with a mark each metre."))
 	_add(&"show_grid", tr("Ground Grid"), true, tr("Squares of one metre, and a person of 1.75 m."))
 	get_popup().add_separator(tr("Look From"))
@@ -98,6 +103,32 @@ func _fill() -> void:
 		tr("Save Picture"),
 		false,
 		tr("Saves what the viewport shows. The folder is set in the editor's settings.")
+	)
+
+
+# In the order of TreeWind.Channel.
+func _add_channels() -> void:
+	_channels = PopupMenu.new()
+	_channels.name = &"WindChannels"
+	_channels.hide_on_checkable_item_selection = false
+	var titles: PackedStringArray = [
+		tr("Off"),
+		tr("Height"),
+		tr("Along the Branch"),
+		tr("Phase"),
+		tr("Ambient Occlusion"),
+		tr("Pivot"),
+		tr("Branch Level"),
+		tr("Limbs"),
+		tr("Boughs"),
+		tr("Motion"),
+	]
+	for title: String in titles:
+		_channels.add_radio_check_item(title)
+	get_popup().add_submenu_node_item(tr("Wind Channels"), _channels, 1001)
+	get_popup().set_item_tooltip(
+		get_popup().item_count - 1,
+		tr("Colors the tree by what its shaders read: to see why it moves as it does.")
 	)
 
 

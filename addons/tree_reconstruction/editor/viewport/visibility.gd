@@ -7,6 +7,7 @@ const Session: GDScript = preload("../session.gd")
 
 var _session: Session
 var _node: TreeInstance3D
+var _channel: int = 0
 
 
 func _init(session: Session) -> void:
@@ -17,6 +18,7 @@ func _init(session: Session) -> void:
 func take(node: TreeInstance3D) -> void:
 	if is_instance_valid(_node) and _node != node:
 		_apply(true, true, _node.wind)
+		_show_channel(0)
 	_node = node
 	update()
 
@@ -25,6 +27,14 @@ func take(node: TreeInstance3D) -> void:
 func update() -> void:
 	if is_instance_valid(_node):
 		_apply(_session.view.mesh, _session.view.leaves, _session.view.wind and _node.wind)
+		_show_channel(_session.view.channel)
+
+
+# Each frame while there is one, since the node sets its materials anew when it was built.
+func _show_channel(channel: int) -> void:
+	if channel != 0 or _channel != 0:
+		TreeWind.show_channel(_node, channel as TreeWind.Channel)
+	_channel = channel
 
 
 func _apply(bark: bool, leaves: bool, wind: bool) -> void:

@@ -32,6 +32,8 @@ class GDExtensionBinding {
 
         void register_initializer(Callback p_callback) const;
         void register_terminator(Callback p_callback) const;
+        // Called when the engine has started, all its servers with it.
+        void register_startup_callback(GDExtensionMainLoopStartupCallback p_callback) const;
         void set_minimum_library_initialization_level(ModuleInitializationLevel p_level) const;
         GDExtensionBool init() const;
     };
