@@ -37,7 +37,6 @@ func _init(session: Session, files: Files) -> void:
 ## Writes the impostor of the edited tree and lets the edited node show it, as one step of the
 ## history. The pictures are taken over many frames.
 func bake_to(path: String) -> void:
-	var tree: TreeReconstruction = _session.tree
 	var node: TreeInstance3D = _session.node
 	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
 	baker.resolution = size.get_selected_metadata()
@@ -45,40 +44,43 @@ func bake_to(path: String) -> void:
 	baker.leaves = node.leaves
 	baker.bark_material = node.bark_material
 	baker.leaf_material = node.leaf_material
-	var job: Jobs.Job = _session.jobs.begin(button.tr("Baking %s") % path.get_file())
-	_follow(baker, job)
+	await _bake(_session, baker, path)
+
+
+# Without the dock, which may go meanwhile: what waits goes with what it belongs to.
+static func _bake(session: Session, baker: TreeImpostorBaker, path: String) -> void:
+	var tree: TreeReconstruction = session.tree
+	var node: TreeInstance3D = session.node
+	var job: Jobs.Job = session.jobs.begin(session.tr("Baking %s") % path.get_file())
+	_follow(session.jobs, baker, job)
 	var made: TreeImpostor = await baker.bake(tree)
-	_session.jobs.finish(job)
+	session.jobs.finish(job)
 	if made == null:
 		# Nothing, where the user cancelled it.
-		_session.say(baker.get_error_message(), _session.Kind.ERROR)
+		session.say(baker.get_error_message(), session.Kind.ERROR)
 		return
 	var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
 	if error != OK:
-		_session.say(
-			button.tr("%s can't be written: %s.") % [path, error_string(error)], _session.Kind.ERROR
+		session.say(
+			session.tr("%s can't be written: %s.") % [path, error_string(error)], session.Kind.ERROR
 		)
 		return
 	made.take_over_path(path)
 	Files.tell_editor(path)
-	_session.say(button.tr("The impostor is in %s.") % path)
+	session.say(session.tr("The impostor is in %s.") % path)
 	# The user may have gone on to another tree meanwhile.
-	if &"impostor" in node and _session.node == node and node.reconstruction == tree:
-		_session.set_value(button.tr("Bake Impostor"), node, &"impostor", made)
+	if is_instance_valid(node) and &"impostor" in node and session.node == node:
+		session.set_value(session.tr("Bake Impostor"), node, &"impostor", made)
 
 
-# Shows how far it is, and ends it when the user asks for that.
-func _follow(baker: TreeImpostorBaker, job: Jobs.Job) -> void:
+# Shows how far it is, and ends it when the user asks for that, or when the plugin goes.
+static func _follow(jobs: Jobs, baker: TreeImpostorBaker, job: Jobs.Job) -> void:
 	var frames: SceneTree = Engine.get_main_loop() as SceneTree
 	await frames.process_frame
-	while job in _session.jobs.get_running():
+	while job in jobs.get_running() and not job.cancelled:
 		job.progress = baker.get_progress()
 		job.stage = baker.get_stage()
-		if job.cancelled:
-			baker.cancel()
-			return
 		await frames.process_frame
-	# The plugin goes, or the work has ended.
 	baker.cancel()
 
 
