@@ -86,6 +86,8 @@ func test_a_felled_tree_falls() -> void:
 	)
 	var cut: int = made.get_trunk_nodes()[2]
 	var place: Vector3 = instance.global_transform * made.get_node_position(cut)
+	# On a stump that collides it might stand.
+	instance.collision = false
 	var body: RigidBody3D = instance.fell(cut, 500.0)
 	check(body != null, "Nothing fell.")
 	var fallen: TreeInstance3D = body.get_child(0)
@@ -216,7 +218,7 @@ func test_a_felled_trunk_comes_to_lie() -> void:
 		check(body.inertia.is_equal_approx(wood["inertia"]), "The inertia is %s." % body.inertia)
 		await _settle(instance)
 		await _settle(body.get_child(0) as TreeInstance3D)
-		body.apply_impulse(Vector3(0.8, 0, 0.5) * body.mass, Vector3(0, 0.5, 0))
+		body.linear_velocity = Vector3(0.8, 0, 0.5)
 		await _simulate(5.0)
 		var speed: Vector3 = body.linear_velocity
 		check(speed.length() < 0.5, "Kind %d still moves: %s" % [kind, speed])
