@@ -10,8 +10,8 @@
 #include "convert.h"
 #include "error.h"
 #include "foliage/foliage_twigs.h"
-#include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
+#include "mesh/levels.h"
 #include "tree/measure.h"
 #include "wind_globals.h"
 
@@ -267,10 +267,8 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
-        treerec::TubeOptions options;
-        options.level = p_lod;
-        return to_surface_arrays(treerec::build_branch_tubes(
-            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), options));
+        return to_surface_arrays(treerec::build_level_bark(
+            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), p_lod));
     });
 }
 

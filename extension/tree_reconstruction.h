@@ -122,6 +122,10 @@ class TreeReconstruction : public godot::Resource {
     static godot::PackedStringArray get_leaf_preset_names();
     static godot::Dictionary get_wind_globals();
 
+    // tree_reconstruction_levels.cpp
+    godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
+                                                      const godot::PackedInt32Array& p_budgets) const;
+
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);
     void take_tree_of(const godot::Ref<TreeReconstruction>& p_other);
@@ -186,6 +190,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_physics();
     static void _bind_viewing();
     static void _bind_variants();
+    static void _bind_levels();
     std::shared_ptr<const treerec::VariantMaker> _get_variant_maker() const;
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);

@@ -16,6 +16,7 @@ namespace {
 constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
 constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
 constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
+constexpr double kStubbiest = 0.15;        // of a widened twig's length: its radius at most
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
 constexpr double kCutRadius = 0.025;       // metres; no branch ends by itself so thick: those are cut flat
 constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
@@ -41,14 +42,6 @@ uint32_t sides_of(double radius, const TubeOptions& options) {
     const int sides =
         static_cast<int>(std::clamp(wanted, static_cast<double>(least), static_cast<double>(most)));
     return static_cast<uint32_t>(std::max(3, sides >> std::clamp(options.level, 0, 8)));
-}
-
-// Far away, thin and short branches are less than a pixel.
-bool Builder::too_thin(const Branch& branch) const {
-    if (options.level <= 0 || branch.attach == kNoNode) return false;
-    const double scale = crown.height * std::ldexp(1.0, std::min(options.level, 16));
-    const Node& first = tree.node(list.nodes[branch.begin]);
-    return first.radius < 0.0002 * scale || branch.length < 0.005 * scale;
 }
 
 // Radii near the parent: hidden at the start, widened where the branch comes out of the bark.
@@ -161,9 +154,13 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     Tube& tube = tubes[index];
     std::vector<Ring>& out = rings[index / kBranchesPerChunk];
     tube.first_ring = static_cast<uint32_t>(out.size());
-    if (!drawn[index]) return;
+    if (widened[index] == 0.0f) return;
     sample_axis(tree, list, branch, 2.0 * least, points);
     if (points.size() < 2) return;
+    // A short twig stays a twig, however many it stands for.
+    for (AxisPoint& point : points)
+        point.radius =
+            std::max(point.radius, std::min(point.radius * widened[index], kStubbiest * branch.length));
     size_t nearest = 0;
     for (NodeId id : list.nodes_of(branch)) {
         const DVec3 position = tree.node(id).position;
@@ -195,7 +192,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.cut = tube.round_tip && out.back().radius >= kCutRadius;
     tube.base = branch.attach == kNoNode && !tube.foot;
-    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
+    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius * widened[index];
     if (tube.point) out.back().radius = least;
     frame_rings(out.data() + tube.first_ring, tube.rings);
 }

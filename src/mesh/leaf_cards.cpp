@@ -13,6 +13,12 @@ namespace {
 
 constexpr size_t kFloatsPerLeaf = 20;
 constexpr float kRoundness = 0.65f;  // how far the normals of baked leaves follow the crown
+constexpr float kMiddle = 0.5f;      // of a card, over its length
+constexpr double kKept = 0.42;       // of the leaves of one level, by the next
+
+double leaf_share(double level) {
+    return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
+}
 
 }  // namespace
 
@@ -61,10 +67,10 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
     return mesh;
 }
 
-std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, int level) {
-    if (level <= 0) return leaves;
-    const double share = portable::pow(0.42, std::min(level, 8));
-    const float growth = static_cast<float>(1.0 / std::sqrt(share));
+std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level) {
+    if (!(level > 0.0)) return leaves;
+    const double share = leaf_share(level);
+    const float growth = leaf_growth(level);
     std::vector<LeafPlacement> kept;
     kept.reserve(static_cast<size_t>(static_cast<double>(leaves.size()) * share) + 2);
     for (size_t i = 0; i < leaves.size(); i++) {
@@ -72,10 +78,15 @@ std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves,
         // stretch of twig keeps its share.
         const double turn = static_cast<double>(i) * 0.61803398874989485;
         if (turn - std::floor(turn) >= share) continue;
-        kept.push_back(leaves[i]);
-        kept.back().size *= growth;
+        LeafPlacement& leaf = kept.emplace_back(leaves[i]);
+        leaf.position -= leaf.y * (kMiddle * leaf.size * (growth - 1.0f));
+        leaf.size *= growth;
     }
     return kept;
+}
+
+float leaf_growth(double level) {
+    return static_cast<float>(1.0 / std::sqrt(leaf_share(level)));
 }
 
 std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves) {

@@ -32,8 +32,11 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card,
 // With the cards of sprays.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const Progress* progress = nullptr);
 
-// Which leaves a level of detail keeps, and how much larger it draws them (fewer, larger, the same area).
-std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, int level);
+// Which leaves a level of detail keeps, and how much larger it draws them: fewer, larger, the same area, and
+// about the same middles, so that the crown keeps its outline. Levels may lie between the whole ones; what
+// one keeps, all finer ones do.
+std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level);
+float leaf_growth(double level);  // how much larger
 
 // Godot's MultiMesh buffer: per leaf 12 floats of transform (3 rows of 4), 4 of colour (the outward direction
 // in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, wind code of the limb,

@@ -13,6 +13,7 @@
 #include "mesh/collar.h"
 #include "mesh/root_flare.h"
 #include "mesh/tube_rings.h"
+#include "mesh/twig_shares.h"
 #include "tree/branches.h"
 
 namespace treerec::tubes {
@@ -67,8 +68,8 @@ struct Builder {
     std::vector<Tube> tubes;               // by branch
     std::vector<std::vector<Ring>> rings;  // by chunk of branches
     std::vector<std::vector<CollarVertex>> collars;  // by chunk of branches
-    std::vector<uint8_t> drawn;                      // by branch: not too thin, or bearing one that is not
-    std::vector<float> node_along;                   // by node id: metres along its branch's axis
+    const std::vector<float> widened;  // by branch: how many times its width it is drawn; 0: not at all
+    std::vector<float> node_along;     // by node id: metres along its branch's axis
 
     Builder(const Tree& t, const TubeOptions& o)
         : tree(t),
@@ -80,14 +81,8 @@ struct Builder {
           tubes(list.branches.size()),
           rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
           collars(rings.size()),
-          drawn(list.branches.size(), 0),
-          node_along(static_cast<size_t>(t.id_end()), 0.0f) {
-        for (size_t i = list.branches.size(); i-- > 0;) {
-            if (!drawn[i] && too_thin(list.branches[i])) continue;
-            drawn[i] = 1;
-            if (list.branches[i].parent >= 0) drawn[static_cast<size_t>(list.branches[i].parent)] = 1;
-        }
-    }
+          widened(share_twigs(t, list, crown, o.twig_level < 0.0 ? o.level : o.twig_level)),
+          node_along(static_cast<size_t>(t.id_end()), 0.0f) {}
 
     const Ring* rings_of(size_t branch) const {
         return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
@@ -124,7 +119,6 @@ struct Builder {
     Vec2 wind_at(size_t index, double along, const DVec3& place) const;
     double repeats_of(size_t index, double radius) const;
     void emit(size_t index, Mesh& mesh) const;
-    bool too_thin(const Branch& branch) const;
 };
 
 }  // namespace treerec::tubes

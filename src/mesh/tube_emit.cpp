@@ -29,7 +29,8 @@ double Builder::light_at(const Tube& tube, double start_radius, const DVec3& cen
 // How often the bark's picture goes around where the branch is so thick.
 double Builder::repeats_of(size_t index, double radius) const {
     const double width = std::max(options.bark_width, 1e-6);
-    if (!options.whole_repeats) return 2.0 * kPi * radius / width;
+    // As the shader finds them from the radius: that of the wood, however wide it is drawn.
+    if (!options.whole_repeats) return 2.0 * kPi * radius / (width * std::max(widened[index], 1.0f));
     return std::max(1.0, std::round(2.0 * kPi * rings_of(index)[1].radius / width));
 }
 
@@ -74,7 +75,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
         if (options.pivots) {
             mesh.custom0[vertex] = custom0;
-            mesh.radii[vertex] = static_cast<float>(radius);
+            mesh.radii[vertex] = static_cast<float>(radius / widened[index]);
             mesh.wind[vertex] = code;
         }
         vertex++;

@@ -170,7 +170,7 @@ func test_leaves_and_mesh_take_their_options() -> void:
 	_undo.undo()
 	_undo.undo()
 	check_equal(_session.tree.seed, 1, "the seed after undo")
-	check_equal(_session.node.lod, 0, "the level after undo")
+	check_equal(_session.node.lod, -1, "the level after undo")
 	await _session.node.rebuilt
 	await tree.process_frame
 	_end()

@@ -44,7 +44,7 @@ const RULE_VALUES: Dictionary[StringName, Array] = {
 	&"seed": [4, 5],
 }
 const NODE_VALUES: Dictionary[StringName, Array] = {
-	&"lod": [0, 1, 2], &"leaves": [true, false], &"wind": [true, false]
+	&"lod": [-1, 0, 2], &"leaves": [true, false], &"wind": [true, false]
 }
 
 var _random: RandomNumberGenerator = RandomNumberGenerator.new()

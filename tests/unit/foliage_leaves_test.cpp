@@ -249,9 +249,12 @@ TEST(Leaves, CoarserLevelsAreSubsets) {
         const std::vector<LeafPlacement> coarser = thin_leaves(all, level);
         size_t at = 0;
         for (const LeafPlacement& leaf : coarser) {
-            while (at < finer.size() && finer[at].position != leaf.position)
+            // About its middle, which stays where it is.
+            while (at < finer.size() && (finer[at].phase != leaf.phase || finer[at].y != leaf.y))
                 at++;
             ASSERT_LT(at, finer.size()) << level;
+            const Vec3 middle = finer[at].position + finer[at].y * (0.5f * finer[at].size);
+            EXPECT_LT(glm::distance(leaf.position + leaf.y * (0.5f * leaf.size), middle), 1e-4f);
         }
         finer = coarser;
     }

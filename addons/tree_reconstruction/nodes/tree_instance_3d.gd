@@ -11,6 +11,8 @@ extends MeshInstance3D
 
 ## Emitted when the mesh and the leaves match the properties again.
 signal rebuilt
+## Emitted when the further levels of detail do so, too.
+signal levels_built
 
 ## What other bodies collide with: see [member collision_kind].
 enum CollisionKind {
@@ -24,10 +26,13 @@ enum CollisionKind {
 
 const Collision := preload("tree_collision.gd")
 const Felling := preload("tree_felling.gd")
+const BuildJob := preload("tree_build_job.gd")
+const LevelNodes := preload("tree_level_nodes.gd")
+const Levels := preload("tree_levels.gd")
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.25
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
-# What the leaves take over from this node.
+# What the leaves and the levels take over from this node.
 const _SHARED: PackedStringArray = [
 	"layers",
 	"cast_shadow",
@@ -59,9 +64,9 @@ static var threaded: bool = true
 		update_configuration_warnings()
 		rebuild()
 
-## The level of detail: 0 is the finest; each further one has about a quarter of the triangles and
-## fewer, larger leaves.
-@export_range(0, 4) var lod: int = 0:
+## -1: the level of detail that suits the distance is shown. Else always this one: 0 is the finest,
+## each further one has about a quarter of the triangles and fewer, larger leaves.
+@export_range(-1, 4) var lod: int = -1:
 	set(value):
 		lod = value
 		rebuild()
@@ -77,6 +82,34 @@ static var threaded: bool = true
 	set(value):
 		wind = value
 		_update_instances()
+
+@export_group("Levels of Detail")
+
+## How many levels take turns by distance, where [member lod] is -1. The first is this node's mesh.
+@export_range(1, 5) var levels: int = Levels.COUNT:
+	set(value):
+		levels = value
+		_levels.begin()
+
+## The distances in metres from which on the next level is shown, one less than there are levels.
+## Those that are missing are chosen by the tree's height.
+@export var level_distances: PackedFloat32Array = []:
+	set(value):
+		level_distances = value
+		_update_instances()
+
+## The most triangles that each level may have, the finest first: it becomes as fine as that allows.
+## 0, or none: as many as the level has by itself.
+@export var level_budgets: PackedInt32Array = []:
+	set(value):
+		level_budgets = value
+		rebuild()
+
+## The level that casts the shadow at all distances, so that it doesn't change with the others.
+@export_range(0, 4) var shadow_level: int = 1:
+	set(value):
+		shadow_level = value
+		_levels.begin()
 
 @export_group("Materials")
 
@@ -132,10 +165,12 @@ static var threaded: bool = true
 		_update_body()
 
 var _leaves_node: MultiMeshInstance3D
+var _levels: LevelNodes = LevelNodes.new(self)
 var _body: StaticBody3D
 var _queued: bool = false
 var _job: BuildJob
 var _height: float = 1.0
+var _budget_warning: String = ""
 # The reconstruction, its revision and the level that the mesh was built of.
 var _bark_of: Array = []
 var _bark_time: float = 0.0
@@ -177,16 +212,36 @@ func is_rebuilding() -> bool:
 	return _queued or _job != null
 
 
-## The number of triangles of the bark and the leaves as they are drawn now.
+## Whether the further levels of detail are waited for.
+func is_building_levels() -> bool:
+	return is_rebuilding() or _levels.is_building()
+
+
+## The number of triangles of the bark and the leaves of this node's own mesh, the finest level.
 func get_triangle_count() -> int:
-	return _triangles(mesh) + get_leaf_count() * _triangles(_leaf_card())
+	return BuildJob.triangles(mesh) + get_leaf_count() * BuildJob.triangles(_leaf_card())
 
 
-## The number of leaf cards drawn now.
+## The number of triangles of a level of detail; 0 where it isn't shown or not built yet.
+func get_level_triangle_count(level: int) -> int:
+	return get_triangle_count() if level == 0 else _levels.get_triangle_count(level)
+
+
+## The number of leaf cards of the finest level.
 func get_leaf_count() -> int:
 	if _leaves_node == null or _leaves_node.multimesh == null:
 		return 0
 	return _leaves_node.multimesh.instance_count
+
+
+## The tree's height in metres of the world, from its wood.
+func get_tree_height() -> float:
+	return _height * (global_basis.get_scale().y if is_inside_tree() else 1.0)
+
+
+## The most triangles that a level may have, or 0.
+func get_level_budget(level: int) -> int:
+	return maxi(level_budgets[level], 0) if level < level_budgets.size() else 0
 
 
 ## The milliseconds that the bark took when it was built last.
@@ -199,10 +254,15 @@ func get_leaf_build_time() -> float:
 	return _leaf_time
 
 
+func _init() -> void:
+	_levels.built.connect(_on_levels_built)
+
+
 func _notification(what: int) -> void:
 	match what:
 		NOTIFICATION_PREDELETE:
 			_drop_job()
+			_levels.end()
 		NOTIFICATION_ENTER_TREE:
 			set_notify_transform(true)
 			_update_instances()
@@ -226,7 +286,10 @@ func _validate_property(property: Dictionary) -> void:
 func _get_configuration_warnings() -> PackedStringArray:
 	if reconstruction == null:
 		return ["Give this node a TreeReconstruction to show."]
-	return []
+	var warnings: PackedStringArray = _levels.get_warnings()
+	if not _budget_warning.is_empty():
+		warnings.insert(0, _budget_warning)
+	return warnings
 
 
 func _start() -> void:
@@ -235,6 +298,7 @@ func _start() -> void:
 		_drop_job()
 		mesh = null
 		_bark_of = []
+		_levels.clear()
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
 		_apply_collision([])
@@ -249,11 +313,16 @@ func _start() -> void:
 	job.capsules_wanted = collision_shapes if collision else 0
 	job.capsule_radius = collision_minimum_radius
 	job.capsule_kind = collision_kind
-	job.lod = lod
+	job.lod = maxi(lod, 0)
+	job.budget = get_level_budget(job.lod)
 	job.leaves = leaves
 	job.revision = reconstruction.get_bark_revision()
 	# A change of the leaves alone keeps the bark.
-	job.with_bark = mesh == null or _bark_of != [reconstruction, job.revision, lod]
+	job.with_bark = (
+		mesh == null
+		or job.budget > 0
+		or _bark_of != [reconstruction, job.revision, job.lod, job.budget]
+	)
 	if not threaded:
 		job.run()
 		_apply(job)
@@ -296,8 +365,11 @@ func _apply(job: BuildJob) -> void:
 			_leaves_node = MultiMeshInstance3D.new()
 			_leaves_node.name = &"Leaves"
 			add_child(_leaves_node, false, Node.INTERNAL_MODE_BACK)
-		_leaves_node.multimesh = _leaf_multimesh(job)
+			_levels.finest_leaves = _leaves_node
+		_leaves_node.multimesh = BuildJob.leaf_multimesh(job.buffer, job.card)
 	_apply_collision(job.capsules)
+	_budget_warning = job.warning
+	_levels.begin()
 	_update_materials()
 	_update_instances()
 	rebuilt.emit()
@@ -324,40 +396,40 @@ func _update_body() -> void:
 
 
 func _apply_bark(job: BuildJob) -> void:
-	var bark: ArrayMesh = ArrayMesh.new()
-	if not job.bark.is_empty():
-		bark.add_surface_from_arrays(
-			Mesh.PRIMITIVE_TRIANGLES, job.bark, [], {}, TreeReconstruction.MESH_FLAGS
-		)
+	var bark: ArrayMesh = BuildJob.bark_mesh(job.bark)
 	var box: AABB = bark.get_aabb()
 	_height = maxf(box.end.y, 0.1)
 	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
 	mesh = bark
-	_bark_of = [job.source, job.revision, job.lod]
+	_bark_of = [job.source, job.revision, job.lod, job.budget]
 
 
-func _leaf_multimesh(job: BuildJob) -> MultiMesh:
-	var multimesh: MultiMesh = MultiMesh.new()
-	multimesh.transform_format = MultiMesh.TRANSFORM_3D
-	multimesh.use_colors = true
-	multimesh.use_custom_data = true
-	var card: ArrayMesh = ArrayMesh.new()
-	card.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, job.card)
-	multimesh.mesh = card
-	@warning_ignore("integer_division")
-	multimesh.instance_count = job.buffer.size() / BuildJob.FLOATS_PER_LEAF
-	multimesh.buffer = job.buffer
-	return multimesh
+# All levels share one box.
+func _on_levels_built(box: AABB) -> void:
+	mesh.custom_aabb = box.grow(_WIND_MARGIN * _height)
+	if _leaves_node != null:
+		_leaves_node.custom_aabb = mesh.custom_aabb
+	_update_materials()
+	_update_instances()
+	update_configuration_warnings()
+	levels_built.emit()
 
 
 func _update_materials() -> void:
+	var part: String = (
+		"blade" if reconstruction != null and reconstruction.are_leaves_single() else "leaf"
+	)
+	var bark: Material = _material_or_preset(bark_material, "bark")
+	var leaf: Material = _material_or_preset(leaf_material, part)
 	if mesh != null and mesh.get_surface_count() > 0:
-		mesh.surface_set_material(0, _material_or_preset(bark_material, "bark"))
+		mesh.surface_set_material(0, bark)
 	if _leaves_node != null:
-		var part: String = (
-			"blade" if reconstruction != null and reconstruction.are_leaves_single() else "leaf"
-		)
-		_leaves_node.material_override = _material_or_preset(leaf_material, part)
+		_leaves_node.material_override = leaf
+	for node: GeometryInstance3D in _levels.get_barks():
+		node.material_override = bark
+	for node: GeometryInstance3D in _levels.get_leaves():
+		node.material_override = leaf
+	_levels.update()
 
 
 func _material_or_preset(material: Material, part: String) -> Material:
@@ -374,13 +446,19 @@ func _material_or_preset(material: Material, part: String) -> Material:
 func _update_instances() -> void:
 	if not is_inside_tree():
 		return
-	var height: float = _height * global_basis.get_scale().y
-	_set_shader_values(get_instance(), height)
+	var height: float = get_tree_height()
+	var wood: Array[GeometryInstance3D] = _levels.get_barks()
+	wood.append(self)
+	var foliage: Array[GeometryInstance3D] = _levels.get_leaves()
 	if _leaves_node != null:
 		for property: String in _SHARED:
 			_leaves_node.set(property, get(property))
-		_set_shader_values(_leaves_node.get_instance(), height)
-		_set_season(_leaves_node.get_instance())
+		foliage.append(_leaves_node)
+	for node: GeometryInstance3D in wood + foliage:
+		_set_shader_values(node.get_instance(), height)
+	for node: GeometryInstance3D in foliage:
+		_set_season(node.get_instance())
+	_levels.update()
 
 
 # What the season makes of the leaves' colour: of those that are early, and late, in it.
@@ -411,52 +489,5 @@ func _leaf_card() -> Mesh:
 	return _leaves_node.multimesh.mesh
 
 
-static func _triangles(of: Mesh) -> int:
-	var count: int = 0
-	if of is ArrayMesh:
-		for surface: int in of.get_surface_count():
-			@warning_ignore("integer_division")
-			count += (of as ArrayMesh).surface_get_array_index_len(surface) / 3
-	return count
-
-
 static func _main_loop() -> SceneTree:
 	return Engine.get_main_loop() as SceneTree
-
-
-# One build: what a worker thread needs and what it makes. The builders see the reconstruction as it
-# was when they began, so it may change meanwhile.
-class BuildJob:
-	extends RefCounted
-
-	const FLOATS_PER_LEAF: int = 20
-
-	var source: TreeReconstruction
-	var lod: int
-	var leaves: bool
-	var task: int = -1
-	var stale: bool = false
-	var with_bark: bool = true
-	var revision: int
-	var bark: Array
-	var card: Array
-	var buffer: PackedFloat32Array
-	var capsules_wanted: int = 0
-	var capsule_radius: float
-	var capsule_kind: int
-	var capsules: Array[Dictionary] = []
-	var bark_time: float
-	var leaf_time: float
-
-	func run() -> void:
-		if capsules_wanted > 0:
-			capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
-		var started: int = Time.get_ticks_usec()
-		if with_bark:
-			bark = source.build_mesh_arrays(lod)
-		var barked: int = Time.get_ticks_usec()
-		if leaves:
-			buffer = source.build_leaf_buffer(lod)
-			card = source.build_leaf_form_arrays(lod)
-		bark_time = (barked - started) / 1000.0
-		leaf_time = (Time.get_ticks_usec() - barked) / 1000.0

@@ -7,19 +7,20 @@ const COUNT: int = 4
 ## How many there can be.
 const MOST: int = 5
 # How many times its height a tree is away where the next level takes over.
-const _SWITCH: PackedFloat32Array = [2.5, 6.0, 14.0, 30.0]
+const _SWITCH: PackedFloat32Array = [2.5, 6.0, 14.0, 30.0, 60.0]
 # Lower ones are shrubs and seedlings, which are looked at as closely as this.
 const _LEAST_HEIGHT: float = 0.5
 const _MARGIN: float = 0.05
 
 
 ## The distances in metres from which on the next level is shown, one less than [param count], of a
-## tree of such a [param height] in metres. Those of [param chosen] that are there come first.
+## tree of such a [param height] in metres. Those of [param chosen] that are there come first. An
+## impostor beyond the last level counts as one more.
 static func distances(
 	height: float, count: int, chosen: PackedFloat32Array = []
 ) -> PackedFloat32Array:
 	var found: PackedFloat32Array = []
-	for level: int in clampi(count, 1, MOST) - 1:
+	for level: int in clampi(count, 1, MOST + 1) - 1:
 		var wanted: float = _SWITCH[level] * maxf(height, _LEAST_HEIGHT)
 		if level < chosen.size():
 			wanted = chosen[level]

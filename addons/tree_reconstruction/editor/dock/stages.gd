@@ -213,9 +213,9 @@ func _add_edit_fields() -> void:
 		MESH,
 		"lod",
 		TYPE_INT,
-		"0,4,1",
+		"-1,4,1",
 		"Level of detail",
-		"0 is the finest; each further level has about a quarter of the triangles."
+		"-1 shows the level that suits the distance; 0 is always the finest one."
 	)
 	_add_field(MESH, "leaves", TYPE_BOOL, "", "With leaves", "Whether the tree bears its leaves.")
 

@@ -1,0 +1,90 @@
+@tool
+extends RefCounted
+## One build of a TreeInstance3D's level: what a worker thread needs and what it makes. The builders
+## see the reconstruction as it was when they began, so it may change meanwhile.
+
+const Collision := preload("tree_collision.gd")
+const FLOATS_PER_LEAF: int = 20
+
+var source: TreeReconstruction
+var lod: int
+## The triangles that it may have; 0: as many as the level has by itself.
+var budget: int = 0
+var leaves: bool
+var task: int = -1
+## Whether something has changed since it began.
+var stale: bool = false
+var with_bark: bool = true
+var revision: int
+var bark: Array
+var card: Array
+var buffer: PackedFloat32Array
+var warning: String = ""
+var capsules_wanted: int = 0
+var capsule_radius: float
+## What of TreeInstance3D.CollisionKind they are.
+var capsule_kind: int
+var capsules: Array[Dictionary] = []
+var bark_time: float
+var leaf_time: float
+
+
+func run() -> void:
+	if capsules_wanted > 0:
+		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
+	var started: int = Time.get_ticks_usec()
+	if budget > 0:
+		for made: Dictionary in source.build_levels([lod], [budget]):
+			bark = made.bark
+			warning = made.warning
+			if leaves:
+				buffer = made.leaves
+				card = made.card
+		bark_time = (Time.get_ticks_usec() - started) / 1000.0
+		return
+	if with_bark:
+		bark = source.build_mesh_arrays(lod)
+	var barked: int = Time.get_ticks_usec()
+	if leaves:
+		buffer = source.build_leaf_buffer(lod)
+		card = source.build_leaf_form_arrays(lod)
+	bark_time = (barked - started) / 1000.0
+	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
+
+
+## The multimesh of [param places] (see [method TreeReconstruction.build_leaf_buffer]), or
+## [code]null[/code] where there are none.
+static func leaf_multimesh(places: PackedFloat32Array, arrays: Array) -> MultiMesh:
+	if places.is_empty():
+		return null
+	var multimesh: MultiMesh = MultiMesh.new()
+	multimesh.transform_format = MultiMesh.TRANSFORM_3D
+	multimesh.use_colors = true
+	multimesh.use_custom_data = true
+	var mesh: ArrayMesh = ArrayMesh.new()
+	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
+	multimesh.mesh = mesh
+	@warning_ignore("integer_division")
+	multimesh.instance_count = places.size() / FLOATS_PER_LEAF
+	multimesh.buffer = places
+	return multimesh
+
+
+## The mesh of surface arrays of bark.
+static func bark_mesh(arrays: Array) -> ArrayMesh:
+	var mesh: ArrayMesh = ArrayMesh.new()
+	if not arrays.is_empty():
+		mesh.add_surface_from_arrays(
+			Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.MESH_FLAGS
+		)
+	return mesh
+
+
+## The number of triangles of [param mesh].
+static func triangles(mesh: Mesh) -> int:
+	var count: int = 0
+	if mesh is ArrayMesh:
+		for surface: int in mesh.get_surface_count():
+			@warning_ignore("integer_division")
+			count += (mesh as ArrayMesh).surface_get_array_index_len(surface) / 3
+	return count

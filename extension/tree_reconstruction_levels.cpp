@@ -1,0 +1,48 @@
+// Levels of detail of a TreeReconstruction: see src/mesh/levels.h.
+#include "mesh/levels.h"
+
+#include "convert.h"
+#include "error.h"
+#include "mesh/leaf_cards.h"
+#include "tree_reconstruction.h"
+
+using namespace godot;
+
+TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& p_levels,
+                                                        const PackedInt32Array& p_budgets) const {
+    const TypedArray<Dictionary> none;
+    for (const int32_t level : p_levels) {
+        ERR_FAIL_COND_V_MSG(level < 0, none,
+                            vformat("There is no level of detail %d; 0 is the finest.", level));
+    }
+    for (const int32_t budget : p_budgets) {
+        ERR_FAIL_COND_V_MSG(budget < 0, none,
+                            "A budget is a number of triangles, or 0 for the level's own number.");
+    }
+    return guarded(none, [&] {
+        const std::shared_ptr<const treerec::Tree> tree = get_tree();
+        const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
+        const treerec::LevelBuilder builder(*tree, get_leaf_rules(), uint64_t(get_seed()), *foliage);
+        const treerec::Bounds& box = builder.box();
+        TypedArray<Dictionary> levels;
+        for (int64_t i = 0; i < p_levels.size(); i++) {
+            const int32_t budget = i < p_budgets.size() ? p_budgets[i] : 0;
+            const treerec::TreeLevel made = builder.build(p_levels[i], size_t(budget));
+            Dictionary level;
+            level["bark"] = to_surface_arrays(made.bark);
+            level["leaves"] = to_godot(treerec::leaf_buffer(made.leaves));
+            level["card"] = to_surface_arrays(made.card);
+            level["box"] = box.empty() ? AABB() : AABB(to_godot(box.min), to_godot(box.size()));
+            level["triangles"] = int64_t(made.triangle_count());
+            level["level"] = made.level;
+            level["warning"] = to_godot(made.warning);
+            levels.push_back(level);
+        }
+        return levels;
+    });
+}
+
+void TreeReconstruction::_bind_levels() {
+    ClassDB::bind_method(D_METHOD("build_levels", "levels", "budgets"), &TreeReconstruction::build_levels,
+                         DEFVAL(PackedInt32Array()));
+}

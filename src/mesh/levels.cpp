@@ -1,0 +1,98 @@
+#include "mesh/levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "foliage/foliage_twigs.h"
+#include "geometry/portable_math.h"
+#include "mesh/branch_tubes.h"
+#include "mesh/leaf_cards.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kWidth = 0.0006;     // over the tree's height, at level 0
+constexpr double kCoarsest = 16.0;    // a trunk of a few triangles
+constexpr double kStep = 1.0 / 64;    // between two levels that a budget tells apart
+constexpr double kWidestBark = 1.5;   // of a node's radius
+constexpr double kFoot = 1.5;         // likewise, where the trunk stands
+constexpr double kDeepestFoot = 0.3;  // metres below the root
+constexpr float kLeafReach = 0.75f;   // of a card from its middle, over its length, at any turn
+
+int whole(double level) {
+    return static_cast<int>(level + 0.5);
+}
+
+}  // namespace
+
+double level_width(double height, double level) {
+    return kWidth * height * portable::pow(2.0, level);
+}
+
+Mesh build_level_bark(const Tree& wood, double level, const Progress* progress) {
+    TubeOptions options;
+    options.level = whole(level);
+    options.twig_level = level;
+    return build_branch_tubes(wood, options, progress);
+}
+
+LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage,
+                           const Progress* progress)
+    : wood_(leafy_tree(tree, rules, foliage)),
+      rules_(rules),
+      leaves_(place_leaves(tree, rules, seed, foliage)) {
+    if (progress) progress->check();
+    // Collars, and wood that stands for others, are wider than the skeleton says; the trunk goes on below it.
+    for (NodeId id = 0; id < wood_.id_end(); id++)
+        if (wood_.contains(id)) box_.add(wood_.node(id).position, kWidestBark * wood_.node(id).radius);
+    if (!wood_.empty()) {
+        const double wider = level_width(box_.size().y, kMostLevels - 1);
+        box_.min -= wider;
+        box_.max += wider;
+        const Node& root = wood_.node(wood_.root());
+        box_.add(root.position - DVec3(0.0, kDeepestFoot + root.radius, 0.0), kFoot * root.radius);
+    }
+    const float growth = kLeafReach * leaf_growth(kMostLevels - 1);
+    for (const LeafPlacement& leaf : leaves_)
+        box_.add(DVec3(leaf.position + leaf.y * (0.5f * leaf.size)), growth * leaf.size);
+}
+
+TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
+    TreeLevel made;
+    made.level = level;
+    made.bark = build_level_bark(wood_, level, progress);
+    made.leaves = thin_leaves(leaves_, level);
+    if (!made.leaves.empty()) made.card = build_leaf_card(rules_, std::min(whole(level), kMostLevels - 1));
+    return made;
+}
+
+TreeLevel LevelBuilder::build(int level, size_t budget, const Progress* progress) const {
+    if (level < 0) throw Error("There is no level of detail " + std::to_string(level) + "; 0 is the finest.");
+    if (budget == 0) return build_at(level, progress);
+    TreeLevel made = build_at(0.0, progress);
+    if (made.triangle_count() <= budget) return made;
+    // The finest that keeps the budget lies between these.
+    double finer = 0.0, coarser = kCoarsest;
+    made = build_at(coarser, progress);
+    if (made.triangle_count() > budget) {
+        made.warning = "A level of " + std::to_string(budget) +
+                       " triangles was asked for, but this tree has " +
+                       std::to_string(made.triangle_count()) + " at least. Give the level a larger budget.";
+        return made;
+    }
+    while (coarser - finer > kStep) {
+        const double between = 0.5 * (finer + coarser);
+        TreeLevel tried = build_at(between, progress);
+        if (tried.triangle_count() > budget) {
+            finer = between;
+        } else {
+            coarser = between;
+            made = std::move(tried);
+        }
+    }
+    return made;
+}
+
+}  // namespace treerec

@@ -1,0 +1,72 @@
+// Levels of detail: the one place that says what level k of a tree is.
+//
+// All levels are of one skeleton and one set of leaves: everything random is used up before, so that they
+// have the same silhouette and, the wind being a function of the place, the same motion. Level k
+//   - has half the sides of level k - 1, and rings only where the axis bends by more than twice as much;
+//   - draws an even share of the twigs that are thinner than level_width(), as much wider (twig_shares.h),
+//   and
+//     none of those that are a small share of the tree's height; with them goes nothing that they bear:
+//   - leaves stay where level 0 puts them, 0.42 of those of level k - 1, as much larger about their middles
+//     (leaf_cards.h), and their cards have fewer triangles.
+// Wind channels and colours are functions of the place and the wood at level 0, so they are the same in all.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "foliage/foliage.h"
+#include "foliage/leaves.h"
+#include "geometry/bounds.h"
+#include "mesh/mesh.h"
+#include "progress.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+inline constexpr int kMostLevels = 5;
+
+// Metres: of a tree of such a height the width at which twigs begin to stand for others. At the distances
+// where levels are first seen (2.5, 6, 14 and 30 heights) a pixel of a picture of 1080 lines and 75 degrees
+// is 1.5 to 2 times as wide. level: any number, doubles per level.
+double level_width(double height, double level);
+
+struct TreeLevel {
+    Mesh bark;
+    std::vector<LeafPlacement> leaves;
+    Mesh card;           // of the leaves; empty without any
+    double level = 0.0;  // what it has become: other than asked for where a budget is given
+    // A sentence where the budget could not be kept, else empty.
+    std::string warning;
+
+    size_t triangle_count() const { return bark.triangle_count() + leaves.size() * card.triangle_count(); }
+};
+
+// Makes the levels of one tree. What they share is made once; the tree and the foliage must outlive it.
+class LevelBuilder {
+  public:
+    // Throws Error for rules that check_leaf_rules() refuses, or Cancelled.
+    LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},
+                 const Progress* progress = nullptr);
+
+    // level: 0 is the finest. budget: if not 0, the finest thing between the levels, down from level 0, that
+    // has at most so many triangles of bark and leaves; `level` is then of no matter. Deterministic; 0 .. 8
+    // times the time of one level with a budget. Throws Error for a negative level, or Cancelled.
+    TreeLevel build(int level, size_t budget = 0, const Progress* progress = nullptr) const;
+    // Metres, around all levels at rest.
+    const Bounds& box() const { return box_; }
+
+  private:
+    TreeLevel build_at(double level, const Progress* progress) const;
+
+    const Tree wood_;
+    const LeafRules rules_;
+    const std::vector<LeafPlacement> leaves_;
+    Bounds box_;
+};
+
+// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree.
+Mesh build_level_bark(const Tree& wood, double level, const Progress* progress = nullptr);
+
+}  // namespace treerec
