@@ -22,9 +22,9 @@ const int64_t kSurfaceFlags = (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::A
 
 const int64_t kJoinedLeafFlags =
     (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM0_SHIFT) |
-    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT) |
-    (int64_t(Mesh::ARRAY_CUSTOM_RGBA8_SNORM) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT) |
-    (int64_t(Mesh::ARRAY_CUSTOM_RG_HALF) << Mesh::ARRAY_FORMAT_CUSTOM3_SHIFT);
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM1_SHIFT) |
+    (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT) |
+    (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM3_SHIFT);
 
 std::string to_std(const String& p_text) {
     const CharString bytes = p_text.utf8();

@@ -1,7 +1,6 @@
 // What TreeReconstruction keeps of the leaves that the scan saw, and its leaf rule.
 #include <cstring>
 #include <godot_cpp/classes/mesh.hpp>
-#include <godot_cpp/variant/packed_byte_array.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <utility>
@@ -174,14 +173,13 @@ Array TreeReconstruction::build_leaf_form_arrays(int p_lod) const {
     });
 }
 
-// Four bytes for each vertex.
+// As floats, one after another.
 template <typename T>
-static PackedByteArray to_bytes(const treerec::MeshArray<T>& p_values) {
-    static_assert(sizeof(T) == 4);
-    PackedByteArray bytes;
-    bytes.resize(int64_t(4 * p_values.size()));
-    std::memcpy(bytes.ptrw(), p_values.data(), 4 * p_values.size());
-    return bytes;
+static PackedFloat32Array to_floats(const treerec::MeshArray<T>& p_values) {
+    PackedFloat32Array floats;
+    floats.resize(int64_t(p_values.size() * sizeof(T) / sizeof(float)));
+    if (!p_values.empty()) std::memcpy(floats.ptrw(), p_values.data(), p_values.size() * sizeof(T));
+    return floats;
 }
 
 Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
@@ -193,9 +191,9 @@ Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
             treerec::join_leaves(_place_leaves(rules, p_lod), treerec::build_leaf_card(rules, p_lod));
         Array arrays = to_surface_arrays(joined.mesh);
         if (!arrays.is_empty()) {
-            arrays[Mesh::ARRAY_CUSTOM1] = to_bytes(joined.lengthwise);
-            arrays[Mesh::ARRAY_CUSTOM2] = to_bytes(joined.across);
-            arrays[Mesh::ARRAY_CUSTOM3] = to_bytes(joined.wind);
+            arrays[Mesh::ARRAY_CUSTOM1] = to_floats(joined.lengthwise);
+            arrays[Mesh::ARRAY_CUSTOM2] = to_floats(joined.across);
+            arrays[Mesh::ARRAY_CUSTOM3] = to_floats(joined.bough);
         }
         return arrays;
     });

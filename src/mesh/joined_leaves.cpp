@@ -1,24 +1,12 @@
 #include "mesh/joined_leaves.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "error.h"
-#include "foliage/wind.h"
 
 namespace treerec {
 
 namespace {
 
 constexpr size_t kLeavesBetweenChecks = 4096;
-
-int8_t to_byte(float number) {
-    return static_cast<int8_t>(std::floor(127.0f * std::clamp(number, -1.0f, 1.0f) + 0.5f));
-}
-
-std::array<int8_t, 4> to_bytes(const Vec3& way, float fourth) {
-    return {to_byte(way.x), to_byte(way.y), to_byte(way.z), to_byte(fourth)};
-}
 
 }  // namespace
 
@@ -40,7 +28,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
     mesh.indices.resize(leaves.size() * corner_indices);
     joined.lengthwise.resize(vertices);
     joined.across.resize(vertices);
-    joined.wind.resize(vertices);
+    joined.bough.resize(vertices);
     size_t v = 0, index = 0;
     for (size_t i = 0; i < leaves.size(); i++) {
         if (progress && i % kLeavesBetweenChecks == 0) progress->check();
@@ -48,9 +36,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
         const glm::mat3 turn(leaf.x, leaf.y, leaf.z);
         const Vec4 outward(0.5f + 0.5f * leaf.outward, leaf.occlusion);
         const Vec4 petiole(leaf.position, leaf.phase);
-        const std::array<int8_t, 4> lengthwise = to_bytes(leaf.y, leaf.stiffness);
-        const std::array<int8_t, 4> across = to_bytes(leaf.x, leaf.hue);
-        const std::array<uint16_t, 2> wind = {half_code(leaf.wind.x), half_code(leaf.wind.y)};
+        const Vec4 lengthwise(leaf.y, leaf.wind.x), across(leaf.x, leaf.hue);
         for (size_t k = 0; k < corner_indices; k++)
             mesh.indices[index++] = static_cast<uint32_t>(v + card.indices[k]);
         for (size_t k = 0; k < corners; k++, v++) {
@@ -62,7 +48,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
             mesh.custom0[v] = petiole;
             joined.lengthwise[v] = lengthwise;
             joined.across[v] = across;
-            joined.wind[v] = wind;
+            joined.bough[v] = leaf.wind.y;
         }
     }
     return joined;

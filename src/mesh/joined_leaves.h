@@ -2,8 +2,6 @@
 // MultiMesh, and for scenes without one.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "foliage/leaves.h"
@@ -16,11 +14,11 @@ struct JoinedLeaves {
     // In the tree's frame. colors: the way out of the crown (rgb * 2 - 1, unit), occlusion in a. custom0:
     // where the petiole leaves the bark, and the leaf's phase 0..1.
     Mesh mesh;
-    // By vertex, in 1/127: the way along the leaf, unit, and the stiffness of its branch; the way across it,
-    // and its hue.
-    MeshArray<std::array<int8_t, 4>> lengthwise, across;
-    // By vertex, halves: WindGroups::codes() of limb and bough.
-    MeshArray<std::array<uint16_t, 2>> wind;
+    // By vertex: the way along the leaf, unit, and the wind code of its limb (WindGroups::codes()); the way
+    // across it, unit, and its hue; the wind code of its bough. They are floats, since Godot's Compatibility
+    // renderer reads all but the first of four bytes, or the first two of four halves, as (0, 0, 1).
+    MeshArray<Vec4> lengthwise, across;
+    MeshArray<float> bough;
 };
 
 // The card at every leaf. Empty without leaves. Throws Error for more vertices than an index can count, or

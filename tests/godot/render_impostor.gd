@@ -1,6 +1,10 @@
 extends "./suite.gd"
 ## An impostor looks like its tree, in the renderer that this run uses.
 
+const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
+const Impostor := preload("res://addons/tree_reconstruction/editor/dock/impostor.gd")
+const Files := preload("res://addons/tree_reconstruction/editor/dock/files.gd")
+const PlainMaterials := preload("res://addons/tree_reconstruction/baking/plain_materials.gd")
 const SIZE: Vector2i = Vector2i(192, 192)
 const SKY: Color = Color(0.2, 0.3, 0.9)
 
@@ -164,6 +168,9 @@ func _check_places(
 	_viewport.add_child(many)
 	RenderingServer.instance_geometry_set_shader_parameter(many.get_instance(), &"tree_wind", 0.0)
 	check(_difference(alone, await _picture()) < 0.005, "It is another one in a MultiMesh.")
+	var still: Dictionary[StringName, Variant] = {&"tree_wind": 0.0}
+	many.multimesh.mesh = impostor.make_mesh(PlainMaterials.plain(impostor.material, still, {}))
+	check(_difference(alone, await _picture()) < 0.005, "Baked, it is another one.")
 	many.free()
 	card.visible = true
 
@@ -196,3 +203,45 @@ func test_baking_can_be_cancelled() -> void:
 	check(ended[0], "It goes on.")
 	check_equal(baker.get_error_message(), "", "the reason")
 	check_equal(tree.root.get_child_count(), children, "what is left in the scene")
+
+
+func test_the_dock_bakes_and_undoes() -> void:
+	var undo: UndoRedo = UndoRedo.new()
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.reconstruction = grown_tree(2)
+	tree.root.add_child(node)
+	var session: Session = Session.new(undo)
+	session.edit_node(node)
+	var dock: Impostor = Impostor.new(session, Files.new())
+	dock.views = 3
+	dock.size.select(0)
+	var path: String = folder.path_join("oak.impostor.res")
+	dock.bake_to(path)
+	var most: float = 0.0
+	while not session.jobs.get_running().is_empty():
+		most = maxf(most, session.jobs.get_running()[0].progress)
+		session.update()
+		await tree.process_frame
+	check(most > 0.3, "It says nothing of how far it is.")
+	check_equal(node.impostor.resource_path, path, "the impostor's file")
+	undo.undo()
+	check_equal(node.impostor, null, "the impostor after undo")
+	undo.redo()
+	check_equal(node.impostor, load(path), "the impostor after redo")
+
+	# Cancelled, it leaves all as it is.
+	var other: String = folder.path_join("other.impostor.res")
+	dock.bake_to(other)
+	session.jobs.cancel(session.jobs.get_running()[0])
+	while not session.jobs.get_running().is_empty():
+		session.update()
+		await tree.process_frame
+	check(not FileAccess.file_exists(other), "A cancelled one is written.")
+	check_equal(node.impostor.resource_path, path, "the impostor after a cancelled bake")
+	await tree.process_frame
+	session.shut_down()
+	dock.button.free()
+	dock.size.free()
+	undo.clear_history()
+	undo.free()
+	node.free()

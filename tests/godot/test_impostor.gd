@@ -2,6 +2,7 @@ extends "./suite.gd"
 ## What of impostors needs no picture: render_impostor.gd looks at them.
 
 const Views := preload("res://addons/tree_reconstruction/baking/impostor_views.gd")
+const SHADER: Shader = preload("res://addons/tree_reconstruction/shaders/impostor.gdshader")
 const Shaders := preload("res://addons/tree_reconstruction/baking/impostor_shaders.gd")
 
 
@@ -97,7 +98,7 @@ func test_a_baked_scene_ends_in_the_card() -> void:
 	var made: TreeReconstruction = grown_tree(3)
 	var impostor: TreeImpostor = TreeImpostor.new()
 	impostor.material = ShaderMaterial.new()
-	impostor.material.shader = load("res://addons/tree_reconstruction/shaders/impostor.gdshader")
+	impostor.material.shader = SHADER
 	var texture: PortableCompressedTexture2D = PortableCompressedTexture2D.new()
 	texture.keep_compressed_buffer = true
 	texture.create_from_image(
@@ -132,3 +133,51 @@ func test_a_baked_scene_ends_in_the_card() -> void:
 	check(not "#include" in material.shader.code, "It needs the addon.")
 	check(material.get_shader_parameter(&"albedo_texture") is Texture2D, "It lost its picture.")
 	root.free()
+
+
+func test_a_tree_shows_it_beyond_its_last_level() -> void:
+	var impostor: TreeImpostor = TreeImpostor.new()
+	impostor.material = ShaderMaterial.new()
+	impostor.material.shader = SHADER
+	var made: TreeReconstruction = grown_tree(3)
+	impostor.box = made.get_aabb()
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.levels = 2
+	node.level_distances = PackedFloat32Array([10.0, 30.0])
+	node.reconstruction = made
+	node.impostor = impostor
+	tree.root.add_child(node)
+	while node.is_building_levels():
+		await tree.process_frame
+	var card: MeshInstance3D = node.find_child("Impostor", false, false)
+	check(card != null, "There is no card.")
+	if card == null:
+		return
+	check_equal(card.mesh, impostor.get_mesh(), "what it shows")
+	check_equal(card.custom_aabb, node.mesh.custom_aabb, "its box")
+	check(card.visible, "It is hidden.")
+	check(
+		card.visibility_range_begin > 20.0 and card.visibility_range_begin < 30.0,
+		"It begins at %.1f m." % card.visibility_range_begin
+	)
+	check_equal(card.visibility_range_end, 0.0, "where it ends")
+	var last: MeshInstance3D = node.find_child("Level1", false, false)
+	check(
+		last.visibility_range_end > card.visibility_range_begin,
+		"The last level ends at %.1f m." % last.visibility_range_end
+	)
+	node.lod = 1
+	while node.is_building_levels():
+		await tree.process_frame
+	await tree.process_frame
+	check(node.find_child("Impostor", false, false) == null, "A pinned level has a card.")
+	node.lod = -1
+	while node.is_building_levels():
+		await tree.process_frame
+	check(node.find_child("Impostor", false, false) != null, "It does not come back.")
+	node.impostor = null
+	await tree.process_frame
+	check(node.find_child("Impostor", false, false) == null, "It stays without an impostor.")
+	last = node.find_child("Level1", false, false)
+	check_equal(last.visibility_range_end, 0.0, "the end of the last level without it")
+	node.free()

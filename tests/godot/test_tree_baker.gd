@@ -136,10 +136,13 @@ func test_all_leaves_are_there() -> void:
 		var custom: PackedFloat32Array = buffer.slice(20 * leaf + 16, 20 * leaf + 20)
 		var at: int = 4 * leaf * each
 		check_near(arrays[Mesh.ARRAY_CUSTOM0][at + 3], custom[0], 1e-3, "the phase")
-		var bytes: PackedByteArray = arrays[Mesh.ARRAY_CUSTOM1]
-		check_near(bytes.decode_s8(at + 1) / 127.0, frame.basis.y.normalized().y, 0.01, "its way")
-		bytes = arrays[Mesh.ARRAY_CUSTOM2]
-		check_near(bytes.decode_s8(at + 3) / 127.0, custom[2], 0.01, "the hue")
+		var along: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM1]
+		check_near(along[at + 1], frame.basis.y.normalized().y, 1e-3, "its way")
+		check_equal(along[at + 3], custom[1], "the wind code of its limb")
+		check_equal(arrays[Mesh.ARRAY_CUSTOM2][at + 3], custom[2], "the hue")
+		check_equal(
+			arrays[Mesh.ARRAY_CUSTOM3][leaf * each], custom[3], "the wind code of its bough"
+		)
 
 
 func test_baking_can_be_cancelled() -> void:

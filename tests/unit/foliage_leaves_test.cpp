@@ -335,7 +335,7 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
         const Vec3 outward = Vec3(row[12], row[13], row[14]) * 2.0f - 1.0f;
         const Vec3 world = leaves[i].x * outward.x + leaves[i].y * outward.y + leaves[i].z * outward.z;
         ASSERT_NEAR(glm::distance(world, leaves[i].outward), 0.0f, 1e-4f);
-        ASSERT_EQ(row[17], leaves[i].size);
+        ASSERT_EQ(Vec2(row[17], row[19]), leaves[i].wind);
     }
 }
 

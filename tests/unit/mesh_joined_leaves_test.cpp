@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "foliage/wind.h"
 #include "mesh/leaf_cards.h"
 #include "random_tree.h"
 
@@ -37,15 +36,9 @@ TEST(JoinedLeaves, SayOfEachVertexWhatTheBufferSaysOfItsLeaf) {
                 const Vec3 outward = axes * (2.0f * Vec3(b[12], b[13], b[14]) - 1.0f) / leaves[i].size;
                 ASSERT_LT(glm::distance(2.0f * Vec3(joined.mesh.colors[v]) - 1.0f, outward), 1e-4f);
                 ASSERT_EQ(joined.mesh.colors[v].a, b[15]);
-                for (size_t axis = 0; axis < 3; axis++) {
-                    ASSERT_NEAR(joined.lengthwise[v][axis], 127.0f * leaves[i].y[static_cast<int>(axis)],
-                                0.51f);
-                    ASSERT_NEAR(joined.across[v][axis], 127.0f * leaves[i].x[static_cast<int>(axis)], 0.51f);
-                }
-                ASSERT_NEAR(joined.across[v][3], 127.0f * b[18], 0.51f);
-                ASSERT_NEAR(joined.lengthwise[v][3], 127.0f * leaves[i].stiffness, 0.51f);
-                ASSERT_EQ(joined.wind[v][0], half_code(b[17]));
-                ASSERT_EQ(joined.wind[v][1], half_code(b[19]));
+                ASSERT_EQ(joined.lengthwise[v], Vec4(leaves[i].y, b[17]));
+                ASSERT_EQ(joined.across[v], Vec4(leaves[i].x, b[18]));
+                ASSERT_EQ(joined.bough[v], b[19]);
             }
             for (size_t k = 0; k < card.indices.size(); k++)
                 ASSERT_EQ(joined.mesh.indices[i * card.indices.size() + k], i * corners + card.indices[k]);

@@ -8,6 +8,7 @@ const Collision := preload("tree_collision.gd")
 const _COPIED: PackedStringArray = [
 	"lod",
 	"levels",
+	"level_distances",
 	"leaves",
 	"bark_material",
 	"leaf_material",

@@ -84,7 +84,6 @@ static var threaded: bool = true
 		_update_instances()
 
 @export_group("Levels of Detail")
-
 ## How many levels take turns by distance, where [member lod] is -1. The first is this node's mesh.
 @export_range(1, 5) var levels: int = Levels.COUNT:
 	set(value):
@@ -111,8 +110,13 @@ static var threaded: bool = true
 		shadow_level = value
 		_levels.begin()
 
-@export_group("Materials")
+## What is shown beyond the last of several levels: see [TreeImpostorBaker].
+@export var impostor: TreeImpostor:
+	set(value):
+		impostor = value
+		_update_instances()
 
+@export_group("Materials")
 ## The bark's material. Without one, the preset of the reconstruction's leaves chooses it.
 @export var bark_material: Material:
 	set(value):
@@ -126,7 +130,6 @@ static var threaded: bool = true
 		_update_materials()
 
 @export_group("Collision")
-
 ## Whether other bodies collide with the trunk and the stout branches. A ray hits a [StaticBody3D]
 ## whose parent is this node.
 @export var collision: bool = false:

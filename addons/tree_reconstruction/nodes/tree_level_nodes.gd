@@ -8,6 +8,7 @@ signal built(box: AABB)
 
 const Levels := preload("tree_levels.gd")
 const BuildJob := preload("tree_build_job.gd")
+const Card := preload("tree_impostor_card.gd")
 # In the editor, the further levels wait until nothing has changed for so many milliseconds: what is
 # seen from near comes first.
 const _QUIET: int = 500
@@ -20,13 +21,12 @@ const _ONLY := GeometryInstance3D.SHADOW_CASTING_SETTING_SHADOWS_ONLY
 
 ## The finest level's leaves, or null.
 var finest_leaves: MultiMeshInstance3D
-## Whether something else is shown beyond the last level: it ends then, too.
-var followed: bool = false
-
 var _tree: TreeInstance3D
 # The further levels, finest first, and what casts the shadows of all.
 var _parts: Array[Part] = []
 var _shadow: Part
+# What is shown beyond the last level, if the tree has it.
+var _card: Card
 var _job: LevelsJob
 var _made: Array[Dictionary] = []
 var _due: int = -1
@@ -149,7 +149,7 @@ func update() -> void:
 	var shown: bool = is_shown()
 	var count: int = _parts.size() + 1
 	var switches: PackedFloat32Array = Levels.distances(
-		_tree.get_tree_height(), count + (1 if followed else 0), _tree.level_distances
+		_tree.get_tree_height(), count + (1 if _tree.impostor != null else 0), _tree.level_distances
 	)
 	_show(_tree, _shared_shadow(shown), _turn_of(0, switches) if shown else Vector4.ZERO)
 	if finest_leaves != null:
@@ -160,12 +160,30 @@ func update() -> void:
 		for part: GeometryInstance3D in [_parts[level].bark, _parts[level].leaves]:
 			_share(part)
 			_show(part, _OFF, _turn_of(level + 1, switches))
+	_update_card(shown and _tree.impostor != null, switches)
 	if _shadow != null:
 		_shadow.set_visible(shown and _tree.cast_shadow != _OFF)
 		for part: GeometryInstance3D in [_shadow.bark, _shadow.leaves]:
 			_share(part)
 			part.gi_mode = GeometryInstance3D.GI_MODE_DISABLED
-			_show(part, _ONLY, Vector4.ZERO)
+			# The card casts its own.
+			var last: Vector4 = _turn_of(_parts.size(), switches)
+			_show(part, _ONLY, Vector4(0.0, 0.0, last.z, last.w))
+
+
+func _update_card(shown: bool, switches: PackedFloat32Array) -> void:
+	if not shown:
+		if _card != null:
+			_card.queue_free()
+			_card = null
+		return
+	if _card == null:
+		_card = Card.new()
+		_card.name = &"Impostor"
+		_tree.add_child(_card, false, Node.INTERNAL_MODE_BACK)
+	_card.show_for(_tree)
+	_share(_card)
+	_show(_card, _tree.cast_shadow, _turn_of(_parts.size() + 1, switches))
 
 
 func _share(part: GeometryInstance3D) -> void:
@@ -280,6 +298,8 @@ func _poll() -> void:
 	elif not _made.is_empty():
 		# One a frame, so that no frame is long.
 		_apply_next()
+	elif _due >= 0 and not is_wanted():
+		_due = -1
 	elif _due >= 0:
 		if Time.get_ticks_msec() >= _due:
 			_due = -1

@@ -144,7 +144,7 @@ func _bake(path: String, write: Callable) -> void:
 	baker.wind = session.node.wind
 	baker.bark_material = session.node.bark_material
 	baker.leaf_material = session.node.leaf_material
-	baker.impostor = session.node.get(&"impostor") as TreeImpostor
+	baker.impostor = session.node.impostor
 	session.jobs.start(
 		tr("Baking %s") % path.get_file(),
 		_bake_and_write.bind(baker, session.tree, path, write),
