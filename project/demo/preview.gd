@@ -5,14 +5,15 @@ extends SceneTree
 ##     godot --path project --script res://demo/preview.gd -- --scan FILE --out FOLDER
 ##         [--title TEXT] [options of 'treerec reconstruct']
 ##
-## It writes res://demo/result/tree.tscn, and in FOLDER tree.glb, tree.obj, report.json and
-## preview.png. What a user should read begins with "> ".
+## It writes res://demo/result/tree.tscn and points.res (the scan, in the tree's space), and in
+## FOLDER tree.glb, tree.obj, report.json and preview.png. What a user should read begins with "> ".
 
 const Plots: GDScript = preload("./plots.gd")
 const Sheet: GDScript = preload("./sheet.gd")
 const Studio: GDScript = preload("./studio.gd")
 
 const _SCENE: String = "res://demo/result/tree.tscn"
+const _POINTS: String = "res://demo/result/points.res"
 const _WIDTH: int = 2000
 const _STAGE_HEIGHT: int = 600
 const _VIEW_HEIGHT: int = 640
@@ -126,6 +127,13 @@ func _save_scene(instance: TreeInstance3D) -> bool:
 		error = ResourceSaver.save(scene, _SCENE)
 	if error != OK:
 		printerr("Could not save %s: %s." % [_SCENE, error_string(error)])
+		return false
+	var points: ArrayMesh = Plots.cloud(
+		_reconstructor.get_cloud_points(), _reconstructor.get_cloud_colors()
+	)
+	error = ResourceSaver.save(points, _POINTS, ResourceSaver.FLAG_COMPRESS)
+	if error != OK:
+		printerr("Could not save %s: %s." % [_POINTS, error_string(error)])
 	return error == OK
 
 
