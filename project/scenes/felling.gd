@@ -6,8 +6,9 @@ const OrbitCamera := preload("orbit_camera.gd")
 const Controls := preload("panel.gd")
 
 const _TREES: int = 3
-# A push in the direction in which one looks, in newton seconds per kilogram.
+# What is cut gets a push in the direction in which one looks: metres and radians a second.
 const _PUSH: float = 0.25
+const _TURN: float = 0.12
 # A drag shorter than this many pixels is a click.
 const _CLICK: float = 6.0
 
@@ -77,12 +78,14 @@ func _cut(at: Vector2) -> void:
 	if tree.reconstruction.get_node_parent(node) == TreeReconstruction.NO_NODE:
 		_panel.note("That is the foot of it: cut a little higher.")
 		return
-	var body: RigidBody3D = tree.fell(node, _density)
+	var body: RigidBody3D = tree.fell(node, _density, true)
 	if body == null:
 		return
 	_fallen += 1
-	var push: Vector3 = Vector3(way.x, 0.0, way.z).normalized() * (_PUSH * body.mass)
-	body.apply_impulse(push, Vector3.UP * 0.3 * tree.reconstruction.get_aabb().size.y)
+	# By its velocity: Godot's own physics learns of a new body's mass a step later.
+	var ahead: Vector3 = Vector3(way.x, 0.0, way.z).normalized()
+	body.linear_velocity += ahead * _PUSH
+	body.angular_velocity += Vector3.UP.cross(ahead) * _TURN
 	_tell(body)
 
 

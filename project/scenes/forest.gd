@@ -29,6 +29,7 @@ func _ready() -> void:
 	var source: TreeReconstruction = DemoTree.load_tree()
 	_trees.minimum_distance = 0.3 * source.get_aabb().size.y
 	_trees.source = source
+	_trees.finished.connect(_find_glade.bind(0.25 * source.get_aabb().size.y), CONNECT_ONE_SHOT)
 	_make_panel()
 
 
@@ -49,6 +50,17 @@ func _process(delta: float) -> void:
 ## How high the ground is at a place, in metres.
 func height_at(x: float, z: float) -> float:
 	return _RELIEF * _noise.get_noise_2d(x, z)
+
+
+# Goes to where no tree stands in the way, and looks at the nearest ones.
+func _find_glade(room: float) -> void:
+	for i: int in 400:
+		# Outwards in a spiral.
+		var away: Vector2 = Vector2.from_angle(2.4 * i) * (2.0 * sqrt(i))
+		var place: Vector3 = Vector3(away.x, height_at(away.x, away.y), away.y)
+		if _trees.find_trees(place, room).is_empty():
+			_walker.position = place + Vector3.UP * 1.7
+			return
 
 
 func _make_panel() -> void:

@@ -5,7 +5,7 @@ const _START: String = "res://scenes/start.tscn"
 const _WIDTH: float = 300.0
 
 var _rows: VBoxContainer = VBoxContainer.new()
-var _notes: Label = Label.new()
+var _notes: Label
 
 
 func _init() -> void:
@@ -37,13 +37,13 @@ func begin(title: String, sentence: String, with_way_back: bool = true) -> void:
 		back.pressed.connect(_go_back)
 		top.add_child(back)
 	_rows.add_child(_sentence(sentence))
-	_notes = _sentence("")
-	_notes.modulate = Color(0.75, 0.86, 0.7)
 
 
 ## The figures below the controls.
 func note(text: String) -> void:
-	if _notes.get_parent() == null:
+	if _notes == null:
+		_notes = _sentence("")
+		_notes.modulate = Color(0.75, 0.86, 0.7)
 		_rows.add_child(_notes)
 	_notes.text = text
 

@@ -75,6 +75,7 @@ func test_a_baked_tree_looks_the_same() -> void:
 	made.leaf_rule.season = 0.7
 	await _stage(made, Vector3.ZERO)
 	var instance: TreeInstance3D = TreeInstance3D.new()
+	instance.lod = 0
 	instance.reconstruction = made
 	instance.wind = false
 	_viewport.add_child(instance)

@@ -29,6 +29,7 @@ func _stage(made: TreeReconstruction, with_wind: bool = true) -> void:
 	sun.shadow_enabled = true
 	_viewport.add_child(sun)
 	_instance = TreeInstance3D.new()
+	_instance.lod = 0
 	_instance.reconstruction = made
 	_viewport.add_child(_instance)
 	var camera: Camera3D = Camera3D.new()

@@ -178,7 +178,8 @@ func test_seasons() -> void:
 	check_near(rule.get_season_tints()[0].a, 0.0, 0.01, "the tint in summer")
 	var summer: PackedFloat32Array = made.build_leaf_buffer()
 	rule.season = 0.0
-	check(made.build_leaf_buffer()[17] < 0.5 * summer[17], "Buds are as large as leaves.")
+	var spring: PackedFloat32Array = made.build_leaf_buffer()
+	check(_size_of_first(spring) < 0.5 * _size_of_first(summer), "Buds are as large as leaves.")
 	rule.season = 0.7
 	var autumn: Color = rule.get_season_tints()[1]
 	check(autumn.a > 0.7 and autumn.r > 2.0 * autumn.g, "A maple in autumn is %s." % autumn)
@@ -246,3 +247,8 @@ func test_numbers_are_kept_in_their_range() -> void:
 	expect_error("no look")
 	rule.look = "none"
 	check_equal(rule.look, "generic", "the look")
+
+
+# The length of the first leaf's Y axis.
+func _size_of_first(buffer: PackedFloat32Array) -> float:
+	return Vector3(buffer[1], buffer[5], buffer[9]).length()

@@ -40,8 +40,6 @@ var _by_tree: bool = false
 var _waiting: Array[Individual] = []
 # What the materials are made with, kept until they are.
 var _shaders: Array[Shader] = []
-# Materials that the engine's thread reads.
-var _asked: PackedStringArray = []
 
 
 func _init(node: Node3D) -> void:
@@ -100,9 +98,6 @@ func go_on(deadline: int, camera: Node3D) -> void:
 ## Ends what is under way, and waits for it.
 func stop() -> void:
 	_waiting = []
-	for path: String in _asked:
-		ResourceLoader.load_threaded_get(path)
-	_asked = []
 	_individuals.stop()
 	if _region != null:
 		_region.stop()
@@ -300,18 +295,19 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 	return plans
 
 
-# Those that the user did not choose are the presets', read by a thread of the engine's: pictures
-# take long.
+# Those that the user did not choose are the presets'. One is read per frame, on this thread: one of
+# the engine's would need it for the pictures, while it may wait for the same ones.
 func _have_materials() -> bool:
-	var all: bool = true
 	for plan: Individual in _waiting:
+		var read: String = ""
 		if plan.bark_material == null:
-			plan.bark_material = _read(Materials.preset_path(plan.source, "bark"))
-		if plan.leaf_material == null:
-			plan.leaf_material = _read(Materials.preset_path(plan.source, "leaf"))
-		all = all and plan.bark_material != null and plan.leaf_material != null
-	if not all:
-		return false
+			read = Materials.preset_path(plan.source, "bark")
+			plan.bark_material = load(read) as Material
+		elif plan.leaf_material == null:
+			read = Materials.preset_path(plan.source, "leaf")
+			plan.leaf_material = load(read) as Material
+		if not read.is_empty():
+			return false
 	# One shader per frame.
 	for plan: Individual in _waiting:
 		for material: Material in [plan.bark_material, plan.leaf_material]:
@@ -319,22 +315,6 @@ func _have_materials() -> bool:
 				_shaders.append(Materials.shader_for(material))
 				return false
 	return true
-
-
-func _read(path: String) -> Material:
-	# What was asked for has to be taken, also where it has come by another way meanwhile.
-	match ResourceLoader.load_threaded_get_status(path):
-		ResourceLoader.THREAD_LOAD_IN_PROGRESS:
-			return null
-		ResourceLoader.THREAD_LOAD_LOADED:
-			_asked.remove_at(_asked.find(path))
-			return ResourceLoader.load_threaded_get(path) as Material
-	if ResourceLoader.has_cached(path) or not _individuals.threaded:
-		return load(path) as Material
-	if ResourceLoader.load_threaded_request(path) != OK:
-		return load(path) as Material
-	_asked.append(path)
-	return null
 
 
 # With the card.
