@@ -29,7 +29,7 @@ inline constexpr int kMostLevels = 5;
 
 // Metres: of a tree of such a height the width at which twigs begin to stand for others. At the distances
 // where levels are first seen (2.5, 6, 14 and 30 heights) a pixel of a picture of 1080 lines and 75 degrees
-// is 1.5 to 2 times as wide. level: any number, doubles per level.
+// is about three times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
 
 struct TreeLevel {
@@ -51,8 +51,8 @@ class LevelBuilder {
                  const Progress* progress = nullptr);
 
     // level: 0 is the finest. budget: if not 0, the finest thing between the levels, down from level 0, that
-    // has at most so many triangles of bark and leaves; `level` is then of no matter. Deterministic; 0 .. 8
-    // times the time of one level with a budget. Throws Error for a negative level, or Cancelled.
+    // has at most so many triangles of bark and leaves; `level` is then of no matter. Deterministic; up
+    // to 12 times the time of one level with a budget. Throws Error for a negative level, or Cancelled.
     TreeLevel build(int level, size_t budget = 0, const Progress* progress = nullptr) const;
     // Metres, around all levels at rest.
     const Bounds& box() const { return box_; }

@@ -33,7 +33,7 @@ count() {
 }
 
 echo "-- headless"
-timeout 300 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" >"$log" 2>&1
+timeout 900 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" >"$log" 2>&1
 count headless
 
 # What collides, with the engine's other physics. The setting is read when the engine starts.
@@ -48,7 +48,7 @@ count Jolt
 for renderer in "opengl3 gl_compatibility" "vulkan mobile" "vulkan forward_plus"; do
     read -r driver method <<<"$renderer"
     echo "-- $method"
-    timeout 200 xvfb-run -a -s '-screen 0 1280x720x24' "$GODOT" --path project --rendering-driver "$driver" \
+    timeout 900 xvfb-run -a -s '-screen 0 1280x720x24' "$GODOT" --path project --rendering-driver "$driver" \
         --rendering-method "$method" --audio-driver Dummy --script "$PWD/tests/godot/run.gd" -- --rendering >"$log" 2>&1
     if [ "$driver" = vulkan ] && ! grep -q '^Vulkan ' "$log"; then
         echo "Skipped: no Vulkan driver here."

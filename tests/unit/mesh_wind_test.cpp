@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <string>
 
 #include "foliage/crown.h"
@@ -23,9 +22,8 @@ namespace {
 double shader_constant(const std::string& name) {
     std::ifstream file("addons/tree_reconstruction/shaders/tree_wind.gdshaderinc");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    std::smatch found;
-    if (!std::regex_search(text, found, std::regex(name + " = ([0-9.]+);"))) return std::nan("");
-    return std::stod(found[1]);
+    const size_t at = text.find(name + " = ");
+    return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + name.size() + 3));
 }
 
 struct Group {

@@ -18,6 +18,7 @@ func _enter_tree() -> void:
 	_errors = ErrorCollector.new()
 	OS.add_logger(_errors)
 	_user = User.new()
+	scene_saved.connect(_on_scene_saved)
 	_start.call_deferred()
 
 
@@ -31,6 +32,10 @@ func _notification(what: int) -> void:
 		_user.is_worked_in = true
 	elif what == NOTIFICATION_APPLICATION_FOCUS_OUT and _user != null:
 		_user.is_worked_in = false
+
+
+func _on_scene_saved(_path: String) -> void:
+	_user.saves += 1
 
 
 func _start() -> void:

@@ -169,9 +169,13 @@ func click_entry(list: Tree, find: Callable, button: int = User.LEFT) -> bool:
 	return check(false, "The mouse can't get hold of an entry of a list.")
 
 
-## Saves the edited scene with Ctrl+S.
+## Saves the edited scene with Ctrl+S. The engine takes some frames for it, and writes whatever
+## scene is open then.
 func save_scene() -> bool:
+	var before: int = user.saves
 	await user.key("ctrl+s")
+	if not await until(func() -> bool: return user.saves > before, "a scene is saved"):
+		return false
 	return await until(func() -> bool: return not is_unsaved(), "the scene is saved")
 
 

@@ -20,6 +20,8 @@ const _FRAMES: int = 4
 ## It looks through the project when it becomes true, and that it is false it only finds after a
 ## quarter of a second without focus: whoever comes back sooner was never away.
 var is_worked_in: bool = false
+## How often a scene was saved. plugin.gd counts.
+var saves: int = 0
 
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
