@@ -14,9 +14,9 @@ for name in "${@:-one_tree scan_and_tree forest felling}"; do
     for scene in $name; do
         rm -f "$frames"/*
         # A fixed rate: what moves moves by a frame's time in each picture, however long it takes to draw.
-        xvfb-run -a -s '-screen 0 960x540x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
-            --resolution 960x540 --fixed-fps 30 --script "$PWD/tests/captures/film.gd" -- "$scene" "$frames"
-        convert -delay 8 "$frames"/*.png -resize 640x -define webp:method=5 -quality 62 -loop 0 "docs/captures/$scene.webp"
+        xvfb-run -a -s '-screen 0 640x360x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
+            --resolution 640x360 --fixed-fps 30 --script "$PWD/tests/captures/film.gd" -- "$scene" "$frames"
+        convert -delay 8 "$frames"/*.png -define webp:method=5 -quality 62 -loop 0 "docs/captures/$scene.webp"
         echo "docs/captures/$scene.webp: $(($(stat -c %s "docs/captures/$scene.webp") / 1024)) kB"
     done
 done
