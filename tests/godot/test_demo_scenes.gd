@@ -4,6 +4,7 @@ extends "./suite.gd"
 const _FOLDER: String = "res://scenes/"
 const _SCENES: PackedStringArray = ["start", "one_tree", "scan_and_tree", "forest", "felling"]
 const _PATIENCE: int = 60000
+const _FALL_STEPS: int = 900
 
 
 func test_every_scene_takes_every_setting() -> void:
@@ -44,8 +45,11 @@ func test_a_click_fells_a_tree_and_what_fell_can_be_cut_again() -> void:
 	await tree.physics_frame
 	await tree.physics_frame
 	var trees: Node = scene.get_node(^"Trees")
+	# The middle one alone: the others grow by chance, and may hold it up or hide it.
+	trees.get_child(2).free()
+	trees.get_child(0).free()
 	var standing: int = trees.get_child_count()
-	var first: TreeInstance3D = trees.get_child(1) as TreeInstance3D
+	var first: TreeInstance3D = trees.get_child(0) as TreeInstance3D
 	await _click(scene, first.global_transform * _place_on_trunk(first.reconstruction, 0.3))
 	check_equal(trees.get_child_count(), standing + 1, "what stands there after the first cut")
 	var body: RigidBody3D = _newest_body(trees)
@@ -53,16 +57,21 @@ func test_a_click_fells_a_tree_and_what_fell_can_be_cut_again() -> void:
 		check(false, "nothing fell")
 	else:
 		var before: float = body.global_position.y
-		for i: int in 90:
+		# A tall tree topples slowly at first.
+		for i: int in _FALL_STEPS:
+			if body.global_position.y < before - 0.2:
+				break
 			await tree.physics_frame
 		check(body.global_position.y < before - 0.2, "it did not fall")
 		var fallen: TreeInstance3D = _tree_in(body)
 		await _settle(scene)
+		var whole: int = fallen.reconstruction.get_node_count()
 		# So that it stays where one aims.
 		body.freeze = true
-		await _click(scene, _middle_shape(body).global_position)
+		await tree.physics_frame
+		await _click(scene, _place_in_sight(scene, body))
 		check(_count_bodies(scene) >= 2, "what fell can't be cut again")
-		check(fallen.is_rebuilding(), "what was cut is as before")
+		check(fallen.reconstruction.get_node_count() < whole, "what was cut is as before")
 		await _settle(scene)
 	await _close(scene)
 
@@ -143,10 +152,17 @@ func _count_bodies(scene: Node) -> int:
 	return scene.find_children("*", "RigidBody3D", true, false).size()
 
 
-func _middle_shape(body: Node) -> CollisionShape3D:
-	var shapes: Array[CollisionShape3D] = []
-	for child: Node in body.get_children(true):
-		if child is CollisionShape3D:
-			shapes.append(child as CollisionShape3D)
-	@warning_ignore("integer_division")
-	return shapes[mini(shapes.size() / 2, 1)]
+# Where a click hits this body and nothing in front of it.
+func _place_in_sight(scene: Node, body: RigidBody3D) -> Vector3:
+	var camera: Camera3D = scene.get_node(^"World/Camera") as Camera3D
+	var space: PhysicsDirectSpaceState3D = camera.get_world_3d().direct_space_state
+	var eye: Vector3 = camera.global_position
+	for shape: Node in body.find_children("*", "CollisionShape3D", true, false):
+		var at: Vector3 = (shape as CollisionShape3D).global_position
+		var ray: PhysicsRayQueryParameters3D = PhysicsRayQueryParameters3D.create(
+			eye, eye + (at - eye) * 2.0
+		)
+		if space.intersect_ray(ray).get("collider") == body:
+			return at
+	check(false, "nothing of what fell is in sight")
+	return body.global_position
