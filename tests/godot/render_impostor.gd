@@ -1,4 +1,4 @@
-extends "./suite.gd"
+extends "./picture_suite.gd"
 ## An impostor looks like its tree, in the renderer that this run uses.
 
 const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
@@ -6,32 +6,6 @@ const Impostor := preload("res://addons/tree_reconstruction/editor/dock/impostor
 const Files := preload("res://addons/tree_reconstruction/editor/dock/files.gd")
 const PlainMaterials := preload("res://addons/tree_reconstruction/baking/plain_materials.gd")
 const SIZE: Vector2i = Vector2i(192, 192)
-const SKY: Color = Color(0.2, 0.3, 0.9)
-
-var _viewport: SubViewport
-var _camera: Camera3D
-
-
-func _stage() -> void:
-	_viewport = SubViewport.new()
-	_viewport.size = SIZE
-	_viewport.own_world_3d = true
-	_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
-	tree.root.add_child(_viewport)
-	var world: WorldEnvironment = WorldEnvironment.new()
-	world.environment = Environment.new()
-	world.environment.background_mode = Environment.BG_COLOR
-	world.environment.background_color = SKY
-	world.environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
-	world.environment.ambient_light_color = Color.WHITE
-	world.environment.ambient_light_energy = 0.5
-	_viewport.add_child(world)
-	var sun: DirectionalLight3D = DirectionalLight3D.new()
-	sun.rotation_degrees = Vector3(-40, 30, 0)
-	_viewport.add_child(sun)
-	_camera = Camera3D.new()
-	_viewport.add_child(_camera)
-	_camera.make_current()
 
 
 # From as far as impostors are seen, with a lens that fills the picture.
@@ -41,43 +15,6 @@ func _look(center: Vector3, reach: float, pitch: float, yaw: float) -> void:
 	_camera.transform = Transform3D(axes, center + axes.z * away)
 	_camera.fov = rad_to_deg(2.0 * asin(1.1 * reach / away))
 	_camera.far = 2.0 * away
-
-
-func _picture() -> Image:
-	await RenderingServer.frame_post_draw
-	await RenderingServer.frame_post_draw
-	return _viewport.get_texture().get_image()
-
-
-static func _shows_tree(pixel: Color) -> bool:
-	return pixel.b < pixel.g + 0.15
-
-
-# The share of the picture that shows the tree, and its mean color.
-func _summary(picture: Image) -> Array:
-	var count: int = 0
-	var sum: Color = Color(0.0, 0.0, 0.0)
-	for y: int in SIZE.y:
-		for x: int in SIZE.x:
-			var pixel: Color = picture.get_pixel(x, y)
-			if _shows_tree(pixel):
-				count += 1
-				sum += pixel
-	return [count / float(SIZE.x * SIZE.y), sum / maxf(count, 1.0)]
-
-
-# The mean difference of a channel, over the pixels where either shows the tree.
-func _difference(a: Image, b: Image) -> float:
-	var sum: float = 0.0
-	var count: int = 0
-	for y: int in SIZE.y:
-		for x: int in SIZE.x:
-			var one: Color = a.get_pixel(x, y)
-			var other: Color = b.get_pixel(x, y)
-			if _shows_tree(one) or _shows_tree(other):
-				sum += absf(one.r - other.r) + absf(one.g - other.g) + absf(one.b - other.b)
-				count += 1
-	return sum / (3.0 * maxi(count, 1))
 
 
 func _card(mesh: Mesh, place: Transform3D) -> MeshInstance3D:
@@ -110,16 +47,10 @@ func test_an_impostor_looks_like_its_tree() -> void:
 	check_equal(ResourceSaver.save(impostor, path, ResourceSaver.FLAG_COMPRESS), OK, "saving")
 	impostor = load(path) as TreeImpostor
 
-	await _stage()
+	_open_stage(SIZE)
 	var center: Vector3 = impostor.box.get_center()
 	var reach: float = 0.5 * impostor.box.size.length()
-	var live: TreeInstance3D = TreeInstance3D.new()
-	live.lod = 0
-	live.wind = false
-	live.reconstruction = made
-	_viewport.add_child(live)
-	while live.is_rebuilding():
-		await tree.process_frame
+	var live: TreeInstance3D = await _show_tree(made, false)
 	var card: MeshInstance3D = _card(impostor.get_mesh(), Transform3D.IDENTITY)
 	for way: Vector2 in [Vector2(2.0, 0.0), Vector2(25.0, 100.0), Vector2(60.0, 230.0)]:
 		_look(center, reach, way.x, way.y)

@@ -1,81 +1,37 @@
-extends "./suite.gd"
+extends "./picture_suite.gd"
 ## The wind in the renderer that this run uses: what moves, what stays, and by what.
 
 const SIZE: Vector2i = Vector2i(240, 240)
-const SKY: Color = Color(0.2, 0.3, 0.9)
 
-var _viewport: SubViewport
 var _instance: TreeInstance3D
 var _wind: TreeWind
 
 
 # A tree before the sky on ground, with a wind that stands still at first.
 func _stage(made: TreeReconstruction, with_wind: bool = true) -> void:
-	_viewport = SubViewport.new()
-	_viewport.size = SIZE
-	_viewport.own_world_3d = true
-	_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
-	tree.root.add_child(_viewport)
-	var world: WorldEnvironment = WorldEnvironment.new()
-	world.environment = Environment.new()
-	world.environment.background_mode = Environment.BG_COLOR
-	world.environment.background_color = SKY
-	world.environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
-	world.environment.ambient_light_color = Color.WHITE
-	world.environment.ambient_light_energy = 0.5
-	_viewport.add_child(world)
-	var sun: DirectionalLight3D = DirectionalLight3D.new()
-	sun.rotation_degrees = Vector3(-40, 30, 0)
-	sun.shadow_enabled = true
-	_viewport.add_child(sun)
-	_instance = TreeInstance3D.new()
-	_instance.lod = 0
-	_instance.reconstruction = made
-	_viewport.add_child(_instance)
-	var camera: Camera3D = Camera3D.new()
-	var box: AABB = made.get_aabb()
-	camera.fov = 40.0
-	_viewport.add_child(camera)
-	camera.position = box.get_center() + Vector3(0, 0, box.size.length() * 1.4)
-	camera.make_current()
+	_open_stage(SIZE, true)
+	_look_at_all(made)
 	if with_wind:
 		_wind = TreeWind.new()
 		_wind.strength = 0.0
 		_viewport.add_child(_wind)
-	while _instance.is_rebuilding():
-		await tree.process_frame
-
-
-func _picture() -> Image:
-	await RenderingServer.frame_post_draw
-	await RenderingServer.frame_post_draw
-	return _viewport.get_texture().get_image()
+	_instance = await _show_tree(made)
 
 
 func _wait(seconds: float) -> void:
 	await tree.create_timer(seconds).timeout
 
 
-func _difference(a: Image, b: Image, part: Rect2i = Rect2i(Vector2i.ZERO, SIZE)) -> float:
-	var sum: float = 0.0
-	for y: int in range(part.position.y, part.end.y):
-		for x: int in range(part.position.x, part.end.x):
-			var one: Color = a.get_pixel(x, y)
-			var other: Color = b.get_pixel(x, y)
-			sum += absf(one.r - other.r) + absf(one.g - other.g) + absf(one.b - other.b)
-	return sum
-
-
 func test_still_air_is_still_and_wind_is_not() -> void:
 	await _stage(grown_tree(2))
 	var still: Image = await _picture()
 	await _wait(0.3)
-	check_equal(_difference(still, await _picture()), 0.0, "what moved in still air")
+	check_equal(_change(still, await _picture()), 0.0, "what moved in still air")
 	_wind.strength = 1.0
 	var first: Image = await _picture()
-	check(_difference(still, first) > 50.0, "The wind does not bend it.")
+	check(_change(still, first) > 50.0, "The wind does not bend it.")
 	await _wait(0.4)
-	check(_difference(first, await _picture()) > 50.0, "The wind does not move it.")
+	check(_change(first, await _picture()) > 50.0, "The wind does not move it.")
 	_viewport.free()
 
 
@@ -85,9 +41,9 @@ func test_a_wind_without_speed_bends_and_holds() -> void:
 	_wind.strength = 1.0
 	var east: Image = await _picture()
 	await _wait(0.3)
-	check_equal(_difference(east, await _picture()), 0.0, "what moved in a wind that stands")
+	check_equal(_change(east, await _picture()), 0.0, "what moved in a wind that stands")
 	_wind.direction = Vector2(-1.0, 0.0)
-	check(_difference(east, await _picture()) > 50.0, "The direction does not matter.")
+	check(_change(east, await _picture()) > 50.0, "The direction does not matter.")
 	_viewport.free()
 
 
@@ -95,18 +51,18 @@ func test_without_a_node_the_project_says_how_it_blows() -> void:
 	await _stage(grown_tree(2), false)
 	var first: Image = await _picture()
 	await _wait(0.4)
-	check(_difference(first, await _picture()) > 20.0, "There is no wind in a project without.")
+	check(_change(first, await _picture()) > 20.0, "There is no wind in a project without.")
 	# A node takes over, and gives back what was.
 	var wind: TreeWind = TreeWind.new()
 	wind.strength = 0.0
 	_viewport.add_child(wind)
 	first = await _picture()
 	await _wait(0.3)
-	check_equal(_difference(first, await _picture()), 0.0, "what moved against the node's will")
+	check_equal(_change(first, await _picture()), 0.0, "what moved against the node's will")
 	wind.free()
 	first = await _picture()
 	await _wait(0.4)
-	check(_difference(first, await _picture()) > 20.0, "The wind did not come back.")
+	check(_change(first, await _picture()) > 20.0, "The wind did not come back.")
 	_viewport.free()
 
 
@@ -118,20 +74,19 @@ func test_the_shadow_moves_with_the_tree() -> void:
 	ground.mesh = plane
 	_viewport.add_child(ground)
 	_instance.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_SHADOWS_ONLY
-	var camera: Camera3D = _viewport.get_camera_3d()
-	camera.position = Vector3(0.0, 9.0, 9.0)
-	camera.look_at(Vector3.ZERO)
+	_camera.position = Vector3(0.0, 9.0, 9.0)
+	_camera.look_at(Vector3.ZERO)
 	await _wait(0.1)
 	var still: Image = await _picture()
 	ground.visible = false
-	check(_difference(still, await _picture()) > 100.0, "There is no ground to see.")
+	check(_change(still, await _picture()) > 100.0, "There is no ground to see.")
 	ground.visible = true
 	_instance.visible = false
-	check(_difference(still, await _picture()) > 20.0, "There is no shadow to see.")
+	check(_change(still, await _picture()) > 20.0, "There is no shadow to see.")
 	_instance.visible = true
 	_wind.speed = 0.0
 	_wind.strength = 1.2
-	check(_difference(still, await _picture()) > 20.0, "The shadow does not sway.")
+	check(_change(still, await _picture()) > 20.0, "The shadow does not sway.")
 	_viewport.free()
 
 
@@ -155,16 +110,16 @@ func test_a_sphere_pushes_what_is_near() -> void:
 	var pushed: Image = await _picture()
 	@warning_ignore("integer_division")
 	var half: Vector2i = Vector2i(SIZE.x / 2, SIZE.y)
-	var left: float = _difference(still, pushed, Rect2i(Vector2i.ZERO, half))
+	var left: float = _change(still, pushed, Rect2i(Vector2i.ZERO, half))
 	check(left > 5.0, "Nothing is pushed: %.1f." % left)
-	var right: float = _difference(still, pushed, Rect2i(half.x + 10, 0, half.x - 10, SIZE.y))
+	var right: float = _change(still, pushed, Rect2i(half.x + 10, 0, half.x - 10, SIZE.y))
 	check(right < 0.1 * left, "What is far is pushed, too: %.1f and %.1f." % [left, right])
 	pusher.free()
 	frames = 0
 	while not TreePusher3D.Pushing.get_spheres().is_empty() and frames < 900:
 		await tree.process_frame
 		frames += 1
-	check_equal(_difference(still, await _picture()), 0.0, "what did not spring back")
+	check_equal(_change(still, await _picture()), 0.0, "what did not spring back")
 	_viewport.free()
 
 
@@ -178,9 +133,9 @@ func test_less_quality_moves_less() -> void:
 		pictures.append(await _picture())
 	_wind.strength = 0.0
 	var still: Image = await _picture()
-	check_equal(_difference(pictures[0], still), 0.0, "what moves at the lowest quality")
+	check_equal(_change(pictures[0], still), 0.0, "what moves at the lowest quality")
 	for quality: int in range(1, 4):
-		var changed: float = _difference(pictures[quality], pictures[quality - 1])
+		var changed: float = _change(pictures[quality], pictures[quality - 1])
 		check(changed > 5.0, "Quality %d is like the one before: %.1f." % [quality, changed])
 	check_equal(TreeWind.quality, TreeWind.Quality.FLUTTER, "the quality in the end")
 	_viewport.free()
@@ -208,7 +163,7 @@ func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 		_viewport.add_child(baked)
 		var first: Image = await _picture()
 		await _wait(0.4)
-		var moved: float = _difference(first, await _picture())
+		var moved: float = _change(first, await _picture())
 		check((moved == 0.0) == global, "With global_wind = %s, it moved %.1f." % [global, moved])
 		baked.free()
 	_viewport.free()
@@ -221,8 +176,8 @@ func test_every_channel_can_be_looked_at() -> void:
 		TreeWind.show_channel(_instance, channel as TreeWind.Channel)
 		seen.append(await _picture())
 		for other: int in channel:
-			var changed: float = _difference(seen[channel], seen[other])
+			var changed: float = _change(seen[channel], seen[other])
 			check(changed > 20.0, "Channels %d and %d look the same." % [other, channel])
 	TreeWind.show_channel(_instance, TreeWind.Channel.NONE)
-	check_equal(_difference(seen[0], await _picture()), 0.0, "what stays of the channels")
+	check_equal(_change(seen[0], await _picture()), 0.0, "what stays of the channels")
 	_viewport.free()
