@@ -23,16 +23,16 @@ mkdir -p "$work/here" "$work/there"
 export WINEPREFIX=$work/wine WINEDEBUG=-all
 windows() { timeout 500 wine "$@" </dev/null 2>"$work/errors"; }
 
-python3 tests/windows/stub_table.py build/gdextension/gdextension_interface.h >"$work/stub_table.inc" &&
+python3 tests/windows/stand_in_table.py build/gdextension/gdextension_interface.h >"$work/stand_in_table.inc" &&
     x86_64-w64-mingw32-g++-posix -std=c++20 -Wall -Wextra -Werror -O1 -static -Ibuild/gdextension -I"$work" \
-        tests/windows/stub_host.cpp -o "$work/stub_host.exe"
-check 'the stub of the engine is built' [ -x "$work/stub_host.exe" ]
+        tests/windows/stand_in_host.cpp -o "$work/stand_in_host.exe"
+check 'the stand-in for the engine is built' [ -x "$work/stand_in_host.exe" ]
 
 # What a template registers; the editor's library has more.
 runtime='LSystem LeafRule TreeEdit TreeReconstruction'
 for target in editor template_debug template_release; do
     library=project/addons/tree_reconstruction/bin/libtree_reconstruction.windows.$target.x86_64.dll
-    windows "$work/stub_host.exe" "$library" | tr -d '\r' >"$work/$target.log"
+    windows "$work/stand_in_host.exe" "$library" | tr -d '\r' >"$work/$target.log"
     check "$target: starts, finds all functions of the engine and ends" grep -q '^ended$' "$work/$target.log"
     check "$target: no error in between" [ "$(grep -cE '^(error|missing)' "$work/$target.log")" = 0 ]
     classes=$(sed -n 's/^class \([^ ]*\) .*/\1/p' "$work/$target.log" | LC_ALL=C sort | tr '\n' ' ')

@@ -1,6 +1,6 @@
 // Loads the extension's library on Windows as the engine does, with an engine that knows the names of all
-// functions (stub_table.py, from the real one's own list) and does next to nothing in them. Shows that the
-// library loads, finds everything it asks for, and starts and ends. Tells what it registers.
+// functions (stand_in_table.py, from the real one's own list) and does next to nothing in them. Shows that
+// the library loads, finds everything it asks for, and starts and ends. Tells what it registers.
 #include <windows.h>
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Offered {
     Returns returns;
 };
 constexpr Offered kOffered[] = {
-#include "stub_table.inc"
+#include "stand_in_table.inc"
 };
 
 int asked = 0, missing = 0, methods = 0, references = 0;
@@ -119,7 +119,7 @@ GDExtensionInterfaceFunctionPtr get_proc_address(const char* name) {
 
 int main(int count, char** arguments) {
     if (count != 2) {
-        std::fprintf(stderr, "usage: stub_host LIBRARY.dll\n");
+        std::fprintf(stderr, "usage: stand_in_host LIBRARY.dll\n");
         return 2;
     }
     const HMODULE library = LoadLibraryA(arguments[1]);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints, as C++ rows, each function that the engine offers to extensions: its name and what it returns.
 
-    stub_table.py build/gdextension/gdextension_interface.h > stub_table.inc
+    stand_in_table.py build/gdextension/gdextension_interface.h > stand_in_table.inc
 """
 import re
 import sys
@@ -22,9 +22,9 @@ rows = []
 for name, rest in re.findall(r"@name (\w+)(.*?\));", text, re.DOTALL):
     found = re.search(r"typedef ([\w ]+?\*?) ?\(\*GDExtension\w+\)\([^)]*\)$", rest.split("*/", 1)[1].strip())
     if not found:
-        sys.exit("stub_table.py: the type of %s isn't understood" % name)
+        sys.exit("stand_in_table.py: the type of %s isn't understood" % name)
     returned = found.group(1).strip()
     rows.append('    {"%s", %s},' % (name, kind(returned)))
 if len(rows) < 150 or len(rows) != text.count("@name"):
-    sys.exit("stub_table.py: %d functions were found of %d" % (len(rows), text.count("@name")))
+    sys.exit("stand_in_table.py: %d functions were found of %d" % (len(rows), text.count("@name")))
 print("\n".join(rows))
