@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "geometry/cell_grid.h"
+#include "geometry/covariance.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "scan/robust.h"
@@ -48,17 +49,7 @@ std::array<double, 3> eigenvalues(const DMat3& m) {
 }
 
 std::array<double, 3> spreads(const std::vector<Vec3>& points) {
-    DVec3 mean(0.0);
-    for (const Vec3& p : points)
-        mean += DVec3(p);
-    mean /= static_cast<double>(points.size());
-    DMat3 covariance(0.0);
-    for (const Vec3& p : points) {
-        const DVec3 d = DVec3(p) - mean;
-        covariance += glm::outerProduct(d, d);
-    }
-    covariance /= static_cast<double>(points.size());
-    std::array<double, 3> values = eigenvalues(covariance);
+    std::array<double, 3> values = eigenvalues(covariance_of(points));
     for (double& v : values)
         v = std::sqrt(std::max(0.0, v));
     return values;

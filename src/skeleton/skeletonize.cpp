@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "geometry/covariance.h"
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
@@ -53,15 +54,7 @@ Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec
 
 // Whether the points all lie on a plane, or on a line.
 bool is_flat(const std::vector<Vec3>& points) {
-    DVec3 mean(0.0);
-    for (const Vec3& p : points)
-        mean += DVec3(p);
-    mean /= static_cast<double>(points.size());
-    DMat3 covariance(0.0);
-    for (const Vec3& p : points) {
-        const DVec3 d = DVec3(p) - mean;
-        covariance += glm::outerProduct(d, d);
-    }
+    const DMat3 covariance = covariance_of(points);
     // The determinant is the product of the squared extents along the three main axes.
     const double widest = (covariance[0][0] + covariance[1][1] + covariance[2][2]) / 3.0;
     return !(glm::determinant(covariance) > kFlatness * kFlatness * widest * widest * widest);

@@ -6,43 +6,12 @@ extends SceneTree
 ## Suites named render_*.gd need a window and run only with --rendering, the others (test_*.gd) only
 ## without. The last line is 'N passed, N failed'; the exit code is 1 if any failed.
 
+const ErrorCollector := preload("./error_collector.gd")
 const Suite: GDScript = preload("./suite.gd")
 
 var _passed: int = 0
 var _failed: int = 0
 var _errors: ErrorCollector = ErrorCollector.new()
-
-
-## Keeps what the engine reports while a test runs.
-class ErrorCollector:
-	extends Logger
-	var _mutex: Mutex = Mutex.new()
-	var _errors: PackedStringArray = []
-
-	func _log_error(
-		function: String,
-		file: String,
-		line: int,
-		code: String,
-		rationale: String,
-		_editor_notify: bool,
-		error_type: int,
-		_backtraces: Array[ScriptBacktrace]
-	) -> void:
-		if error_type == ERROR_TYPE_WARNING:
-			return
-		_mutex.lock()
-		var text: String = rationale if not rationale.is_empty() else code
-		_errors.append("%s (%s, %s:%d)" % [text, function, file, line])
-		_mutex.unlock()
-
-	## All errors since the last call.
-	func take() -> PackedStringArray:
-		_mutex.lock()
-		var taken: PackedStringArray = _errors
-		_errors = []
-		_mutex.unlock()
-		return taken
 
 
 func _initialize() -> void:

@@ -1,22 +1,7 @@
-extends "./suite.gd"
+extends "./session_suite.gd"
 ## The tool that shows how the flood works.
 
-const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
 const Flood := preload("res://addons/tree_reconstruction/editor/tools/flood.gd")
-
-var _undo: UndoRedo
-var _said: PackedStringArray = []
-
-
-func _session_with(made: TreeReconstruction) -> Session:
-	_undo = UndoRedo.new()
-	var node: TreeInstance3D = TreeInstance3D.new()
-	node.reconstruction = made
-	tree.root.add_child(node)
-	var session: Session = Session.new(_undo)
-	session.said.connect(func(sentence: String, _kind: int) -> void: _said.append(sentence))
-	session.edit_node(node)
-	return session
 
 
 func _tool_of(session: Session) -> Flood:
@@ -27,14 +12,11 @@ func _tool_of(session: Session) -> Flood:
 	return tool
 
 
-func _end(session: Session, tool: Flood) -> void:
-	var node: TreeInstance3D = session.node
+func _put_away(session: Session, tool: Flood) -> void:
 	session.choose(&"")
 	session.tools.clear()
-	session.shut_down()
+	_end(session)
 	tool.session = null
-	_undo.free()
-	node.free()
 
 
 func test_shows_the_steps_of_the_edited_trees_scan() -> void:
@@ -64,7 +46,7 @@ func test_shows_the_steps_of_the_edited_trees_scan() -> void:
 	check_equal(made.skeleton, before, "the skeleton")
 	check_equal(_undo.get_history_count(), 0, "steps of the history")
 	strip.free()
-	_end(session, tool)
+	_put_away(session, tool)
 
 
 func test_a_tree_without_a_scan_gets_a_sentence() -> void:
@@ -73,7 +55,7 @@ func test_a_tree_without_a_scan_gets_a_sentence() -> void:
 	tool.run()
 	check_equal(_said.size(), 1, "sentences")
 	check_sentence(_said[0], "the refusal")
-	_end(session, tool)
+	_put_away(session, tool)
 
 
 func test_places_of_the_scan_lie_in_the_tree() -> void:

@@ -1,6 +1,6 @@
 @tool
 extends Logger
-## Keeps what the editor reports, until it is taken.
+## Keeps what the engine reports, until it is taken. The editor's tests use it, too.
 
 var _mutex: Mutex = Mutex.new()
 var _errors: PackedStringArray = []
