@@ -39,6 +39,54 @@ func test_variants_are_drawn_and_put_beside_the_tree() -> void:
 	_end()
 
 
+func test_a_variant_that_was_undone_leaves_no_file() -> void:
+	var made: TreeReconstruction = grown_tree(6)
+	var beside: String = "res://.godot/tree_reconstruction_test"
+	DirAccess.make_dir_recursive_absolute(beside)
+	for file: String in DirAccess.get_files_at(beside):
+		DirAccess.remove_absolute(beside.path_join(file))
+	made.take_over_path(beside.path_join("oak.res"))
+	_begin(made)
+	var shown: Variants = _dock.sections[&"variants"] as Variants
+	var path: String = beside.path_join("oak_variant_3.res")
+	var placed: TreeInstance3D = shown.add_variant(3)
+	var variant: TreeReconstruction = placed.reconstruction
+	check_equal(variant.resource_path, path, "the variant's file")
+	check(path in _session.local_trees.get_unsaved(), "Nobody knows that it is unsaved.")
+	_undo.undo()
+	check(path not in _session.local_trees.get_unsaved(), "What was undone is to be saved.")
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check(not FileAccess.file_exists(path), "What was undone was saved.")
+	# Another one of the same seed does not take its file, since it may come back.
+	var again: TreeInstance3D = shown.add_variant(3)
+	var second: String = beside.path_join("oak_variant_3_2.res")
+	check_equal(again.reconstruction.resource_path, second, "the second one's file")
+	_undo.undo()
+	# In an array of a resource of a node it is used, too.
+	var keeper: Node = Node.new()
+	var inside: Resource = Resource.new()
+	inside.set_meta(&"trees", {"one": [variant]})
+	keeper.set_meta(&"kept", inside)
+	tree.root.add_child(keeper)
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check_equal(
+		(
+			(ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as TreeReconstruction)
+			. skeleton
+		),
+		variant.skeleton,
+		"the saved variant"
+	)
+	check(not FileAccess.file_exists(second), "What was undone was saved.")
+	keeper.free()
+	_undo.redo()
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check(FileAccess.file_exists(second), "What was done again was not saved.")
+	_end()
+	for file: String in DirAccess.get_files_at(beside):
+		DirAccess.remove_absolute(beside.path_join(file))
+
+
 func test_pictures_follow_edits_once_the_tree_is_calm() -> void:
 	_begin(grown_tree(6))
 	var shown: Variants = _dock.sections[&"variants"] as Variants

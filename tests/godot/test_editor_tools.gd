@@ -1,6 +1,8 @@
 extends "./tools_suite.gd"
 ## The viewport's tools, driven as the viewport does it: by mouse and key events and a camera.
 
+const Slice := preload("res://addons/tree_reconstruction/editor/tools/slice.gd")
+
 
 # Every tool has its words and controls, and no key twice.
 func test_tools_tell_what_they_do() -> void:
@@ -389,7 +391,7 @@ func test_a_box_cuts_at_its_faces() -> void:
 	_hover(middle + Vector2(40, 20), true)
 	_button(middle + Vector2(40, 20), false)
 	await _frame()
-	var box: AABB = _session.tool.get(&"_box")
+	var box: AABB = (_session.tool as Slice)._handles.box
 	check(box.has_volume(), "No box was drawn.")
 	var shown: PackedVector3Array = _session.tool.call(&"get_ghosts")[Mesh.ARRAY_VERTEX]
 	for corner: int in 8:

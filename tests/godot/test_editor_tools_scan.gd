@@ -114,6 +114,8 @@ func test_doubtful_places_are_gone_through() -> void:
 	check(seen >= 2, "Only %d places were found." % seen)
 	var doubtful: bool = false
 	var missing: bool = false
+	var wanted: Array[AABB] = []
+	_session.view_wanted.connect(func(box: AABB) -> void: wanted.append(box))
 	for i: int in seen:
 		var place: Doubt.Place = tool.get_place()
 		kinds.append(place.kind)
@@ -128,6 +130,18 @@ func test_doubtful_places_are_gone_through() -> void:
 			doubtful = doubtful or first in _made.select_nodes("below:%d" % place.node)
 		missing = missing or place.kind == Doubt.Kind.MISSING
 		check(_key(KEY_Y), "The tool's key was left.")
+		# The next one is to be brought into view.
+		check_equal(wanted.size(), i + 1, "views that were asked for")
+		var next: Doubt.Place = tool.get_place()
+		var joint: int = _made.get_node_parent(next.node)
+		check(wanted[-1].grow(1e-4).has_point(next.at), "The place is out of view.")
+		check(
+			(
+				next.kind == Doubt.Kind.MISSING
+				or wanted[-1].grow(1e-4).has_point(_made.get_node_position(joint))
+			),
+			"What it grows from is out of view."
+		)
 	check(doubtful, "The false branch isn't doubtful.")
 	check(missing, "The missing branch isn't missed.")
 	check_equal(tool.get_left(), seen, "places after having looked")

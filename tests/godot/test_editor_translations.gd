@@ -5,6 +5,11 @@ const Translations: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/translations/part.gd"
 )
 
+const Sentences: GDScript = preload(
+	"res://addons/tree_reconstruction/editor/translations/sentences.gd"
+)
+const _DOMAIN: StringName = &"tree_reconstruction_test"
+
 
 func test_the_editor_s_language_chooses() -> void:
 	var domain: TranslationDomain = TranslationDomain.new()
@@ -32,3 +37,93 @@ func test_words_of_objects_are_translated() -> void:
 	check_equal(object.tr("Leaves"), "葉", "a word")
 	check_equal(object.tr("no such word"), "no such word", "an unknown word")
 	TranslationServer.remove_domain(name)
+
+
+func test_sentences_of_the_library_are_translated() -> void:
+	Translations.fill(TranslationServer.get_or_add_domain(_DOMAIN), "ja")
+	var wanted: Dictionary[String, String] = {
+		"Nothing was cut away.": "何も切り取られませんでした。",
+		"Cut away 214 nodes.": "ノード 214 個を切り取りました。",
+		"Grafted 1 branch of 12 nodes in all, clear of other branches.":
+		"枝 1 本（合計 ノード 12 個）を接ぎ木しました。ほかの枝とはぶつかりません。",
+		"'a %s b.ply' is empty.": "'a %s b.ply' は空です。",
+		"Cut away nodes.": "Cut away nodes.",
+		"Something else.": "Something else.",
+		"": "",
+	}
+	for sentence: String in wanted:
+		check_equal(Sentences.translate(sentence, _DOMAIN), wanted[sentence], sentence)
+	check_equal(
+		Sentences.translate_list("few points, a long bridge", _DOMAIN), "点が少ない, 長い隙間をまたぐ", "a list"
+	)
+	Translations.fill(TranslationServer.get_or_add_domain(_DOMAIN), "en")
+	check_equal(
+		Sentences.translate("Cut away 3 nodes.", _DOMAIN), "Cut away 3 nodes.", "what is English"
+	)
+	TranslationServer.remove_domain(_DOMAIN)
+
+
+# What the editor's tools and menus do to a tree, and what they may be refused.
+func test_all_that_edits_say_is_known() -> void:
+	Translations.fill(TranslationServer.get_or_add_domain(_DOMAIN), "ja")
+	var made: TreeReconstruction = grown_tree(7)
+	var tip: int = made.get_leaves()[0]
+	var inner: int = made.get_node_parent(tip)
+	var root: int = made.get_root()
+	var twig: String = "node=%d twig=oak" % tip
+	var commands: PackedStringArray = [
+		"prune factor=1",
+		"prune_order order=1",
+		"prune_order order=90",
+		"cut node=%d" % root,
+		"cut node=%d" % inner,
+		"cut node=999999",
+		"move nodes=%d by=0.1,0,0" % tip,
+		"grow node=%d" % tip,
+		"grow node=%d count=4" % tip,
+		"twig node=%d side=left" % inner,
+		"graft " + twig,
+		"graft_many nodes=leaves twigs=oak",
+		"graft_many nodes=leaves twigs=oak most=1",
+		"lighten nodes=40",
+		"smooth_radii",
+		"smooth_paths",
+		"relax angle=5",
+		"turn node=%d axis=0,1,0 angle=20" % inner,
+		"scale node=%d factor=0.8" % inner,
+		"mirror node=%d normal=1,0,0" % inner,
+		"sag",
+		"thicken factor=1.1",
+		"subdivide length=0.05",
+		"insert node=%d" % inner,
+		"delete node=%d" % root,
+		"attach node=%d to=%d" % [inner, tip],
+		'lstring node=%d string="!(0.01) F(0.3) F(0.2)"' % inner,
+	]
+	var said: int = 0
+	for command: String in commands:
+		var preview: Dictionary = made.preview_edit(command)
+		for sentence: String in [preview["error"], preview["message"]]:
+			if sentence.is_empty():
+				continue
+			said += 1
+			check(
+				Sentences.translate(sentence, _DOMAIN) != sentence,
+				"'%s' says what nobody translates: %s" % [command, sentence]
+			)
+	check(said >= commands.size() - 2, "Only %d sentences were said." % said)
+	var files: Dictionary[String, String] = {
+		"none.xyz": "",
+		"words.xyz": "no numbers\nat all\n",
+		"none.ply": "",
+		"words.las": "words",
+		"plane.xyz": "",
+	}
+	for i: int in 400:
+		files["plane.xyz"] += "%f %f 0\n" % [i % 20, i / 20.0]
+	for file: String in files:
+		var reader: TreeReconstructor = TreeReconstructor.new()
+		check(reader.reconstruct_file(write_text(file, files[file])) == null, file + " is read.")
+		var sentence: String = reader.get_error_message()
+		check(Sentences.translate(sentence, _DOMAIN) != sentence, "Of %s: %s" % [file, sentence])
+	TranslationServer.remove_domain(_DOMAIN)

@@ -4,6 +4,7 @@ extends "./suite.gd"
 
 const Session := preload("res://addons/tree_reconstruction/editor/session.gd")
 const Picker := preload("res://addons/tree_reconstruction/editor/viewport/picker.gd")
+const CameraViews := preload("res://addons/tree_reconstruction/editor/viewport/camera_views.gd")
 const Shortcuts := preload("res://addons/tree_reconstruction/editor/viewport/shortcuts.gd")
 const InputRouter := preload("res://addons/tree_reconstruction/editor/viewport/input_router.gd")
 const Actions := preload("res://addons/tree_reconstruction/editor/viewport/actions.gd")
@@ -257,7 +258,57 @@ func test_no_key_is_taken_twice() -> void:
 	check(taken.size() > 20, "There are %d keys." % taken.size())
 	for id: StringName in _session.tools:
 		check(not _shortcuts.get_key_text(Shortcuts.name_of_tool(id)).is_empty(), "%s: no key" % id)
-	check_equal(_shortcuts.find(_key(KEY_F)), Shortcuts.NONE, "what F does: it is the editor's")
+	_close()
+
+
+func test_the_key_f_looks_at_selected_wood_and_else_is_the_editor_s() -> void:
+	_open(grown_tree(3, 20))
+	var asked: Array[StringName] = []
+	_router.asked.connect(func(action: StringName) -> void: asked.append(action))
+	var pass_on: int = EditorPlugin.AFTER_GUI_INPUT_PASS
+	_session.clear_selection()
+	check_equal(_router.input(_camera, _key(KEY_F)), pass_on, "F with nothing selected")
+	_session.select([2])
+	_session.view.editing = false
+	check_equal(_router.input(_camera, _key(KEY_F)), pass_on, "F while the tree isn't edited")
+	check(asked.is_empty(), "%s was asked for." % [asked])
+	_session.view.editing = true
+	check_equal(
+		_router.input(_camera, _key(KEY_F)), EditorPlugin.AFTER_GUI_INPUT_STOP, "F with a selection"
+	)
+	check_equal(asked, [&"view_selection"] as Array[StringName], "what was asked for")
+	_close()
+
+
+func test_what_is_seen_well_needs_no_other_view() -> void:
+	_open(grown_tree(3))
+	var views: CameraViews = CameraViews.new(_session)
+	var id: int = _lone_node()
+	var branch: PackedInt32Array = _session.tree.select_nodes("below:%d" % id)
+	var box: AABB = _session.get_box_of(branch)
+	for node: int in branch:
+		check(
+			box.grow(1e-4).has_point(_session.tree.get_node_position(node)),
+			"The box leaves node %d out." % node
+		)
+	var joint: int = _session.tree.get_node_parent(id)
+	check(box.grow(1e-4).has_point(_session.tree.get_node_position(joint)), "And the joint.")
+	check_equal(_session.get_box_of([]), _session.tree.get_aabb(), "the box of nothing")
+	var middle: Vector3 = _session.node.global_transform * box.get_center()
+	var reach: float = views.get_reach(box) * 1.2
+	var way: Vector3 = Vector3(0.3, 0.2, 1.0).normalized()
+	var near: float = 2.5 * reach / tan(deg_to_rad(_camera.fov) * 0.5)
+	_camera.look_at_from_position(middle + way * near, middle)
+	check(views.is_well_seen(box, _camera), "It is in the middle of the picture.")
+	_camera.look_at_from_position(middle + way * near * 8.0, middle)
+	check(not views.is_well_seen(box, _camera), "It is far away.")
+	_camera.look_at_from_position(middle + way * near * 0.3, middle)
+	check(not views.is_well_seen(box, _camera), "It is larger than the picture.")
+	_camera.look_at_from_position(middle + way * near, middle + way * near * 2.0)
+	check(not views.is_well_seen(box, _camera), "It is behind the camera.")
+	_camera.look_at_from_position(middle + way * near, middle)
+	_camera.translate_object_local(Vector3(reach * 2.6, 0, 0))
+	check(not views.is_well_seen(box, _camera), "It is at the border.")
 	_close()
 
 

@@ -2,6 +2,9 @@ extends "suite.gd"
 ## Which files are scans, and what the Import dock's parameters become.
 
 const ScanFiles: GDScript = preload("res://addons/tree_reconstruction/editor/import/scan_files.gd")
+const OptionTips: GDScript = preload(
+	"res://addons/tree_reconstruction/editor/import/option_tips.gd"
+)
 const ImportOptions: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/import/import_options.gd"
 )
@@ -186,6 +189,21 @@ func test_parameters_cover_all_options() -> void:
 	for parameter: Dictionary in ImportOptions.list(0):
 		groups[(parameter["name"] as String).get_slice("/", 0)] = true
 	check_equal(groups.keys(), ["scan", "cleaning", "skeleton", "leaves", "advanced"], "the groups")
+
+
+func test_every_parameter_has_a_tooltip() -> void:
+	for parameter: Dictionary in ImportOptions.list(0):
+		var name: String = parameter["name"]
+		if name != "scan/unit":
+			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
+	var tooltip: String = OptionTips.to_tooltip("Up | Axis", 'With [b]tags[/b], "quotes" | bars.')
+	var parts: PackedStringArray = tooltip.split("|", true, 3)
+	check_equal(parts[2], "Up / Axis", "the name in a tooltip")
+	check_equal(
+		JSON.parse_string(parts[3])["description"],
+		'With [lb]b]tags[lb]/b], "quotes" | bars.',
+		"the text in a tooltip"
+	)
 
 
 func test_presets_set_what_exists() -> void:

@@ -18,9 +18,12 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addons/tree_reconstruction"
 OPTIONS = ROOT / "extension/reconstruct_options.cpp"
+SENTENCES = ADDON / "editor/translations/sentences.gd"
 FOLDER = ADDON / "editor/translations"
 POT = FOLDER / "tree_reconstruction.pot"
 LANGUAGES = ("zh_CN", "zh_TW", "ja")
+# Pieces of a sentence that are shorter say nothing by themselves.
+SHORTEST = 4
 SHOWN = r"text|title|tooltip_text|placeholder_text|dialog_text|ok_button_text|cancel_button_text"
 ADDED = r"add_item|add_check_item|add_radio_check_item|add_icon_item|add_icon_check_item|add_separator|add_submenu_node_item"
 BEGIN = re.compile(r"(?<!\w)tr\(|(?<![\w])(?:%s)\s*=\s*(?!=)|\.(?:%s)\(" % (SHOWN, ADDED))
@@ -98,9 +101,39 @@ def find_words():
         for _, word in sorted((place, word) for place, word in found if word is not None):
             if re.search(r"[A-Za-z]{2}", word):
                 words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
+    for word in sentences():
+        words.setdefault(word, []).append(SENTENCES.relative_to(ADDON).as_posix())
     for word in option_descriptions():
         words.setdefault(word, []).append(OPTIONS.relative_to(ROOT).as_posix())
     return words
+
+
+def sentences():
+    """The entries of PATTERNS: what the library says."""
+    source = without_comments(SENTENCES.read_text(encoding="utf-8"))
+    table = source[source.index("const PATTERNS") : source.index("const _GAP")]
+    for entry in re.split(r",\n\t(?=[\"(\]]|\s*[\"(])", table[table.index("[") + 1 :]):
+        word = expression(entry, 0)
+        if word:
+            yield word
+
+
+def unsaid():
+    """What the library's sources do not say, of the entries of PATTERNS."""
+    paths = [path for end in ("*.cpp", "*.lstring") for path in (ROOT / "src").rglob(end)] + [*(ROOT / "extension").rglob("*.cpp")]
+    sources = "".join(path.read_text(encoding="utf-8") for path in sorted(paths))
+    # Literals that follow each other are one.
+    sources = unescape(re.sub(r'"\s*\n\s*"', "", sources))
+    for word in sentences():
+        for piece in word.split("%s"):
+            # The sources may put it together of several literals. A name in a library is capitalized when it is shown.
+            rest = piece.strip() if piece.strip() in sources else piece.strip().lower() if " " not in piece else piece.strip()
+            while len(rest) >= SHORTEST:
+                length = max((n for n in range(len(rest) + 1) if rest[:n] in sources), default=0)
+                if length < SHORTEST:
+                    yield word, rest
+                    break
+                rest = rest[length:]
 
 
 def option_descriptions():
@@ -150,7 +183,7 @@ def read(path):
 
 
 def problems(words):
-    found = []
+    found = ["%s: the library says nothing like %s" % (SENTENCES.name, quoted(piece)) for _, piece in unsaid()]
     if not POT.exists() or POT.read_text(encoding="utf-8") != file_text(words, "", {}):
         found.append("%s is out of date: run tests/tools/editor_strings.py" % POT.name)
     for language in LANGUAGES:

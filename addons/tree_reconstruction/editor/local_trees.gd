@@ -12,6 +12,9 @@ const _SUFFIX: String = "_tree"
 # trees: one that was closed unsaved is gone.
 var _changed: Dictionary[String, WeakRef] = {}
 var _watched: Array[WeakRef] = []
+# By path, those of them that have no file yet: they get one as soon as a scene is saved while
+# anything in a scene uses them. So what was undone leaves none behind.
+var _new: Dictionary[String, bool] = {}
 
 
 ## Whether an edit of [param tree] would be lost, since it belongs to an import, to the addon, or
@@ -78,6 +81,15 @@ static func free_path(tree: TreeReconstruction, node: Node) -> String:
 	return path
 
 
+## Gives [param tree], which was made in the editor, a file of its own. It is written when a scene
+## is saved while any uses the tree.
+func add_new(tree: TreeReconstruction, path: String) -> void:
+	tree.take_over_path(path)
+	_new[path] = true
+	_changed[path] = weakref(tree)
+	watch(tree)
+
+
 ## Notices from now on when [param tree] has to be saved.
 func watch(tree: TreeReconstruction) -> void:
 	for known: WeakRef in _watched:
@@ -92,7 +104,8 @@ func watch(tree: TreeReconstruction) -> void:
 func get_unsaved() -> PackedStringArray:
 	var paths: PackedStringArray = []
 	for path: String in _changed:
-		if _changed[path].get_ref() != null:
+		var tree: TreeReconstruction = _changed[path].get_ref() as TreeReconstruction
+		if tree != null and (not _new.has(path) or _is_used(tree)):
 			paths.append(path)
 	return paths
 
@@ -108,6 +121,7 @@ func save_tree(tree: TreeReconstruction) -> Error:
 	var error: Error = _write(tree, tree.resource_path)
 	if error == OK:
 		_changed.erase(tree.resource_path)
+		_new.erase(tree.resource_path)
 	return error
 
 
@@ -123,6 +137,7 @@ func save() -> PackedStringArray:
 				failed.append(tr("%s can't be written: %s.") % [path, error_string(error)])
 				continue
 		_changed.erase(path)
+		_new.erase(path)
 	return failed
 
 
@@ -140,6 +155,49 @@ static func _write(tree: TreeReconstruction, path: String) -> Error:
 		EditorInterface.get_resource_filesystem().update_file(part)
 		EditorInterface.get_resource_filesystem().update_file(path)
 	return error
+
+
+# Whether anything in an open scene holds the tree.
+static func _is_used(tree: TreeReconstruction) -> bool:
+	var scenes: Array[Node] = [(Engine.get_main_loop() as SceneTree).root]
+	if Engine.is_editor_hint():
+		scenes.assign(EditorInterface.get_open_scene_roots())
+	for scene: Node in scenes:
+		var nodes: Array[Node] = scene.find_children("*", "", true, false)
+		nodes.append(scene)
+		for node: Node in nodes:
+			# The engine's own nodes hold no tree.
+			var may: bool = node is TreeInstance3D or node.get_script() != null
+			if (may or not node.get_meta_list().is_empty()) and _holds(node, tree, {}):
+				return true
+	return false
+
+
+# Whether a value holds the tree, or one of the resources in it does.
+static func _holds(value: Variant, tree: TreeReconstruction, seen: Dictionary) -> bool:
+	if value is Array or value is Dictionary:
+		var values: Array = value if value is Array else (value as Dictionary).values()
+		return values.any(_holds.bind(tree, seen))
+	if not is_instance_valid(value) or seen.has(value):
+		return false
+	if value == tree:
+		return true
+	# What holds much, and no tree.
+	if value is Script or value is Mesh or value is Texture or value is TreeReconstruction:
+		return false
+	seen[value] = true
+	var object: Object = value
+	if object is Node and seen.size() > 1:
+		return false
+	for property: Dictionary in object.get_property_list():
+		var type: int = property["type"]
+		if (
+			property["usage"] & PROPERTY_USAGE_STORAGE
+			and type in [TYPE_OBJECT, TYPE_ARRAY, TYPE_DICTIONARY]
+			and _holds(object.get(property["name"]), tree, seen)
+		):
+			return true
+	return false
 
 
 func _on_changed(of: WeakRef) -> void:

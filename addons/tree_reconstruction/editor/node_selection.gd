@@ -119,6 +119,23 @@ func get_selection_words() -> String:
 	return ",".join(words)
 
 
+## The box around nodes, and what they grow from, in the tree's space; around the whole tree without
+## any.
+func get_box_of(ids: PackedInt32Array) -> AABB:
+	var box: AABB = AABB()
+	var begun: bool = false
+	var root: int = tree.get_root()
+	for id: int in ids:
+		if not tree.has_node(id):
+			continue
+		var at: Vector3 = tree.get_node_position(id)
+		box = box.expand(at) if begun else AABB(at, Vector3.ZERO)
+		begun = true
+		if id != root:
+			box = box.expand(tree.get_node_position(tree.get_node_parent(id)))
+	return box if begun else tree.get_aabb()
+
+
 # Takes the nodes off that are no more.
 func _drop_missing() -> void:
 	var left: PackedInt32Array = []

@@ -16,6 +16,8 @@ signal view_changed
 signal scan_changed
 ## The Pick tool took a branch, as an L-string that begins at a node.
 signal string_picked(lstring: String, id: int)
+## The viewport should show what is in [param box], in the tree's space.
+signal view_wanted(box: AABB)
 ## A sentence for the user.
 signal said(sentence: String, kind: Kind)
 
@@ -25,9 +27,12 @@ const History := preload("history.gd")
 const Jobs := preload("jobs.gd")
 const LocalTrees := preload("local_trees.gd")
 const ScanData := preload("scan_data.gd")
+const Sentences := preload("translations/sentences.gd")
 const ViewState := preload("view_state.gd")
 # What a reconstruction makes of a tree; all else is how it looks.
 const _MADE: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
+# So many branches that were picked are remembered.
+const _MOST_PICKED: int = 4
 
 ## The edited node, or [code]null[/code].
 var node: TreeInstance3D
@@ -44,6 +49,8 @@ var picker: RefCounted
 ## What a graft puts on: an L-string, or the name of a twig of the library as
 ## [code]twig=oak[/code].
 var scion: String = ""
+## The L-strings that the Pick tool took last, the latest first.
+var picked: PackedStringArray = []
 
 var _shown: TreeReconstruction
 var _tree_moved: bool = false
@@ -110,6 +117,16 @@ func update() -> void:
 	scan.update()
 
 
+## Grafts go on with a branch that was picked, which is remembered among the latest.
+func take_scion(lstring: String) -> void:
+	scion = lstring
+	var others: PackedStringArray = picked
+	picked = [lstring]
+	for other: String in others:
+		if other != lstring and picked.size() < _MOST_PICKED:
+			picked.append(other)
+
+
 ## Ends everything, before the plugin goes.
 func shut_down() -> void:
 	edit_node(null)
@@ -130,10 +147,10 @@ func choose(id: StringName) -> void:
 	tool_changed.emit()
 
 
-## Tells the user something.
+## Tells the user something; what the library says, in the editor's language.
 func say(sentence: String, kind: Kind = Kind.INFO) -> void:
 	if not sentence.is_empty():
-		said.emit(sentence, kind)
+		said.emit(Sentences.translate(sentence, get_translation_domain()), kind)
 
 
 func _warn(sentence: String) -> void:

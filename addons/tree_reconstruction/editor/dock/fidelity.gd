@@ -54,7 +54,7 @@ func _build() -> void:
 	heat.toggled.connect(_on_heat_toggled)
 	next = Widgets.button(
 		"Next doubtful branch",
-		"Selects the next branch that the scan hardly supports, and says why it is doubtful.",
+		"Shows the next branch that the scan hardly supports, and says why it is doubtful.",
 		&"MoveDown"
 	)
 	next.pressed.connect(show_next)
@@ -98,7 +98,7 @@ func _refresh() -> void:
 	_show(&"coverage", now, before, true, _percent)
 
 
-## Selects the next branch that is doubtful, and tells why it is.
+## Selects and shows the next branch that is doubtful, and tells why it is.
 func show_next() -> void:
 	if session.scan.fidelity == null:
 		return
@@ -112,9 +112,17 @@ func show_next() -> void:
 		if session.tree.has_node(place.node):
 			session.select([place.node])
 			session.select_subtree()
+			session.view_wanted.emit(session.get_box_of(session.selection))
 			doubtful.text = (
 				tr("%d of %d: %.2f m, %s")
-				% [_place + 1, _places.size(), place.length, place.reasons]
+				% [
+					_place + 1,
+					_places.size(),
+					place.length,
+					Session.Sentences.translate_list(
+						place.reasons, session.get_translation_domain()
+					)
+				]
 			)
 			doubtful.visible = true
 			return

@@ -143,6 +143,21 @@ func _show(path: String) -> void:
 
 func _fill() -> void:
 	_shown.fill(list)
+	var domain: StringName = session.get_translation_domain()
+	for item: int in list.item_count:
+		var twig: Twig = list.get_item_metadata(item)
+		list.set_item_text(item, Session.Sentences.translate(twig.title, domain))
+		list.set_item_tooltip(
+			item,
+			(
+				tr("%s\n%.2f m long, %.1f mm thick at its base")
+				% [
+					Session.Sentences.translate(twig.description, domain),
+					twig.length,
+					twig.base_radius * 2000.0
+				]
+			)
+		)
 	_update_buttons()
 
 

@@ -39,7 +39,7 @@ func add_variant(number: int) -> TreeInstance3D:
 	var made: TreeReconstruction = session.tree.make_variant(number, amount.value)
 	if made == null:
 		return null
-	_save(made, number)
+	_take_path(made, number)
 	var placed: TreeInstance3D = TreeInstance3D.new()
 	placed.name = "%sVariant%d" % [of.name, number]
 	placed.reconstruction = made
@@ -169,8 +169,8 @@ func _on_picture_pressed(index: int) -> void:
 	add_variant(_first_seed + index)
 
 
-# In a file beside the tree's, so that the scene stays small. Without one it goes into the scene.
-func _save(made: TreeReconstruction, number: int) -> void:
+# A file beside the tree's, so that the scene stays small. Without one it goes into the scene.
+func _take_path(made: TreeReconstruction, number: int) -> void:
 	var beside: String = session.tree.resource_path
 	if (
 		not beside.begins_with("res://")
@@ -181,18 +181,10 @@ func _save(made: TreeReconstruction, number: int) -> void:
 	var stem: String = beside.get_basename() + "_variant_%d" % number
 	var path: String = stem + ".res"
 	var next: int = 2
-	while FileAccess.file_exists(path):
+	while FileAccess.file_exists(path) or ResourceLoader.has_cached(path):
 		path = "%s_%d.res" % [stem, next]
 		next += 1
-	var error: Error = ResourceSaver.save(made, path, ResourceSaver.FLAG_COMPRESS)
-	if error != OK:
-		session.say(
-			tr("%s can't be written: %s.") % [path, error_string(error)], session.Kind.ERROR
-		)
-		return
-	made.take_over_path(path)
-	if Engine.is_editor_hint():
-		EditorInterface.get_resource_filesystem().update_file(path)
+	session.local_trees.add_new(made, path)
 
 
 # The nearest place to the right where no other tree stands.

@@ -111,6 +111,15 @@ static func is_visible(path: String, skeleton: bool, name: String, values: Dicti
 	return values[need[0]] in need[1]
 
 
+## What the option behind a parameter does, in a sentence of the library; empty where there is none.
+static func get_description(parameter: String) -> String:
+	var name: String = _PLACES.get(parameter, parameter.trim_prefix("advanced/"))
+	for option: Dictionary in TreeReconstructor.get_option_list():
+		if option["name"] == name:
+			return option["description"]
+	return ""
+
+
 ## The parameters as options for [method TreeReconstructor.reconstruct_file]: those that differ
 ## from its defaults.
 static func to_options(values: Dictionary) -> Dictionary:

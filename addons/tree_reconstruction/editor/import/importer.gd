@@ -9,6 +9,7 @@ signal imported(path: String, summary: String)
 
 const ImportOptions: GDScript = preload("./import_options.gd")
 const ScanFiles: GDScript = preload("./scan_files.gd")
+const Sentences: GDScript = preload("../translations/sentences.gd")
 
 # A new number imports all scans again.
 const _FORMAT_VERSION: int = 1
@@ -28,7 +29,7 @@ func _get_importer_name() -> String:
 
 
 func _get_visible_name() -> String:
-	return "Tree from Scan"
+	return tr("Tree from Scan")
 
 
 func _get_recognized_extensions() -> PackedStringArray:
@@ -61,7 +62,10 @@ func _get_preset_count() -> int:
 
 
 func _get_preset_name(preset_index: int) -> String:
-	return ImportOptions.PRESETS[preset_index]
+	var names: PackedStringArray = [
+		tr("Laser scan"), tr("Photogrammetry"), tr("Leaf-off"), tr("Leafy"), tr("Fast")
+	]
+	return names[preset_index]
 
 
 func _get_import_options(_path: String, preset_index: int) -> Array[Dictionary]:
@@ -111,12 +115,13 @@ func _make(source_file: String, target: String, options: Dictionary) -> Error:
 	tree.resource_name = source_file.get_file().get_basename()
 	var error: Error = ResourceSaver.save(tree, target, ResourceSaver.FLAG_COMPRESS)
 	if error != OK:
-		return _fail(source_file, "The tree could not be saved: %s." % error_string(error))
+		return _fail(source_file, tr("The tree could not be saved: %s.") % error_string(error))
 	_tell.call_deferred(source_file, _summary(tree, reconstructor.get_report()))
 	return OK
 
 
 func _fail(source_file: String, sentence: String) -> Error:
+	sentence = Sentences.translate(sentence, get_translation_domain())
 	sentence = sentence.replace(ProjectSettings.globalize_path("res://"), "res://")
 	if source_file not in sentence:
 		sentence = "'%s': %s" % [source_file, sentence]
@@ -131,14 +136,16 @@ func _tell(source_file: String, summary: String) -> void:
 
 
 # What came of the scan, in a line, and what the user should know of it.
-static func _summary(tree: TreeReconstruction, report: Dictionary) -> String:
+func _summary(tree: TreeReconstruction, report: Dictionary) -> String:
 	var text: String = (
-		"a tree of %.1f m with %d nodes" % [tree.get_aabb().size.y, tree.get_node_count()]
+		tr("a tree of %.1f m with %d nodes") % [tree.get_aabb().size.y, tree.get_node_count()]
 	)
 	if report.has("fidelity"):
 		var fidelity: Dictionary = report["fidelity"]
-		text += ", %.0f %% of the scan within 2 cm of it" % (100.0 * float(fidelity["explained"]))
+		text += (
+			tr(", %.0f %% of the scan within 2 cm of it") % (100.0 * float(fidelity["explained"]))
+		)
 	text += "."
 	for warning: String in report.get("warnings", []):
-		text += " " + warning
+		text += " " + Sentences.translate(warning, get_translation_domain())
 	return text

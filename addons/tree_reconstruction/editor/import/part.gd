@@ -5,6 +5,7 @@ extends RefCounted
 ## import does to trees that were edited.
 
 const Importer: GDScript = preload("./importer.gd")
+const OptionTips: GDScript = preload("./option_tips.gd")
 const ScanFinder: GDScript = preload("./scan_finder.gd")
 const Thumbnails: GDScript = preload("./thumbnails.gd")
 const SceneAdder: GDScript = preload("./scene_adder.gd")
@@ -21,6 +22,7 @@ var reimport: Reimport
 
 var _plugin: EditorPlugin
 var _thumbnails: Array[Thumbnails] = []
+var _tips: OptionTips
 var _menu: ContextMenu
 var _areas: Array[Control] = []
 
@@ -28,8 +30,12 @@ var _areas: Array[Control] = []
 func enter(plugin: EditorPlugin, session: RefCounted) -> void:
 	_plugin = plugin
 	importer = Importer.new()
+	importer.set_translation_domain(get_translation_domain())
 	importer.failed.connect(_on_failed)
 	plugin.add_import_plugin(importer)
+	_tips = OptionTips.new()
+	_tips.set_translation_domain(get_translation_domain())
+	plugin.add_inspector_plugin(_tips)
 	for of_scripts: bool in [false, true]:
 		var thumbnails: Thumbnails = Thumbnails.new()
 		thumbnails.of_scripts = of_scripts
@@ -66,6 +72,8 @@ func exit() -> void:
 	for thumbnails: Thumbnails in _thumbnails:
 		EditorInterface.get_resource_previewer().remove_preview_generator(thumbnails)
 	_thumbnails.clear()
+	_plugin.remove_inspector_plugin(_tips)
+	_tips = null
 	_plugin.remove_import_plugin(importer)
 	importer = null
 	_plugin = null

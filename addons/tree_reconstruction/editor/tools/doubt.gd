@@ -53,9 +53,9 @@ func get_title() -> String:
 func get_tooltip() -> String:
 	return tr(
 		(
-			"Shows one by one the branches that the scan hardly supports, and points that no branch"
-			+ " explains. Enter keeps such a branch or finds the missing one, Backspace removes it"
-			+ " or skips the points, and the tool's key goes on without deciding."
+			"Brings into view, one by one, the branches that the scan hardly supports and the points"
+			+ " that no branch explains. Enter keeps such a branch or finds the missing one,"
+			+ " Backspace removes it or skips the points, and the tool's key goes on without deciding."
 		)
 	)
 
@@ -168,6 +168,16 @@ func get_place() -> Place:
 	return _places[_at] if _at >= 0 and _at < _places.size() else null
 
 
+## Where a place is, in the tree's space, with what the branch grows from.
+func get_box(place: Place) -> AABB:
+	if place.kind == Kind.DOUBTFUL:
+		return session.get_box_of(session.tree.select_nodes("below:%d" % place.node))
+	var box: AABB = AABB(place.at, Vector3.ZERO).expand(session.tree.get_node_position(place.node))
+	for point: int in place.points:
+		box = box.expand(session.scan.wood[point])
+	return box
+
+
 ## The number of places that nothing was decided about.
 func get_left() -> int:
 	return _places.size()
@@ -220,6 +230,7 @@ func _go_to(index: int) -> void:
 	var place: Place = get_place()
 	if place != null and session.tree.has_node(place.node):
 		session.select([place.node])
+		session.view_wanted.emit(get_box(place))
 		session.say(tr("Place %d of %d: %s") % [_at + 1, _places.size(), place.text])
 	_queue()
 
@@ -266,7 +277,13 @@ func _list_places() -> Array[Place]:
 		if not session.tree.has_node(place.node):
 			continue
 		place.at = session.tree.get_node_position(place.node)
-		place.text = tr("A doubtful branch of %.2f m: %s.") % [entry["length"], entry["reasons"]]
+		place.text = (
+			tr("A doubtful branch of %.2f m: %s.")
+			% [
+				entry["length"],
+				Sentences.translate_list(entry["reasons"], session.get_translation_domain())
+			]
+		)
 		_add(places, place)
 	var missing: int = 0
 	for entry: Dictionary in session.scan.fidelity.get_unexplained():

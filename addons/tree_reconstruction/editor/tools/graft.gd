@@ -2,8 +2,9 @@
 extends "wood_tool.gd"
 ## Puts a branch onto nodes: the picked one, one of the library, or an L-string, each time varied.
 
+const BranchChoice := preload("branch_choice.gd")
+
 const _ROLL_STEP: float = 15.0
-const _ICON_WIDTH: int = 32
 
 # Made with the first strip: it reads pictures.
 var _library: TwigLibrary
@@ -144,16 +145,9 @@ func _finish(edit: TreeEdit) -> void:
 
 func _look_again() -> void:
 	super()
-	if not is_instance_valid(_choice):
-		return
-	# The dock chooses twigs, too.
-	var choice: OptionButton = _choice
-	for item: int in choice.item_count:
-		if session.scion == "twig=%s" % choice.get_item_metadata(item):
-			choice.select(item)
-			return
-	if choice.get_item_metadata(choice.selected) != null:
-		choice.select(0)
+	if is_instance_valid(_choice):
+		# The dock chooses twigs, too.
+		(_choice as BranchChoice).update()
 
 
 func _words_of_graft(twig_key: String) -> String:
@@ -196,23 +190,8 @@ func _fitting_twig() -> String:
 func _add_source(strip: Strip) -> void:
 	if _library == null:
 		_library = TwigLibrary.presets()
-	var choice: OptionButton = strip.add_choice(
-		tr("Branch"), tr("What is grafted."), [tr("Picked branch")], 0, Callable()
-	)
-	choice.add_theme_constant_override("icon_max_width", int(_ICON_WIDTH * get_scale()))
-	var popup: PopupMenu = choice.get_popup()
-	var chosen: int = 0
-	for twig: Twig in _library.twigs:
-		choice.add_icon_item(twig.thumbnail, twig.title)
-		var item: int = choice.item_count - 1
-		popup.set_item_icon_max_width(item, int(_ICON_WIDTH * get_scale()))
-		choice.set_item_metadata(item, twig.resource_name)
-		choice.set_item_tooltip(item, twig.description)
-		if session.scion == "twig=%s" % twig.resource_name:
-			chosen = item
-	choice.add_item(tr("L-string"))
-	choice.set_item_tooltip(choice.item_count - 1, tr("A branch that you write yourself."))
-	choice.select(chosen)
+	var choice: BranchChoice = BranchChoice.new(session, _library, get_scale())
+	strip.add_labelled(tr("Branch"), tr("What is grafted."), choice)
 	choice.item_selected.connect(_on_source_chosen.bind(choice))
 	_choice = choice
 	_text = LineEdit.new()
@@ -224,16 +203,11 @@ func _add_source(strip: Strip) -> void:
 	strip.add_child(_text)
 
 
-func _on_source_chosen(item: int, choice: OptionButton) -> void:
-	var twig: Variant = choice.get_item_metadata(item)
-	_text.visible = item == choice.item_count - 1
-	if twig != null:
-		session.scion = "twig=%s" % twig
-	elif not _text.visible and (session.scion.is_empty() or session.scion.begins_with("twig=")):
-		session.say(
-			tr("No branch is picked yet: take the Pick tool and click the one that you want."),
-			session.Kind.WARNING
-		)
+func _on_source_chosen(_item: int, choice: BranchChoice) -> void:
+	_text.visible = choice.is_written()
+	if not choice.get_scion().is_empty():
+		session.scion = choice.get_scion()
+	_rests = false
 	_queue()
 
 

@@ -45,7 +45,7 @@ func _click(id: int) -> void:
 	var lstring: String = session.tree.take_branch(id)
 	if lstring.is_empty():
 		return
-	session.scion = lstring
+	session.take_scion(lstring)
 	var measures: Dictionary = TreeReconstruction.measure_branch(lstring)
 	_taken = (
 		tr("Picked a branch of %d nodes, %.2f m long and %.1f cm thick at its base.")

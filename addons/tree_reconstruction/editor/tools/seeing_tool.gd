@@ -3,6 +3,7 @@ extends "tool.gd"
 ## What tools show and see: where the mouse is, what is under it, and what would be done, as lines
 ## over the tree and a sentence beside the node.
 
+const Sentences := preload("../translations/sentences.gd")
 const NO_NODE: int = TreeReconstruction.NO_NODE
 ## Wood that would go, wood that would come, and wood that is meant.
 const GONE: Color = Color(1.0, 0.27, 0.2)
@@ -133,7 +134,10 @@ func show_command(command: String) -> void:
 	if not _refused:
 		_foreseen = [command, session.tree, session.tree.get_bark_revision()]
 	# The message tells what was done, as if it had been.
-	_hint = error if _refused else tr("After a click: %s") % preview["message"]
+	var domain: StringName = session.get_translation_domain()
+	_hint = Sentences.translate(error if _refused else preview["message"], domain)
+	if not _refused:
+		_hint = tr("After a click: %s") % _hint
 	set_ghosts(preview["removed"], preview["added"])
 
 

@@ -5,6 +5,8 @@ extends "wood_tool.gd"
 
 enum Shape { LINE, RECTANGLE, BOX }
 
+const Handles := preload("box_handles.gd")
+
 # While the mouse draws: where it began; INF otherwise.
 var _from: Vector2 = Vector2.INF
 # What was drawn, to be looked at before it is done: two places of the plane and its normal, towards
@@ -12,8 +14,8 @@ var _from: Vector2 = Vector2.INF
 var _ends: PackedVector3Array = []
 var _normal: Vector3
 var _ids: PackedInt32Array = []
-# Or a box along the tree's axes; without volume where there is none.
-var _box: AABB
+# Or a box along the tree's axes, whose faces the mouse drags.
+var _handles: Handles = Handles.new()
 var _rect: Rect2
 
 
@@ -29,7 +31,8 @@ func get_tooltip() -> String:
 	return tr(
 		(
 			"Drag a line over the tree to cut off what lies beyond it, seen from the foot, or a rectangle"
-			+ " around what shall go. It is shown in red; Enter cuts it, Escape lets it be."
+			+ " around what shall go. It is shown in red; Enter cuts it, Escape lets it be. The faces"
+			+ " of a box have handles to drag them."
 		)
 	)
 
@@ -54,7 +57,7 @@ func make_settings() -> Control:
 		(
 			"A line cuts through the whole tree as the view sees it. A rectangle takes the nodes in it,"
 			+ " and what grows from them. A box cuts at its faces, which lie along the tree's axes:"
-			+ " draw it in the view from the front, the right or the top."
+			+ " draw it in the view from the front, the right or the top, and drag its handles."
 		)
 	)
 	strip.add_choice("", explained, shapes, values[&"shape"], _on_shape_chosen)
@@ -69,20 +72,27 @@ func make_settings() -> Control:
 
 
 func is_busy() -> bool:
-	return is_held() or not _ends.is_empty() or not _ids.is_empty() or _box.has_volume()
+	return is_held() or not _ends.is_empty() or not _ids.is_empty() or _handles.has_box()
 
 
 func is_held() -> bool:
-	return _from != Vector2.INF
+	return _from != Vector2.INF or _handles.dragged != Handles.NO_FACE
 
 
+## Lets the face go that is dragged, or all that is drawn.
 func cancel() -> void:
+	if _handles.dragged != Handles.NO_FACE:
+		_handles.let_go(false)
+		_queue()
+		return
 	_from = Vector2.INF
 	_forget()
 	_queue()
 
 
 func _press(button: InputEventMouseButton) -> bool:
+	if _handles.take(self, button.position):
+		return true
 	# Wherever it begins: lines begin beside the tree.
 	cancel()
 	_from = button.position
@@ -91,11 +101,20 @@ func _press(button: InputEventMouseButton) -> bool:
 
 func _move(motion: InputEventMouseMotion) -> bool:
 	if not is_held():
+		var over: int = _handles.find(self, motion.position)
+		if over != _handles.hovered:
+			_handles.hovered = over
+			changed.emit()
 		return false
 	if not motion.button_mask & MOUSE_BUTTON_MASK_LEFT:
+		# The button was let go elsewhere.
+		_handles.let_go(true)
 		_from = Vector2.INF
 		return false
-	if motion.position.distance_to(_from) >= DRAG_FROM * get_scale():
+	if _handles.dragged != Handles.NO_FACE:
+		_handles.drag(self, motion.position)
+		_queue()
+	elif motion.position.distance_to(_from) >= DRAG_FROM * get_scale():
 		_queue()
 	return true
 
@@ -103,6 +122,9 @@ func _move(motion: InputEventMouseMotion) -> bool:
 func _release(_button: InputEventMouseButton) -> bool:
 	if not is_held():
 		return false
+	if _handles.dragged != Handles.NO_FACE:
+		_handles.let_go(true)
+		return true
 	if _pointer.distance_to(_from) >= DRAG_FROM * get_scale():
 		_take_shape()
 	_from = Vector2.INF
@@ -131,10 +153,10 @@ func get_command() -> String:
 	if not _ids.is_empty():
 		return "remove nodes=%s" % words_of_nodes(_ids)
 	var exact: String = "yes" if values[&"exact"] else "no"
-	if _box.has_volume():
+	if _handles.has_box():
+		var box: AABB = _handles.box
 		return (
-			"prune_box from=%s to=%s exact=%s"
-			% [words_of(_box.position), words_of(_box.end), exact]
+			"prune_box from=%s to=%s exact=%s" % [words_of(box.position), words_of(box.end), exact]
 		)
 	if _ends.is_empty():
 		return ""
@@ -144,10 +166,10 @@ func get_command() -> String:
 
 
 func _look_again() -> void:
-	if is_held():
+	if _from != Vector2.INF:
 		_take_shape()
 	show_command(get_command())
-	if _box.has_volume():
+	if _handles.has_box():
 		_show_box()
 
 
@@ -156,9 +178,10 @@ func draw(overlay: Control) -> void:
 	if not is_seen_on(overlay):
 		return
 	var width: float = 2.0 * get_scale()
+	_handles.draw(self, overlay)
 	if not _ends.is_empty():
 		_draw_line(overlay, width)
-	elif not _ids.is_empty() or (is_held() and values[&"shape"] != Shape.LINE):
+	elif not _ids.is_empty() or (_from != Vector2.INF and values[&"shape"] != Shape.LINE):
 		overlay.draw_rect(_rect, Color(GONE, 0.12))
 		overlay.draw_rect(_rect, GONE, false, width)
 
@@ -198,7 +221,7 @@ func _take_shape() -> void:
 func _forget() -> void:
 	_ends = []
 	_ids = []
-	_box = AABB()
+	_handles.box = AABB()
 
 
 func _take_line(from: Vector3, to: Vector3) -> void:
@@ -218,11 +241,12 @@ func _take_line(from: Vector3, to: Vector3) -> void:
 
 # As deep as the whole tree along the axis that the view looks along.
 func _take_box(from: Vector3, to: Vector3) -> void:
-	_box = AABB(from, Vector3.ZERO).expand(to)
+	var box: AABB = AABB(from, Vector3.ZERO).expand(to)
 	var axis: int = view_direction(Vector3.FORWARD).abs().max_axis_index()
 	var whole: AABB = session.tree.get_aabb().grow(0.1)
-	_box.position[axis] = whole.position[axis]
-	_box.size[axis] = whole.size[axis]
+	box.position[axis] = whole.position[axis]
+	box.size[axis] = whole.size[axis]
+	_handles.box = box
 
 
 # Its edges, too.
@@ -231,8 +255,8 @@ func _show_box() -> void:
 	for i: int in 8:
 		for bit: int in [1, 2, 4]:
 			if not i & bit:
-				edges.append(_box.get_endpoint(i))
-				edges.append(_box.get_endpoint(i | bit))
+				edges.append(_handles.box.get_endpoint(i))
+				edges.append(_handles.box.get_endpoint(i | bit))
 	var wood: PackedVector3Array = [] if _ghosts.is_empty() else _ghosts[Mesh.ARRAY_VERTEX]
 	set_ghosts(wood + edges, [])
 

@@ -59,20 +59,22 @@ func add_switch(text: String, tooltip: String, on: bool, change: Callable) -> Ch
 	return check
 
 
-## [param change] is called with the place of the chosen word, unless it is an empty one.
+## [param change] is called with the place of the chosen word.
 func add_choice(
 	text: String, tooltip: String, words: PackedStringArray, chosen: int, change: Callable
 ) -> OptionButton:
-	var group: HBoxContainer = _group(text, tooltip)
 	var choice: OptionButton = OptionButton.new()
-	choice.tooltip_text = tooltip
 	for word: String in words:
 		choice.add_item(word)
 	choice.select(chosen)
-	if change.is_valid():
-		choice.item_selected.connect(change)
-	group.add_child(choice)
+	choice.item_selected.connect(change)
+	add_labelled(text, tooltip, choice)
 	return choice
+
+
+func add_labelled(text: String, tooltip: String, control: Control) -> void:
+	control.tooltip_text = tooltip
+	_group(text, tooltip).add_child(control)
 
 
 func add_button(text: String, tooltip: String, act: Callable) -> Button:

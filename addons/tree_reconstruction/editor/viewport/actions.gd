@@ -69,6 +69,9 @@ func _run_other(action: StringName, camera: Camera3D) -> void:
 			turntable.toggle(camera)
 		&"screenshot":
 			screenshot.take(camera)
+		&"view_selection":
+			turntable.stop()
+			views.bring(_session.get_box_of(_session.selection), camera)
 		&"select_all":
 			_session.select_by("all")
 		&"grow_selection":

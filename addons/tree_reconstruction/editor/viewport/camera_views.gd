@@ -1,6 +1,6 @@
 @tool
 extends RefCounted
-## Moves the editor's camera to show the whole tree from one side.
+## Moves the editor's camera to show the whole tree from one side, or a part of it.
 ##
 ## The camera follows a cursor of the editor's own, which scripts cannot reach: a direction, a place
 ## and a distance. So it is led there as a user would lead it, all within one frame: the viewport's
@@ -43,6 +43,11 @@ const _MARGIN: float = 1.15
 const _PLACES: int = 4000
 # Where the editor's camera stands in a scene in which nobody has moved it yet.
 const _UNTOUCHED: Vector3 = Vector3(1.682942, 1.917702, 3.080605)
+# How much of the picture's narrower side a part of the tree takes that is brought into view; how
+# small it may be to be seen well, and how near to the border.
+const _SHARE: float = 0.4
+const _LEAST_SHARE: float = 0.1
+const _BORDER: float = 0.1
 # Seconds after which the camera is left where it is.
 const _PATIENCE: float = 3.0
 
@@ -50,6 +55,8 @@ var _session: Session
 # Called with the events for the viewport's surface, past our own keys: (surface, events).
 var _send: Callable
 var _camera: Camera3D
+# Where the camera is led to look at, and from how far.
+var _target: Vector3
 var _distance: float
 var _last: Transform3D
 var _left: float = 0.0
@@ -73,26 +80,48 @@ static func is_untouched(camera: Camera3D) -> bool:
 
 ## Looks at the tree from the side that [param action] names (see actions.gd).
 func look(action: StringName, camera: Camera3D) -> void:
-	var editor: Control = camera.get_viewport().get_parent().get_parent() as Control
-	var menu: PopupMenu = _find_menu(editor)
+	var menu: PopupMenu = _get_menu(camera)
 	if menu == null:
-		_session.say(
-			tr("This version of the editor has no menu of views that could be used."),
-			Session.Kind.WARNING
-		)
 		return
 	_choose(menu, _ITEMS[action])
 	if action == &"view_home":
 		_turn_home(menu, camera)
-	_centre(menu)
 	var orthogonal: bool = camera.projection == Camera3D.PROJECTION_ORTHOGONAL
-	_distance = _distance_for(action, camera, orthogonal)
-	# As near as the editor lets it, which is known, and out again from there.
-	_pinch(camera, 1e6)
-	_pinch(camera, maxf(camera.near * 4.0, 0.01) / _distance)
-	_camera = camera
-	_last = Transform3D()
-	_left = _PATIENCE
+	_lead(menu, camera, _get_box().get_center(), _distance_for(action, camera, orthogonal))
+
+
+## Brings a part of the tree into view, from where the camera looks now: what is in [param box], in
+## the tree's space. What is seen well already stays where it is.
+func bring(box: AABB, camera: Camera3D) -> void:
+	if is_well_seen(box, camera):
+		return
+	var menu: PopupMenu = _get_menu(camera)
+	if menu == null:
+		return
+	var around: float = get_reach(box) * _session.node.global_basis.get_scale().y
+	var shape: Vector2 = camera.get_viewport().get_visible_rect().size
+	var narrower: float = minf(1.0, shape.x / shape.y) * tan(deg_to_rad(camera.fov) * 0.5)
+	var to: Vector3 = _session.node.global_transform * box.get_center()
+	_lead(menu, camera, to, around / (narrower * _SHARE))
+
+
+## Whether what is in [param box] is inside of the picture and large enough to be looked at.
+func is_well_seen(box: AABB, camera: Camera3D) -> bool:
+	var at: Vector2 = _session.picker.call(&"project_place", camera, box.get_center())
+	if not at.is_finite():
+		return false
+	var size: Vector2 = _session.picker.call(&"get_size", camera)
+	var reach: float = _session.picker.call(&"pixels_per_metre", camera, box.get_center())
+	reach *= get_reach(box)
+	var side: float = minf(size.x, size.y)
+	var picture: Rect2 = Rect2(Vector2.ZERO, size).grow(-_BORDER * side - reach)
+	return picture.has_area() and picture.has_point(at) and 2.0 * reach > _LEAST_SHARE * side
+
+
+## How far around the middle of [param box] the picture goes, in metres of the tree: also around a
+## single node so much that it is seen what it belongs to.
+func get_reach(box: AABB) -> float:
+	return maxf(0.5 * box.size.length(), 0.03 * _session.tree.get_aabb().size.length())
 
 
 ## To be called once a frame.
@@ -108,7 +137,7 @@ func update(delta: float) -> void:
 		_last = now
 		return
 	_left = 0.0
-	var reached: float = now.origin.distance_to(_get_box().get_center())
+	var reached: float = now.origin.distance_to(_target)
 	if _camera.projection == Camera3D.PROJECTION_ORTHOGONAL:
 		reached = _camera.size / (2.0 * tan(deg_to_rad(_camera.fov) * 0.5))
 	if absf(reached / _distance - 1.0) > 0.02:
@@ -118,6 +147,31 @@ func update(delta: float) -> void:
 ## Nothing more is to be mended: the user moves the camera.
 func stop() -> void:
 	_left = 0.0
+
+
+# The menu of the camera's viewport; where there is none, that is said.
+func _get_menu(camera: Camera3D) -> PopupMenu:
+	var editor: Control = camera.get_viewport().get_parent().get_parent() as Control
+	var menu: PopupMenu = _find_menu(editor)
+	if menu == null:
+		_session.say(
+			tr("This version of the editor has no menu of views that could be used."),
+			Session.Kind.WARNING
+		)
+	return menu
+
+
+# Leads the camera until it looks at a place of the scene from so far, in the direction that it has.
+func _lead(menu: PopupMenu, camera: Camera3D, target: Vector3, distance: float) -> void:
+	_target = target
+	_distance = distance
+	_centre(menu)
+	# As near as the editor lets it, which is known, and out again from there.
+	_pinch(camera, 1e6)
+	_pinch(camera, maxf(camera.near * 4.0, 0.01) / _distance)
+	_camera = camera
+	_last = Transform3D()
+	_left = _PATIENCE
 
 
 # How far off its centre the camera must be for the whole tree to be seen.
@@ -163,7 +217,7 @@ func _turn_home(menu: PopupMenu, camera: Camera3D) -> void:
 func _centre(menu: PopupMenu) -> void:
 	var node: TreeInstance3D = _session.node
 	var before: Transform3D = node.transform
-	node.global_position = _get_box().get_center()
+	node.global_position = _target
 	_choose(menu, _CENTRE)
 	node.transform = before
 

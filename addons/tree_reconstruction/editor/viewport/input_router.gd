@@ -90,18 +90,14 @@ func _press(event: InputEventKey) -> bool:
 		return false
 	if event.echo and action not in [&"grow_selection", &"shrink_selection"]:
 		return true
-	match action:
-		&"edit_skeleton":
-			pass
-		&"cancel":
-			return _cancel()
-		&"delete_selected":
-			if not _session.view.editing:
-				return false
-		_:
-			if not _session.view.editing:
-				# The editor's own keys, as those of its tools, are not touched then.
-				return false
+	if action == &"cancel":
+		return _cancel()
+	if action != &"edit_skeleton" and not _session.view.editing:
+		# The editor's own keys, as those of its tools, are not touched then.
+		return false
+	if action == &"view_selection" and _session.selection.is_empty():
+		# Without wood to look at, the editor looks at the tree's node.
+		return false
 	asked.emit(action)
 	return true
 

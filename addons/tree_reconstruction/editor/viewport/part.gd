@@ -60,6 +60,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	_session.view_changed.connect(_on_view_changed)
 	_session.scan_changed.connect(_on_scan_changed)
 	_session.scan.fidelity_changed.connect(_on_scan_changed)
+	_session.view_wanted.connect(_on_view_wanted)
 	_plugin.get_tree().process_frame.connect(_update)
 	_on_tool_changed()
 	_on_node_changed()
@@ -67,6 +68,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 
 func exit() -> void:
 	_plugin.get_tree().process_frame.disconnect(_update)
+	_session.view_wanted.disconnect(_on_view_wanted)
 	_session.scan.fidelity_changed.disconnect(_on_scan_changed)
 	_session.scan_changed.disconnect(_on_scan_changed)
 	_session.view_changed.disconnect(_on_view_changed)
@@ -289,6 +291,11 @@ func _get_camera() -> Camera3D:
 	if is_instance_valid(_router.camera) and _router.camera.is_visible_in_tree():
 		return _router.camera
 	return EditorInterface.get_editor_viewport_3d(0).get_camera_3d()
+
+
+func _on_view_wanted(box: AABB) -> void:
+	_actions.turntable.stop()
+	_actions.views.bring(box, _get_camera())
 
 
 # A method, since a function made where it is connected would keep all of this alive.

@@ -24,6 +24,7 @@ const _KEYS: Dictionary[StringName, Array] = {
 	&"view_top": [KEY_KP_7],
 	&"view_bottom": [KEY_MASK_CTRL | KEY_KP_7],
 	&"view_home": [KEY_KP_0],
+	&"view_selection": [KEY_F],
 	&"turntable": [KEY_O],
 	&"screenshot": [KEY_F9],
 	&"select_all": [KEY_MASK_CTRL | KEY_A],

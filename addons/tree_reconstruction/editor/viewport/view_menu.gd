@@ -95,6 +95,12 @@ func _fill() -> void:
 	for action: StringName in titles:
 		_add(action, titles[action], false, tr("Shows the whole tree from there."))
 	_add(
+		&"view_selection",
+		tr("Selection"),
+		false,
+		tr("Brings the selected wood into view, from where you look now.")
+	)
+	_add(
 		&"turntable", tr("Turntable"), false, tr("Turns around the tree until you press anything.")
 	)
 	get_popup().add_separator()

@@ -65,8 +65,22 @@ func run() -> void:
 	var scene: Node = EditorInterface.get_edited_scene_root()
 	await until(func() -> bool: return scene.get_child_count() == 2, "it is in the scene")
 	await picture("dock-variant")
+	var path_of_variant: String = (
+		(scene.get_child(1) as TreeInstance3D).reconstruction.resource_path
+	)
 	await _undo()
 	check_equal(scene.get_child_count(), 1, "trees after undo")
+	check(await save_scene(), "The scene can't be saved.")
+	check(not FileAccess.file_exists(path_of_variant), "A variant that was undone left its file.")
+	await user.key("ctrl+shift+z")
+	await until(func() -> bool: return scene.get_child_count() == 2, "it comes back")
+	check(await save_scene(), "The scene can't be saved.")
+	check(
+		path_of_variant in str(ResourceLoader.get_dependencies(scene.scene_file_path)),
+		"The scene does without its variant."
+	)
+	check(FileAccess.file_exists(path_of_variant), "The variant was not saved.")
+	await _undo()
 
 	await step("the tree is baked to a scene that needs no addon")
 	await _open(&"export")

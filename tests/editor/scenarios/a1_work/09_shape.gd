@@ -127,12 +127,19 @@ func _find_missing() -> void:
 	var tool: RefCounted = session().get(&"tool")
 	if not await until(func() -> bool: return tool.call(&"get_left") > 0, "places are found"):
 		return
+	# From so far off no branch can be judged.
+	await user.move(middle(view().get_parent() as Control))
+	for i: int in 12:
+		await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN)
+	await view_rests()
 	for i: int in tool.call(&"get_left"):
 		# What no branch explains comes after the doubtful branches.
 		if not tool.call(&"get_place").points.is_empty():
 			break
 		await user.key("y")
 	await until(_has_ghosts, "the place is shown")
+	await view_rests()
+	_check_brought(tool)
 	await picture("missing-branch")
 	await user.key("Return")
 	await until(func() -> bool: return bytes(_of) != _before, "the missing branch is found")
@@ -140,3 +147,16 @@ func _find_missing() -> void:
 	await user.key("p")
 	await _undo()
 	check(await save_scene(), "The scene can't be saved.")
+
+
+# The camera has gone to the place at hand by itself.
+func _check_brought(tool: RefCounted) -> void:
+	var place: RefCounted = tool.call(&"get_place")
+	var box: AABB = tool.call(&"get_box", place)
+	var seen: Rect2 = Rect2(on_screen(_node.global_transform * box.get_center()), Vector2.ZERO)
+	for i: int in 8:
+		seen = seen.expand(on_screen(_node.global_transform * box.get_endpoint(i)))
+	var viewport: Rect2 = (view().get_parent() as Control).get_global_rect()
+	check(viewport.encloses(seen), "The place is at %s of %s." % [seen, viewport])
+	var share: float = maxf(seen.size.x, seen.size.y) / minf(viewport.size.x, viewport.size.y)
+	check(share > 0.15, "The place takes %.2f of the view." % share)

@@ -1,0 +1,75 @@
+@tool
+extends EditorInspectorPlugin
+## Gives the parameters in the Import dock their tooltips.
+##
+## The engine looks the texts up in the class reference of the importer's class, which for one that
+## is a script is [EditorImportPlugin]. So they are put into the fields of the dock once these are
+## there, in the form in which the engine's own tooltips take a text of their own.
+
+const ImportOptions: GDScript = preload("./import_options.gd")
+const Sentences: GDScript = preload("../translations/sentences.gd")
+
+# What the engine calls the object whose properties the dock shows.
+const _DOCK_OBJECT: String = "ImportDockParameters"
+const _KIND: String = "local_variable"
+
+var _due: bool = false
+
+
+func _can_handle(object: Object) -> bool:
+	return object != null and object.get_class() == _DOCK_OBJECT and _is_ours(object)
+
+
+func _parse_begin(_object: Object) -> void:
+	if not _due:
+		_due = true
+		# When the fields are there.
+		_fill.call_deferred()
+
+
+## The text of a parameter, in the editor's language; empty for one that nobody knows.
+func describe(parameter: String) -> String:
+	match parameter:
+		"scan/unit":
+			return tr(
+				(
+					"In what the scan's coordinates are given. It is guessed from its size; say it where"
+					+ " the guess is wrong, or tell the tree's height or one length that you know."
+				)
+			)
+		"scan/known_length":
+			return tr(
+				(
+					"Two places of the scan and the distance between them in metres, as x, y, z, x, y, z,"
+					+ " metres."
+				)
+			)
+	return tr(ImportOptions.get_description(parameter))
+
+
+# All parameters are there that only our importer has.
+static func _is_ours(object: Object) -> bool:
+	for property: Dictionary in object.get_property_list():
+		if property["name"] == "skeleton/method":
+			return true
+	return false
+
+
+func _fill() -> void:
+	_due = false
+	for dock: Node in EditorInterface.get_base_control().find_children(
+		"*", "ImportDock", true, false
+	):
+		for node: Node in dock.find_children("*", "EditorProperty", true, false):
+			var field: EditorProperty = node as EditorProperty
+			var text: String = describe(field.get_edited_property())
+			if not text.is_empty():
+				field.tooltip_text = to_tooltip(field.label, text)
+
+
+## What the engine's tooltips of properties take: the kind of thing, its class, its name, and more
+## in JSON.
+static func to_tooltip(label: String, text: String) -> String:
+	# The engine reads tags in it, and bars between its parts.
+	var escaped: String = text.replace("[", "[lb]")
+	return "%s||%s|%s" % [_KIND, label.replace("|", "/"), JSON.stringify({"description": escaped})]

@@ -1,0 +1,211 @@
+@tool
+extends RefCounted
+## What the library says, in the editor's language. The library speaks English: its sentences are
+## found here by their patterns, in which each %s is a number, a name or another one of them. What
+## no pattern fits stays as it is.
+
+## tests/tools/editor_strings.py gathers these, and checks that the library's sources say so.
+const PATTERNS: PackedStringArray = [
+	# Of edits.
+	"Nothing was cut away.",
+	"Cut away %s node.",
+	"Cut away %s nodes.",
+	"Added %s node.",
+	"Added %s nodes.",
+	"Bent %s nodes.",
+	"Changed %s node.",
+	"Changed %s nodes.",
+	"Grew %s node.",
+	"Grew %s nodes.",
+	"Mirrored %s nodes.",
+	"Moved %s node.",
+	"Moved %s nodes.",
+	"Scaled %s nodes.",
+	"Smoothed %s node.",
+	"Smoothed %s nodes.",
+	"Turned %s nodes.",
+	"Grafted %s of %s in all, clear of other branches.",
+	"Grafted %s of %s in all, with %s with other branches.",
+	"Nothing was grafted: no node was chosen.",
+	"The twig runs into %s segment of another branch.",
+	"The twig runs into %s segments of other branches.",
+	"%s of %s nodes are left; bark moved by up to %s, tips by up to %s.",
+	"The string's %s nodes take the place of %s.",
+	"The tree is empty.",
+	"There is no node %s in this tree.",
+	"There is no node %s in this tree to graft onto.",
+	"The root cannot be cut away: no tree would be left.",
+	"The root lies inside, so no tree would be left.",
+	"The root can be deleted only while exactly one branch grows from it.",
+	"The root hangs on nothing, so it cannot be attached elsewhere.",
+	"A branch cannot be attached to wood that grows from it.",
+	"A tree is left with 2 nodes at least.",
+	"The tree is a single node: there is no branch on it to take.",
+	"The branch to graft is a single node: it has no wood to graft.",
+	"The branch to graft is empty.",
+	(
+		"These grafts would add %s nodes, more than the %s that are allowed: graft onto fewer nodes,"
+		+ " graft smaller branches, or allow more."
+	),
+	"The tree is not as it was before this edit, so the edit cannot be done again.",
+	"The tree is not as this edit left it, so the edit cannot be undone.",
+	# In them.
+	"%s branch",
+	"%s branches",
+	"%s node",
+	"%s nodes",
+	"%s collision",
+	"%s collisions",
+	# Why a branch is doubtful.
+	"few points",
+	"a long bridge",
+	"an improbable angle",
+	"thicker than its parent",
+	# Of scans.
+	(
+		"Only %s % of the wood's points lie within 2 cm of the wood that was found. Is it a single"
+		+ " tree, and are its units right?"
+	),
+	(
+		"Next to no part of the cloud is round like a stem or a branch, so the radii are guesses. Is"
+		+ " it a tree?"
+	),
+	(
+		"The scan is noisy: even the stem's points lie on no surface, but about %s cm or more to either"
+		+ " side of it. Twigs and the radii of thin wood are guesses."
+	),
+	(
+		"%s % of the points lie on flat surfaces, as on walls or on the ground; what is made of them is"
+		+ " hardly a tree."
+	),
+	"The points lie on the surface of a ball; what is made of them is hardly a tree.",
+	"The points are spread evenly, as noise is; what is made of them is hardly a tree.",
+	(
+		"%s % of the points stand well apart from the rest and were left out. If they are part of the"
+		+ " tree, leave out the cleaning of fragments; if they are a tree of their own, give each tree a"
+		+ " file of its own."
+	),
+	(
+		"The cloud holds %s trees; number %s, the largest, was taken. It is %s high and stands at %s in"
+		+ " the scan. Another one can be chosen by its number or by a place near it."
+	),
+	(
+		"The cloud holds %s trees; number %s was taken. It is %s high and stands at %s in the scan."
+		+ " Another one can be chosen by its number or by a place near it."
+	),
+	(
+		"The cloud is %s units high; they were taken for %s. Set the scale or one known length by hand"
+		+ " if that is wrong."
+	),
+	(
+		"A cloud with %s up comes from photos as a rule, and those have no scale of their own; its units"
+		+ " were taken for metres, which makes it %s m high. If that is wrong, give the tree's height or"
+		+ " one known length."
+	),
+	"The cloud is %s m high, which is odd for a tree; check the scale and the up axis.",
+	(
+		"The shape does not tell which way is up; %s was taken. If the tree lies or hangs, set the up"
+		+ " axis by hand."
+	),
+	(
+		"Leaves hide much of the wood: %s % of the limbs in the crown were guessed from the paths"
+		+ " through the leaves."
+	),
+	"The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.",
+	"The scan has a gap of up to %s m in the wood; what lies between is a guess.",
+	"The scan has %s gaps of up to %s m in the wood; what lies between is a guess.",
+	# Of files that can't be read.
+	"%s is empty.",
+	"%s holds no points.",
+	"%s is cut off: it promises %s points, but holds %s; copy it again.",
+	"%s is not a point cloud that can be read: no line in it begins with three numbers (x y z).",
+	"%s is no PLY file: it does not begin with the line 'ply'.",
+	"%s is no LAS file: it does not begin with the letters LASF.",
+	"%s is a PLY file without vertices.",
+	"%s is damaged or cut off within its LAZ header; copy it again.",
+	(
+		"The cloud has points in only %s places, and a tree needs at least 10. Check that the file is"
+		+ " complete."
+	),
+	(
+		"All points lie on one plane, so there is no tree in the cloud. Check that the file is the right"
+		+ " one and its columns are read as meant."
+	),
+	(
+		"All points lie on a plane or on a line, and a tree needs depth: this looks like a photo or a"
+		+ " section of a scan."
+	),
+	"No tree was found in %s: nothing in it looks like wood.",
+	# The library of twigs.
+	"Apple",
+	"Birch",
+	"Cherry",
+	"Dead",
+	"Generic",
+	"Maple",
+	"Oak",
+	"Pine",
+	"Spruce",
+	"Willow",
+	"Apple: wide angles, thick spurs, shoots that rise",
+	"Birch: fine twigs that hang at their ends",
+	"Cherry: few long shoots, short spurs between them",
+	"Dead wood: crooked, few twigs, snapped ends",
+	"A twig of no kind: one bud after another, all around",
+	"Maple: buds in pairs, each pair square to the last",
+	"Oak: crooked, tufts of twigs where a year's growth ended",
+	"Pine: whorls of stout shoots, turned up at their ends",
+	"Spruce: a flat spray, its twigs hanging a little",
+	"Weeping willow: long whips",
+]
+const _GAP: String = "%s"
+
+
+## A sentence of the library in the language of [param domain]; several that follow each other, too.
+static func translate(sentence: String, domain: StringName) -> String:
+	var words: TranslationDomain = TranslationServer.get_or_add_domain(domain)
+	if words.get_translations().is_empty():
+		return sentence
+	return _translate(sentence, words)
+
+
+## A list of words with commas between.
+static func translate_list(list: String, domain: StringName) -> String:
+	var parts: PackedStringArray = []
+	for part: String in list.split(", "):
+		parts.append(translate(part, domain))
+	return ", ".join(parts)
+
+
+static func _translate(sentence: String, words: TranslationDomain) -> String:
+	for pattern: String in PATTERNS:
+		var gaps: Variant = find_gaps(sentence, pattern)
+		if gaps == null:
+			continue
+		var made: String = words.translate(pattern, &"")
+		if made == pattern:
+			return sentence
+		var pieces: PackedStringArray = made.split(_GAP)
+		var filled: String = pieces[0]
+		for i: int in range(1, pieces.size()):
+			filled += _translate((gaps as PackedStringArray)[i - 1], words) + pieces[i]
+		return filled
+	return sentence
+
+
+## What stands in the gaps of a pattern that the sentence fits, or [code]null[/code].
+static func find_gaps(sentence: String, pattern: String) -> Variant:
+	var pieces: PackedStringArray = pattern.split(_GAP)
+	var gaps: PackedStringArray = []
+	if not sentence.begins_with(pieces[0]):
+		return null
+	var at: int = pieces[0].length()
+	for i: int in range(1, pieces.size()):
+		var last: bool = i == pieces.size() - 1
+		var piece: String = pieces[i]
+		var next: int = sentence.length() - piece.length() if last else sentence.find(piece, at)
+		if next <= at or (last and not sentence.ends_with(piece)):
+			return null
+		gaps.append(sentence.substr(at, next - at))
+		at = next + piece.length()
+	return gaps if at == sentence.length() else null
