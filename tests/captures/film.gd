@@ -1,10 +1,8 @@
 extends SceneTree
 ## Plays one of the demo scenes as a visitor would, and keeps pictures of it: see make_captures.sh.
 ##
-##     godot --fixed-fps 30 --path project --script tests/captures/film.gd -- SCENE FOLDER
+##     godot --fixed-fps 12 --path project --script tests/captures/film.gd -- SCENE FOLDER
 
-# How many frames are drawn for one that is kept.
-const _EVERY: int = 3
 const _PATIENCE: int = 120000
 
 var _folder: String
@@ -100,8 +98,6 @@ func _slide(title: String, value: float) -> void:
 
 func _keep(count: int) -> void:
 	for i: int in count:
-		for skipped: int in _EVERY - 1:
-			await process_frame
 		await RenderingServer.frame_post_draw
 		root.get_texture().get_image().save_png(_folder.path_join("%04d.png" % _count))
 		_count += 1
