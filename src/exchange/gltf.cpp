@@ -169,10 +169,12 @@ void Builder::add_parts(size_t node, const ModelFile::Level& level, const std::s
 // The finest level is in the scene; the others are known to it alone (MSFT_lod), in the order of their
 // detail.
 void Builder::add_levels(const ModelFile& file) {
-    // The share of a screen, 75 degrees high, that a tree as wide as high covers from that far away.
+    // The share of a square screen, 75 degrees high, that a tree as wide as high covers from that far away.
+    // The extension's text gives each level the least share that it is drawn at, of the screen's area.
     const auto coverage = [](double distance) {
-        constexpr double kHalfHeight = 0.767;  // the tangent of half the angle
-        return distance > 0.0 ? 0.25 / (kHalfHeight * kHalfHeight * distance * distance) : 1.0;
+        constexpr double kHalfHeight = 0.767327;  // the tangent of half the angle
+        const double high = 0.5 / (kHalfHeight * std::max(distance, 1e-3));
+        return std::min(high * high, 1.0);
     };
     Json ids = Json::array(), coverages = Json::array();
     json["nodes"][0]["children"] = {1};

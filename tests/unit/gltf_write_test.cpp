@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -139,6 +141,16 @@ TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
             ASSERT_EQ(shown.children.size(), leafy ? 2u : 1u);
             const double before = level > 0 ? coverage.Get(level - 1).GetNumberAsDouble() : 1.0;
             EXPECT_LT(coverage.Get(level).GetNumberAsDouble(), before);
+            // The share of a square picture that a view of 75 degrees shows; the coarsest level never ends.
+            const double high =
+                level < 3 ? 0.5 / (std::tan(37.5 * M_PI / 180) * 2.5 * (1.0 + double(level))) : 0.0;
+            EXPECT_NEAR(coverage.Get(level).GetNumberAsDouble(), high * high, 1e-3 * high * high);
+            // As the extension's text has it: further levels are nodes that nothing else shows.
+            if (level > 0) {
+                EXPECT_TRUE(ids.Get(level - 1).IsInt());
+                for (const tinygltf::Node& other : model.nodes)
+                    EXPECT_EQ(std::count(other.children.begin(), other.children.end(), node), 0);
+            }
             for (size_t part = 0; part < shown.children.size(); part++) {
                 const tinygltf::Node& child = model.nodes.at(static_cast<size_t>(shown.children[part]));
                 EXPECT_EQ(child.name, (part == 0 ? "Bark" : "Leaves") + suffix);
@@ -151,6 +163,19 @@ TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
         }
         EXPECT_EQ(model.materials.size(), 2u);
     }
+}
+
+// A share of the screen is one at most, however near its level begins.
+TEST_F(GltfWrite, LevelsThatBeginCloseByCoverTheScreen) {
+    model_.coarser.push_back({&bark_, &leaves_, 0.1});
+    model_.coarser.push_back({&bark_, &leaves_, 0.3});
+    write_gltf(path("near.glb"), model_);
+    const tinygltf::Model model = read(path("near.glb"));
+    const tinygltf::Value coverage = model.nodes.at(1).extras.Get("MSFT_screencoverage");
+    ASSERT_EQ(coverage.ArrayLen(), 3u);
+    EXPECT_EQ(coverage.Get(0).GetNumberAsDouble(), 1.0);
+    EXPECT_EQ(coverage.Get(1).GetNumberAsDouble(), 1.0);
+    EXPECT_EQ(coverage.Get(2).GetNumberAsDouble(), 0.0);
 }
 
 TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
