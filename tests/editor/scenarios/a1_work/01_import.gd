@@ -17,6 +17,10 @@ func run() -> void:
 		return
 	await picture("imported")
 
+	await step("its parameters in the Import dock tell what they do")
+	await click_file(SCAN)
+	await _read_parameters()
+
 	await step("its menu adds it to a scene that is begun for it")
 	await click_file(SCAN, User.RIGHT)
 	await until(func() -> bool: return open_menu() != null, "a menu opens")
@@ -87,3 +91,49 @@ func _trees() -> Array[Node]:
 func _tree_in_scene() -> TreeInstance3D:
 	var found: Array[Node] = _trees()
 	return null if found.is_empty() else found[0] as TreeInstance3D
+
+
+func _read_parameters() -> void:
+	var docks: Array[Node] = EditorInterface.get_base_control().find_children(
+		"*", "ImportDock", true, false
+	)
+	if not check(docks.size() == 1, "There are %d Import docks." % docks.size()):
+		return
+	var dock: Control = docks[0] as Control
+	dock.call(&"make_visible")
+	if not await until(
+		func() -> bool: return _parameter(dock, "scan/up_axis") != null, "the parameters are shown"
+	):
+		return
+	var field: EditorProperty = _parameter(dock, "scan/up_axis")
+	await until(func() -> bool: return "axis" in field.tooltip_text, "they have tooltips")
+	var seen: int = 0
+	for node: Node in dock.find_children("*", "EditorProperty", true, false):
+		seen += int("description" in (node as EditorProperty).tooltip_text)
+	check(seen > 10, "Only %d parameters have a tooltip." % seen)
+	await user.move(field.get_screen_transform() * Vector2(30.0, field.size.y / 2.0))
+	await until(func() -> bool: return _tooltip() != null, "a tooltip is shown")
+	await picture("tooltip-of-a-parameter")
+	await user.move(middle(view().get_parent() as Control))
+	# The Scene dock comes back where they share a place.
+	for node: Node in EditorInterface.get_base_control().find_children(
+		"*", "SceneTreeDock", true, false
+	):
+		node.call(&"make_visible")
+
+
+func _parameter(dock: Control, name: String) -> EditorProperty:
+	for node: Node in dock.find_children("*", "EditorProperty", true, false):
+		var field: EditorProperty = node as EditorProperty
+		if field.get_edited_property() == name and field.is_visible_in_tree():
+			return field
+	return null
+
+
+func _tooltip() -> Window:
+	for node: Node in EditorInterface.get_base_control().find_children(
+		"*", "EditorHelpBitTooltip", true, false
+	):
+		if (node as Window).visible:
+			return node as Window
+	return null

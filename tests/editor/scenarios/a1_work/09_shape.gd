@@ -116,6 +116,33 @@ func _slice() -> void:
 	await user.key("Return")
 	await until(func() -> bool: return bytes(_of) != _before, "it is cut")
 	await _undo()
+	await step("a box is drawn, one of its faces dragged, and it cuts as one step")
+	var tool: RefCounted = session().get(&"tool")
+	tool.call(&"set_setting", 2, &"shape")
+	await user.key("KP_1")
+	await view_rests()
+	middle_of = on_screen(_node.global_transform * _of.get_aabb().get_center())
+	await user.drag([middle_of + Vector2(-120, -120), middle_of + Vector2(120, 40)])
+	var handles: RefCounted = tool.get(&"_handles")
+	if not await until(func() -> bool: return handles.call(&"has_box"), "the box is there"):
+		return
+	var low: float = (handles.get(&"box") as AABB).position.y
+	var container: Control = view().get_parent() as Control
+	var at: Vector2 = handles.call(&"get_seen", tool, 2)
+	var handle: Vector2 = container.get_screen_transform() * at
+	await user.move(handle)
+	await picture("box-with-handles")
+	await user.drag([handle, handle + Vector2(0, -20), handle + Vector2(0, -60)])
+	await until(
+		func() -> bool: return (handles.get(&"box") as AABB).position.y > low + 0.1, "a face moves"
+	)
+	await picture("box-with-a-dragged-face")
+	check_equal(bytes(_of), _before, "the tree before Enter")
+	await user.key("Return")
+	await until(func() -> bool: return bytes(_of) != _before, "the box is cut out")
+	await picture("box-cut-out")
+	await _undo()
+	tool.call(&"set_setting", 0, &"shape")
 
 
 func _find_missing() -> void:
