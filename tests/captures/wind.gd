@@ -6,7 +6,7 @@ extends SceneTree
 
 const _SIZE: Vector2i = Vector2i(320, 380)
 const _SUPERSAMPLING: int = 2
-const _STRENGTHS: PackedFloat32Array = [0.0, 0.4, 1.1]
+const _STRENGTHS: PackedFloat32Array = [0.0, 0.45, 1.2]
 const _CHANNELS: Array[TreeWind.Channel] = [
 	TreeWind.Channel.SWAY,
 	TreeWind.Channel.ALONG,
@@ -73,8 +73,11 @@ func _open_stage(shape: TreeReconstruction) -> void:
 	_viewport.add_child((load("res://scenes/world.tscn") as PackedScene).instantiate())
 	# So that two runs draw the same: a wind that stands.
 	_wind.speed = 0.0
-	_wind.direction = Vector2(1.0, 0.2)
+	_wind.direction = Vector2(1.0, 0.0)
 	_viewport.add_child(_wind)
+	RenderingServer.global_shader_parameter_set(
+		&"tree_wind_shift", _find_gust(shape.get_aabb().size.y)
+	)
 	_tree.lod = 0
 	_tree.reconstruction = shape
 	_viewport.add_child(_tree)
@@ -87,6 +90,20 @@ func _open_stage(shape: TreeReconstruction) -> void:
 	camera.make_current()
 	while _tree.is_rebuilding():
 		await process_frame
+
+
+# When a gust has bent a tree of this height most: after tree_wind.gdshaderinc.
+func _find_gust(height: float) -> float:
+	var best: float = 0.0
+	var hardest: float = 0.0
+	for i: int in 4000:
+		var clock: float = 0.05 * i
+		var gust: float = 0.6 * sin(0.47 * clock) + 0.4 * sin(1.13 * clock + 1.7)
+		var bend: float = (0.58 + 0.36 * gust) * (0.65 + 0.35 * sin(6.0 / sqrt(height) * clock))
+		if bend > hardest:
+			hardest = bend
+			best = clock
+	return best
 
 
 func _picture() -> Image:

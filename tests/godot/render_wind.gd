@@ -178,6 +178,13 @@ func test_every_channel_can_be_looked_at() -> void:
 		for other: int in channel:
 			var changed: float = _change(seen[channel], seen[other])
 			check(changed > 20.0, "Channels %d and %d look the same." % [other, channel])
+	# The number itself is seen, whatever the renderer works in: leaves have no level, and show 0.2.
+	var levels: Image = seen[TreeWind.Channel.LEVEL]
+	var exact: int = 0
+	for y: int in levels.get_height():
+		for x: int in levels.get_width():
+			exact += int(_apart(levels.get_pixel(x, y), Color(0.2, 0.2, 0.2)) < 0.03)
+	check(exact > 200, "Only %d pixels show the number." % exact)
 	TreeWind.show_channel(_instance, TreeWind.Channel.NONE)
 	check_equal(_change(seen[0], await _picture()), 0.0, "what stays of the channels")
 	_viewport.free()

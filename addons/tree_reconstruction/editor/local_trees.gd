@@ -163,6 +163,8 @@ static func _is_used(tree: TreeReconstruction) -> bool:
 	if Engine.is_editor_hint():
 		scenes.assign(EditorInterface.get_open_scene_roots())
 	for scene: Node in scenes:
+		if scene == null:
+			continue
 		var nodes: Array[Node] = scene.find_children("*", "", true, false)
 		nodes.append(scene)
 		for node: Node in nodes:

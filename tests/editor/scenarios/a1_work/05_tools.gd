@@ -47,6 +47,9 @@ func run() -> void:
 	await user.key("ctrl+z")
 	await until(func() -> bool: return bytes(_of) == before, "the graft is undone")
 
+	await step("one of the tree's own branches is chosen from the list, and grafted")
+	await _graft_own(tip, before)
+
 	await step("the leaf rule changes the leaves at once")
 	if not await take_tool(&"leaf_rule", "F2"):
 		return
@@ -89,3 +92,26 @@ func _ghosts() -> Array:
 
 func _has_ghosts() -> bool:
 	return not _ghosts().is_empty()
+
+
+func _graft_own(tip: int, before: PackedByteArray) -> void:
+	await press(find_control("OptionButton", "What is grafted"))
+	if not await until(func() -> bool: return open_menu() != null, "the list opens"):
+		return
+	await picture("graft-list")
+	var own: String = ""
+	var popup: PopupMenu = open_menu()
+	for item: int in popup.item_count - 1:
+		if popup.get_item_text(item) == "Of this tree":
+			own = popup.get_item_text(item + 1)
+	if not check(not own.is_empty(), "None of its own is offered.") or not await choose(own):
+		return
+	await user.move(node_on_screen(_node, tip))
+	await until(func() -> bool: return _has_ghosts(), "the branch is shown")
+	await user.click(node_on_screen(_node, tip))
+	await until(func() -> bool: return not _of.get_node_children(tip).is_empty(), "it is grafted")
+	check(_of.edit_log.contains("string="), "Another one was grafted.")
+	await until(func() -> bool: return not _node.is_rebuilding(), "the tree is built")
+	await picture("grafted-of-its-own")
+	await user.key("ctrl+z")
+	await until(func() -> bool: return bytes(_of) == before, "the graft is undone")
