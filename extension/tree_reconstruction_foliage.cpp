@@ -201,6 +201,10 @@ Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
 
 std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(const treerec::LeafRules& p_rules,
                                                                       int p_lod) const {
-    return treerec::thin_leaves(
-        treerec::place_leaves(*get_tree(), p_rules, uint64_t(get_seed()), *get_leaf_density()), p_lod);
+    std::vector<treerec::LeafPlacement> leaves =
+        treerec::place_leaves(*get_tree(), p_rules, uint64_t(get_seed()), *get_leaf_density());
+    if (p_lod > 0) {
+        leaves = treerec::thin_leaves(leaves, p_lod);
+    }
+    return leaves;
 }

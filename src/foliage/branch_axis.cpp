@@ -46,6 +46,25 @@ Departure departure_of(const Tree& tree, const BranchList& list, const Branch& b
     return departure;
 }
 
+// Into how many pieces a stretch is cut that bends by two angles, of which these are the cosines. Most often
+// bounds of the angles tell: an angle over its chord is 1 + c^2 / 24 + 3 c^4 / 640 + ...
+int pieces_of(double before, double after) {
+    const auto pieces = [](double bend) {
+        return std::clamp(static_cast<int>(std::ceil(bend / kBendPerPoint)), 1, kMostPieces);
+    };
+    before = std::clamp(before, -1.0, 1.0);
+    after = std::clamp(after, -1.0, 1.0);
+    const double a = std::sqrt(2.0 * (1.0 - before)), b = std::sqrt(2.0 * (1.0 - after));
+    if (std::max(a, b) <= 1.0) {
+        const double a3 = a * a * a, b3 = b * b * b;
+        const double least = a + b + (a3 + b3) / 24.0;
+        const double most = least + 0.006 * (a3 * a * a + b3 * b * b);
+        const int fewest = pieces(least * (1.0 - 1e-9));
+        if (fewest == pieces(most * (1.0 + 1e-9))) return fewest;
+    }
+    return pieces(portable::acos(before) + portable::acos(after));
+}
+
 }  // namespace
 
 void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch, double least,
@@ -107,9 +126,7 @@ void sample_axis(const Tree& tree, const BranchList& list, const Branch& branch,
             points.push_back({from.position, start_direction, from.radius, 0.0});
         }
         first = false;
-        const double bend = portable::acos(std::clamp(glm::dot(start_direction, chord), -1.0, 1.0)) +
-                            portable::acos(std::clamp(glm::dot(chord, end_direction), -1.0, 1.0));
-        const int pieces = std::clamp(static_cast<int>(std::ceil(bend / kBendPerPoint)), 1, kMostPieces);
+        const int pieces = pieces_of(glm::dot(start_direction, chord), glm::dot(chord, end_direction));
         for (int i = 1; i <= pieces; i++) {
             AxisPoint point{to.position, end_direction, to.radius, 0.0, to.way};
             if (i < pieces) {

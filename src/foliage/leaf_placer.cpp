@@ -39,6 +39,14 @@ double number_of(uint64_t seed, uint64_t key) {
     return static_cast<double>(hash_seed(seed, key) >> 11) * 0x1p-53;
 }
 
+// As Random::direction(), which asks for the sine and the cosine one by one.
+DVec3 random_direction(Random& random) {
+    const double z = random.uniform(-1.0, 1.0);
+    const SineCosine turn = portable_sine_cosine(random.uniform(0.0, 2.0 * kPi));
+    const double r = std::sqrt(1.0 - z * z);
+    return {r * turn.cosine, r * turn.sine, z};
+}
+
 }  // namespace
 
 LeafPlacer::LeafPlacer(const Tree& t, const LeafRules& r, uint64_t s)
@@ -58,7 +66,8 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     const bool terminal = number == 0;
     const double lean_out =
         terminal ? 0.0 : glm::radians(angle + rules.angle_variation * random.uniform(-1.0, 1.0));
-    DVec3 y = at.direction * portable::cos(lean_out) + radial * portable::sin(lean_out);
+    const SineCosine out = portable_sine_cosine(lean_out);
+    DVec3 y = at.direction * out.cosine + radial * out.sine;
     // Droop turns the leaf towards the ground, most where it lies level.
     const double droop = glm::radians(rules.droop + 0.5 * rules.angle_variation * random.uniform(-1.0, 1.0)) *
                          (terminal ? 0.4 : 1.0);
@@ -73,11 +82,12 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     // By itself a leaf turns its upper face to the twig that it stands on.
     const double facing = std::min(1.0, 2.0 * rules.phototropism);
     DVec3 z = light * facing + (at.direction - y * glm::dot(at.direction, y)) * (1.0 - facing) +
-              random.direction() * 0.35;
+              random_direction(random) * 0.35;
     const double lean = glm::radians(rules.angle_variation) * random.uniform(-1.0, 1.0);
     z = normalized_or(z - y * glm::dot(z, y), any_perpendicular(y));
     DVec3 x = glm::cross(y, z);
-    z = glm::normalize(z * portable::cos(lean) + x * portable::sin(lean));
+    const SineCosine turn = portable_sine_cosine(lean);
+    z = glm::normalize(z * turn.cosine + x * turn.sine);
     x = glm::cross(y, z);
 
     LeafPlacement leaf;
@@ -156,8 +166,8 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
         const double turned = azimuth + kJitter * rules.angle_variation * random.uniform(-1.0, 1.0);
         const double down = size.twig_length > 0.0 ? (end.along - along) / size.twig_length : 0.0;
         const double angle = rules.angle * (1.0 - rules.closing * (1.0 - down));
-        const double wanted =
-            share * density_at(branch, at) * portable::exp(-kClusterSteepness * rules.clustering * down);
+        double wanted = share * density_at(branch, at);
+        if (rules.clustering > 0.0) wanted *= portable::exp(-kClusterSteepness * rules.clustering * down);
         for (int k = 0; k < count; k++) {
             const uint64_t own = number++;
             if (number_of(branch_key ^ kThinKey, own) >= wanted) continue;
@@ -170,7 +180,8 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
             } else {
                 around += 2.0 * kPi * k / count;
             }
-            const DVec3 radial = side * portable::cos(around) + other * portable::sin(around);
+            const SineCosine turn = portable_sine_cosine(around);
+            const DVec3 radial = side * turn.cosine + other * turn.sine;
             leaves.push_back(leaf_at(at, radial, out, tip, own));
         }
         switch (rules.arrangement) {

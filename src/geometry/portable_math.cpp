@@ -1,6 +1,8 @@
 #include "geometry/portable_math.h"
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -79,7 +81,10 @@ double exp(double x) {
     double sum = 1.0;
     for (size_t n = 14; n >= 1; n--)
         sum = 1.0 + rest * sum * kInverse[n];
-    return std::ldexp(sum, static_cast<int>(twos));
+    const auto power = static_cast<int64_t>(twos);
+    // A power of two that is a normal number is its exponent's bits.
+    if (std::abs(power) < 1020) return sum * std::bit_cast<double>(static_cast<uint64_t>(1023 + power) << 52);
+    return std::ldexp(sum, static_cast<int>(power));
 }
 
 double log(double x) {

@@ -24,6 +24,7 @@ constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
 constexpr double kHeightSlack = 1e-3;      // and over the tree's height
 constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
+constexpr size_t kFewBranches = 256;       // are built sooner than threads start
 
 // Radians between rings at level 0, of branches of such a radius in metres: the eye rests on the stout ones.
 struct BendLimit {
@@ -228,7 +229,7 @@ void Builder::seat(size_t index) {
         radius = std::min(radius, under->radius + (over->radius - under->radius) * f);
     }
     tubes[index].host_ring = static_cast<uint32_t>(lower - begin);
-    const double hidden = 0.92 * portable::cos(kPi / parent.sides) * radius;
+    const double hidden = 0.92 * polygon_flat(parent.sides) * radius;
     Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
     start.centre = lower->centre + chord * t;
     tubes[index].parent_direction = normalized_or(chord, DVec3(0.0, 1.0, 0.0));
@@ -249,6 +250,15 @@ void Builder::join(size_t index) {
                               {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring, out);
 }
 
+void Builder::for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const {
+    const size_t count = tubes.size();
+    parallel_for(count, count <= kFewBranches ? kFewBranches : kBranchesPerChunk,
+                 [&](size_t begin, size_t end) {
+                     if (progress) progress->check();
+                     body(begin, end);
+                 });
+}
+
 }  // namespace tubes
 
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Progress* progress) {
@@ -259,16 +269,14 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     if (!(builder.crown.coordinate < tubes::kLargestTree))
         throw Error("The tree reaches beyond 1000 km; check the scan's units.");
     const size_t branches = builder.tubes.size();
-    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
-        if (progress) progress->check();
+    builder.for_all(progress, [&](size_t begin, size_t end) {
         std::vector<AxisPoint> points;
         for (size_t i = begin; i < end; i++)
             builder.plan(i, points);
     });
     for (size_t i = 0; i < branches; i++)  // parents before children
         builder.seat(i);
-    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
-        if (progress) progress->check();
+    builder.for_all(progress, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++)
             builder.join(i);
     });
@@ -291,8 +299,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
         mesh.wind.resize(vertices);
     }
     mesh.indices.resize(indices);
-    parallel_for(branches, tubes::kBranchesPerChunk, [&](size_t begin, size_t end) {
-        if (progress) progress->check();
+    builder.for_all(progress, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++)
             if (builder.tubes[i].rings > 0) builder.emit(i, mesh);
     });

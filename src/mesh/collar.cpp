@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "geometry/portable_math.h"
+#include "mesh/polygon.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr uint32_t kMostSides = 64;
 constexpr size_t kMostRings = 24;    // that the branch may need to come out of the bark
 constexpr double kUp = 0.9;          // how far the web reaches up the branch, over its radius,
 constexpr double kDown = 0.8;        // and down onto the parent's bark,
@@ -72,7 +72,7 @@ double round_height(const TubeShape& tube, const DVec3& p, size_t& hint) {
     hint = at.span;
     if (at.beyond) return HUGE_VAL;
     const Ring &low = tube.rings[at.span], &high = tube.rings[at.span + 1];
-    const double flat = 0.5 + 0.5 * portable::cos(kPi / tube.sides);
+    const double flat = 0.5 + 0.5 * polygon_flat(tube.sides);
     return glm::distance(p, glm::mix(low.centre, high.centre, at.t)) -
            flat * (low.radius + (high.radius - low.radius) * at.t);
 }
@@ -101,7 +101,7 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     if (angle < 0.0) angle += 2.0 * kPi;
     place.corner = std::min(angle / step, static_cast<double>(tube.sides));
     const double within = angle - step * std::floor(place.corner);
-    place.surface = place.radius * portable::cos(0.5 * step) / portable::cos(within - 0.5 * step);
+    place.surface = place.radius * polygon_flat(tube.sides) / portable::cos(within - 0.5 * step);
     place.height = out - place.surface;
     const double slope = ring_slope(tube.rings, tube.count, at.span) * (1.0 - at.t) +
                          ring_slope(tube.rings, tube.count, at.span + 1) * at.t;
@@ -125,12 +125,7 @@ struct Generator {
 class CollarMaker {
   public:
     CollarMaker(const TubeShape& branch, const TubeShape& host, size_t host_span)
-        : branch_(branch), host_(host), span_(host_span) {
-        for (uint32_t j = 0; j < branch.sides; j++) {
-            const double angle = 2.0 * kPi * j / branch.sides;
-            circle_[j] = {portable::cos(angle), portable::sin(angle)};
-        }
-    }
+        : branch_(branch), host_(host), span_(host_span), circle_(polygon(branch.sides)) {}
 
     Collar make(std::vector<CollarVertex>& out) {
         for (uint32_t j = 0; j < branch_.sides; j++)
@@ -190,7 +185,7 @@ class CollarMaker {
     bool set_foot(uint32_t index);
     bool hide_foot();
     void find_middle();
-    CollarVertex web(uint32_t index, double share, double row_radius) const;
+    void web(uint32_t index, double share, double row_radius, CollarVertex& vertex) const;
     void dress_as_host(CollarVertex& vertex, const BarkPlace& at) const;
     Collar write(std::vector<CollarVertex>& out) const;
 
@@ -198,7 +193,7 @@ class CollarMaker {
     const TubeShape host_;
     size_t span_;
     double middle_ = 0.0;  // of the host's corners: where the branch's axis comes out
-    std::array<DVec2, kMostSides> circle_;
+    const DVec2* const circle_;
     std::array<Generator, kMostSides> lines_;
 };
 
@@ -321,10 +316,9 @@ void CollarMaker::find_middle() {
 }
 
 // On the curve from the foot over the crossing to the top, tangent to both barks; share: 0 .. 1 along it.
-CollarVertex CollarMaker::web(uint32_t index, double share, double row_radius) const {
+void CollarMaker::web(uint32_t index, double share, double row_radius, CollarVertex& vertex) const {
     const Generator& line = lines_[index];
     const double a = (1.0 - share) * (1.0 - share), b = 2.0 * share * (1.0 - share), c = share * share;
-    CollarVertex vertex;
     vertex.position = line.foot * a + line.crossing * b + line.top * c;
     const DVec3& own = line.outward;
     DVec3 normal = line.at.normal * (1.0 - share) + own * share;
@@ -344,7 +338,6 @@ CollarVertex CollarMaker::web(uint32_t index, double share, double row_radius) c
     vertex.own = share;
     vertex.host_centre = line.at.centre;
     vertex.host_along = line.at.along;
-    return vertex;
 }
 
 // The parent's picture, where it would be if the parent's bark went on up to there.
@@ -377,55 +370,51 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
     for (size_t i = 0; i < collar.next_ring; i++)
         slant += branch_.rings[i].along > first + gap && branch_.rings[i].along < until - gap;
     slant = std::min(slant, 3u);
-    // The last column is the first one, a round further.
-    const auto close_row = [&](bool as_host) {
-        out.push_back(out[out.size() - branch_.sides]);
+    const uint32_t sides = branch_.sides, stride = sides + 1;
+    const bool thick = own > kThickRadius;
+    const size_t room = out.size() + size_t{stride} * ((thick ? 5 : 4) + slant);
+    if (out.capacity() < room) out.reserve(std::max(room, 2 * out.capacity()));
+    // The next row; its last column is the first one, a round further.
+    const auto row = [&](bool as_host, const auto& put) {
+        const size_t first = out.size();
+        out.resize(first + stride);
+        for (uint32_t j = 0; j < sides; j++)
+            put(j, out[first + j]);
+        out.back() = out[first];
         if (!as_host) out.back().around = 1.0;
         collar.rows++;
     };
-    const auto row = [&](double share) {
+    const auto web_row = [&](double share) {
         const double radius = own + (1.0 - share) * (1.0 - share) * down;
-        for (uint32_t j = 0; j < branch_.sides; j++)
-            out.push_back(web(j, share, radius));
+        row(false, [&](uint32_t j, CollarVertex& vertex) { web(j, share, radius, vertex); });
     };
-    const bool thick = own > kThickRadius;
-    const double turn = thick ? 1.0 / 3.0 : 0.5;  // where the picture changes
-    row(0.0);
-    for (uint32_t j = 0; j < branch_.sides; j++)
-        dress_as_host(out[out.size() - branch_.sides + j], lines_[j].at);
-    close_row(true);
-    row(turn);
-    close_row(false);
+    row(true, [&](uint32_t j, CollarVertex& vertex) {
+        web(j, 0.0, own + down, vertex);
+        dress_as_host(vertex, lines_[j].at);
+    });
+    web_row(thick ? 1.0 / 3.0 : 0.5);  // where the picture changes
     size_t hint = span_;
-    for (uint32_t j = 0; j < branch_.sides; j++) {
-        out.push_back(out[out.size() - branch_.sides - 1]);
-        dress_as_host(out.back(), locate(host_, out.back().position, hint));
-    }
-    close_row(true);
-    if (thick) {
-        row(2.0 / 3.0);
-        close_row(false);
-    }
-    row(1.0);
-    close_row(false);
+    row(true, [&](uint32_t j, CollarVertex& vertex) {
+        vertex = out[out.size() - 2 * stride + j];
+        dress_as_host(vertex, locate(host_, vertex.position, hint));
+    });
+    if (thick) web_row(2.0 / 3.0);
+    web_row(1.0);
     for (uint32_t i = 1; i <= slant; i++) {
         const double share = static_cast<double>(i) / (slant + 1);
         double radius = 0.0;
-        for (uint32_t j = 0; j < branch_.sides; j++)
-            radius += radius_at(lines_[j].end + (until - lines_[j].end) * share) / branch_.sides;
-        for (uint32_t index = 0; index < branch_.sides; index++) {
-            const double along = lines_[index].end + (until - lines_[index].end) * share;
-            CollarVertex vertex = web(index, 1.0, radius);
-            vertex.position = point_at(index, along);
-            vertex.normal = outward_at(index, along);
-            const DVec3 side = side_at(index, along);
+        for (uint32_t j = 0; j < sides; j++)
+            radius += radius_at(lines_[j].end + (until - lines_[j].end) * share) / sides;
+        row(false, [&](uint32_t j, CollarVertex& vertex) {
+            const double along = lines_[j].end + (until - lines_[j].end) * share;
+            web(j, 1.0, radius, vertex);
+            vertex.position = point_at(j, along);
+            vertex.normal = outward_at(j, along);
+            const DVec3 side = side_at(j, along);
             vertex.tangent =
                 normalized_or(side - vertex.normal * glm::dot(side, vertex.normal), vertex.tangent);
             vertex.v = vertex.along = along;
-            vertex.radius = radius;
-            out.push_back(vertex);
-        }
-        close_row(false);
+        });
     }
     return collar;
 }

@@ -2,15 +2,16 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
 #include "foliage/wind.h"
-#include "geometry/portable_math.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/collar.h"
+#include "mesh/polygon.h"
 #include "mesh/root_flare.h"
 #include "mesh/tube_rings.h"
 #include "mesh/twig_shares.h"
@@ -101,9 +102,11 @@ struct Builder {
             radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
         }
         const double thickest = tree.node(list.nodes[parent.begin]).radius;
-        return 0.92 * portable::cos(kPi / sides_of(thickest, options)) * radius;
+        return 0.92 * polygon_flat(sides_of(thickest, options)) * radius;
     }
 
+    // Calls body(begin, end) for all branches, on several threads where they are worth it.
+    void for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const;
     void plan(size_t index, std::vector<AxisPoint>& points);
     void seat(size_t index);
     void join(size_t index);

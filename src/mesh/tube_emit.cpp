@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "geometry/portable_math.h"
+#include "mesh/polygon.h"
 #include "mesh/tube_builder.h"
 
 namespace treerec::tubes {
@@ -58,11 +59,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     const double repeats = repeats_of(index, last_ring.radius);
     const float phase = phase_of(index);
     const Vec4 custom0(Vec3(run[0].centre), static_cast<float>(branch.order));
-    DVec2 circle[65];
-    for (uint32_t j = 0; j <= sides; j++) {
-        const double angle = 2.0 * kPi * (j % sides) / sides;
-        circle[j] = {portable::cos(angle), portable::sin(angle)};
-    }
+    const DVec2* const circle = polygon(sides);
     const double per_side = 1.0 / sides;
     size_t vertex = tube.first_vertex;
     Vec2 code{0.0f};  // the wind's, of the vertex that is put next
@@ -86,22 +83,34 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     };
     const CollarVertex* const collar = collars[index / kBranchesPerChunk].data() + tube.first_collar;
     const size_t host = static_cast<size_t>(std::max(branch.parent, 0));
-    for (size_t i = 0; i < tube.collar.rows * stride; i++) {
-        const CollarVertex& from = collar[i];
-        const bool foot = i < stride;
-        const double bark =
-            light_at(tubes[host], rings_of(host)[0].radius, from.host_centre, from.host_along, 1.0);
-        const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
-        const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
-        const double light = (bark + (own - bark) * from.own) * crease;
-        // The foot moves as the bark that it stands on.
-        code =
-            foot ? wind_at(host, from.host_along, from.position) : wind_at(index, from.along, from.position);
-        const bool as_host = foot || (i >= 2 * stride && i < 3 * stride);
-        put(from.position, from.normal, from.tangent, from.around,
-            repeats_of(as_host ? host : index, from.radius), from.v, from.radius,
-            color_at(from.position, foot ? 0.0 : std::max(from.along, 1e-4 * length), light,
-                     foot ? phase_of(host) : phase));
+    const float host_phase = tube.collar.rows > 0 ? phase_of(host) : 0.0f;
+    // What all rows of a column share, and what two rows at one place do.
+    double bark_light[kMostSides];
+    Vec2 codes[kMostSides];
+    Vec4 shades[kMostSides];
+    for (uint32_t row = 0; row < tube.collar.rows; row++) {
+        const bool foot = row == 0, as_host = foot || row == 2;
+        const CollarVertex* const corners = collar + row * stride;
+        for (uint32_t j = 0; j < stride; j++) {
+            const CollarVertex& from = corners[j];
+            const uint32_t column = j < sides ? j : 0;
+            if (row != 2 && j < sides) {
+                if (foot)
+                    bark_light[j] = light_at(tubes[host], rings_of(host)[0].radius, from.host_centre,
+                                             from.host_along, 1.0);
+                const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
+                const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
+                const double light = (bark_light[j] + (own - bark_light[j]) * from.own) * crease;
+                // The foot moves as the bark that it stands on.
+                codes[j] = foot ? wind_at(host, from.host_along, from.position)
+                                : wind_at(index, from.along, from.position);
+                shades[j] = color_at(from.position, foot ? 0.0 : std::max(from.along, 1e-4 * length), light,
+                                     foot ? host_phase : phase);
+            }
+            code = codes[column];
+            put(from.position, from.normal, from.tangent, from.around,
+                repeats_of(as_host ? host : index, from.radius), from.v, from.radius, shades[column]);
+        }
     }
     // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.
     const auto blend_at = [&](const Ring& ring) {

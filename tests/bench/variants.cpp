@@ -9,6 +9,7 @@
 #include "edit/vary.h"
 #include "exchange/tree_files.h"
 #include "foliage/leaves.h"
+#include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/joined_leaves.h"
 #include "mesh/leaf_cards.h"
@@ -43,6 +44,7 @@ size_t bytes_of(const Mesh& mesh, bool leaves) {
 }
 
 void measure_tree(const char* name, const Tree& tree, const Foliage& foliage, int times) {
+    set_thread_count(1);
     const double look_ms = least_ms(3, [&] { const VariantMaker maker(tree, foliage); });
     const VariantMaker maker(tree, foliage);
     const LeafRules rules = leaf_preset("oak");
@@ -63,6 +65,7 @@ void measure_tree(const char* name, const Tree& tree, const Foliage& foliage, in
                 1000.0 / (make_ms + bark_ms + leaf_ms),
                 static_cast<double>(bytes_of(bark, false) + bytes_of(leaves.mesh, true)) / 1000.0);
     std::fflush(stdout);
+    set_thread_count(0);
 }
 
 }  // namespace
@@ -70,10 +73,9 @@ void measure_tree(const char* name, const Tree& tree, const Foliage& foliage, in
 void bench_variants(const std::vector<std::string>& files, const Settings& settings) {
     const int times = settings.repetitions > 0 ? settings.repetitions : 100;
     std::printf(
-        "\nVariants, milliseconds, the least of %d: looking at a tree once; making one, and one of half its "
-        "age, on one core; its bark\nand how many of both are made in a second; its leaves (an oak's), and "
-        "all "
-        "three; kB as the engine keeps them\n",
+        "\nVariants, milliseconds on one core, the least of %d: looking at a tree once; making one, and one "
+        "of half its age; its bark\nand how many of both are made in a second; its leaves (an oak's), and "
+        "all three; kB as the engine keeps them\n",
         times);
     std::printf("%-30s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "tree", "nodes", "cells", "look",
                 "make", "young", "bark tri", "ms", "each s", "leaf tri", "ms", "each s", "kB");

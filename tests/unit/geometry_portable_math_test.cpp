@@ -42,6 +42,10 @@ TEST(PortableMath, IsTheStandardLibrarysToSomeUnitsInTheLastPlace) {
         expect_close(portable::atan2(any, one), std::atan2(any, one), 6, "atan2", any, one);
         expect_close(portable::atan2(one, any), std::atan2(one, any), 6, "atan2", one, any);
         expect_close(portable::exp(any), std::exp(any), 4, "exp", any);
+        // Down to what has no exponent of its own left.
+        const double small = -14.8 * std::abs(any), large = 14.1 * std::abs(any);
+        expect_close(portable::exp(small), std::exp(small), 4, "exp", small);
+        expect_close(portable::exp(large), std::exp(large), 4, "exp", large);
         expect_close(portable::log(wide), std::log(wide), 4, "log", wide);
         expect_close(portable::log(1.0 + 0.01 * one), std::log(1.0 + 0.01 * one), 4, "log", 1.0 + 0.01 * one);
         expect_close(portable::log2(wide), std::log2(wide), 6, "log2", wide);

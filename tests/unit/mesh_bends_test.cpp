@@ -4,10 +4,26 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/portable_math.h"
 #include "mesh/branch_tubes.h"
+#include "mesh/polygon.h"
 
 namespace treerec {
 namespace {
+
+TEST(Polygons, HaveTheirCornersOnACircle) {
+    for (uint32_t sides = 3; sides <= kMostSides; sides++) {
+        const DVec2* const corners = polygon(sides);
+        EXPECT_EQ(corners[0], DVec2(1.0, 0.0));
+        EXPECT_EQ(corners[sides], corners[0]) << sides;
+        for (uint32_t j = 0; j < sides; j++) {
+            const double angle = 2.0 * kPi * j / sides;
+            EXPECT_EQ(corners[j], DVec2(portable::cos(angle), portable::sin(angle))) << j << " of " << sides;
+            const DVec2 middle = 0.5 * (corners[j] + corners[j + 1]);
+            EXPECT_NEAR(polygon_flat(sides), glm::length(middle), 1e-12) << sides;
+        }
+    }
+}
 
 // A limb that leaves a stem along the stem's way, and so starts thin within it, keeps the smooth bends of its
 // own thickness.
