@@ -263,12 +263,12 @@ Dictionary TreeReconstruction::measure() const {
     });
 }
 
-Array TreeReconstruction::build_mesh_arrays(int p_lod) const {
+Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
         return to_surface_arrays(treerec::build_level_bark(
-            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), p_lod));
+            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), p_lod, p_whole_repeats));
     });
 }
 

@@ -110,7 +110,7 @@ class TreeReconstruction : public godot::Resource {
 #endif
 
     // Builders.
-    godot::Array build_mesh_arrays(int p_lod) const;
+    godot::Array build_mesh_arrays(int p_lod, bool p_whole_repeats = false) const;
     godot::Ref<godot::ArrayMesh> build_mesh(int p_lod) const;
     godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
     godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;

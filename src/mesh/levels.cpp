@@ -31,10 +31,11 @@ double level_width(double height, double level) {
     return kWidth * height * portable::pow(2.0, level);
 }
 
-Mesh build_level_bark(const Tree& wood, double level, const Progress* progress) {
+Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const Progress* progress) {
     TubeOptions options;
     options.level = whole(level);
     options.twig_level = level;
+    options.whole_repeats = whole_repeats;
     return build_branch_tubes(wood, options, progress);
 }
 
@@ -62,7 +63,7 @@ LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t se
 TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
-    made.bark = build_level_bark(wood_, level, progress);
+    made.bark = build_level_bark(wood_, level, false, progress);
     made.leaves = thin_leaves(leaves_, level);
     if (!made.leaves.empty()) made.card = build_leaf_card(rules_, std::min(whole(level), kMostLevels - 1));
     return made;

@@ -66,7 +66,9 @@ class LevelBuilder {
     Bounds box_;
 };
 
-// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree.
-Mesh build_level_bark(const Tree& wood, double level, const Progress* progress = nullptr);
+// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree. whole_repeats: see
+// TubeOptions.
+Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats = false,
+                      const Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -164,6 +164,91 @@ func test_a_material_of_the_users_own_stays() -> void:
 	check_equal(meshes[0].surface_get_material(0), baker.bark_material, "the material")
 
 
+# How many rounds of the bark end where no whole number of its picture does.
+func _count_seams(arrays: Array) -> int:
+	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
+	var normals: PackedVector3Array = arrays[Mesh.ARRAY_NORMAL]
+	var uvs: PackedVector2Array = arrays[Mesh.ARRAY_TEX_UV]
+	var rounds: Dictionary[Array, PackedFloat32Array] = {}
+	for i: int in places.size():
+		var where: Array = [places[i], normals[i], uvs[i].y]
+		if not rounds.has(where):
+			rounds[where] = PackedFloat32Array()
+		rounds[where].append(uvs[i].x)
+	var met: int = 0
+	var seams: int = 0
+	for ends: PackedFloat32Array in rounds.values():
+		# The middle of a tip or a cut belongs to all its triangles.
+		if ends.size() != 2:
+			continue
+		met += 1
+		if absf(ends[1] - ends[0] - roundf(ends[1] - ends[0])) > 1e-4:
+			seams += 1
+	check(met > 100, "Only %d rounds were found." % met)
+	return seams
+
+
+func test_bark_has_no_seam_under_a_material_of_the_users_own() -> void:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 2
+	baker.leaves = false
+	baker.collision = false
+	var made: TreeReconstruction = _made()
+	var usual: TreeBaker.Parts = baker.build(made)
+	check(_count_seams(usual.bark[0]) > 100, "The addon's shader has no seam to hide.")
+	var own: ShaderMaterial = ShaderMaterial.new()
+	own.shader = Shader.new()
+	for material: Material in [StandardMaterial3D.new(), own]:
+		baker.bark_material = material
+		var parts: TreeBaker.Parts = baker.build(made)
+		for level: int in 2:
+			check_equal(_count_seams(parts.bark[level]), 0, "seams of level %d" % level)
+			check_equal(
+				parts.bark[level][Mesh.ARRAY_VERTEX] as PackedVector3Array,
+				usual.bark[level][Mesh.ARRAY_VERTEX] as PackedVector3Array,
+				"the wood of level %d" % level
+			)
+
+
+func test_the_body_is_of_the_kind_that_was_asked_for() -> void:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 1
+	baker.leaves = false
+	baker.bark_material = StandardMaterial3D.new()
+	baker.collision_shapes = 12
+	baker.collision_minimum_radius = 0.02
+	var made: TreeReconstruction = _made()
+	for kind: int in TreeInstance3D.CollisionKind.values():
+		baker.collision_kind = kind as TreeInstance3D.CollisionKind
+		var path: String = folder.path_join("body.scn")
+		check_equal(ResourceSaver.save(baker.bake(made), path), OK, "saving")
+		var root: Node3D = (
+			ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE).instantiate()
+		)
+		var body: StaticBody3D = root.get_node("Wood")
+		var parts: Array[Dictionary]
+		if kind == TreeInstance3D.CollisionKind.CAPSULES:
+			parts = made.build_capsules(12, 0.02)
+		else:
+			var trunk: bool = kind == TreeInstance3D.CollisionKind.TRUNK_ONLY
+			parts = made.build_convex_parts(12, 0.02, trunk)
+		check(parts.size() > 0 and parts.size() <= 12, "%d parts." % parts.size())
+		check_equal(body.get_child_count(), parts.size(), "shapes of kind %d" % kind)
+		for i: int in body.get_child_count():
+			var shape: Shape3D = (body.get_child(i) as CollisionShape3D).shape
+			if kind == TreeInstance3D.CollisionKind.CAPSULES:
+				check(shape is CapsuleShape3D, "Shape %d is no capsule." % i)
+				check_near((shape as CapsuleShape3D).radius, parts[i].radius, 1e-6, "its radius")
+			else:
+				check(shape is ConvexPolygonShape3D, "Shape %d is no convex part." % i)
+				check_equal((shape as ConvexPolygonShape3D).points, parts[i].points, "its points")
+		root.free()
+	var usual: TreeBaker = TreeBaker.new()
+	usual.levels = 1
+	usual.leaves = false
+	check_equal(usual.build(made).shapes, made.build_capsules(), "what is usual")
+
+
 func test_leaves_as_a_multimesh_need_no_addon_either() -> void:
 	var baker: TreeBaker = TreeBaker.new()
 	baker.levels = 2

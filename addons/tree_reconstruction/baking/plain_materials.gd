@@ -24,6 +24,12 @@ static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
 	return made
 
 
+## Whether [param material] has one of the addon's shaders.
+static func is_addons(material: Material) -> bool:
+	var shaded: ShaderMaterial = material as ShaderMaterial
+	return shaded != null and shaded.shader != null and _is_addons(shaded.shader)
+
+
 ## A copy of [param material] with its shader and textures in itself, and with [param values] set
 ## where its shader has them. A material that has nothing of the addon is returned as it is.
 ## [param pictures] are those of [method plain_pictures]. [param joined] is whether the leaves are
@@ -36,9 +42,9 @@ static func plain(
 	joined: bool = true,
 	global_wind: bool = false
 ) -> Material:
-	var shaded: ShaderMaterial = material as ShaderMaterial
-	if shaded == null or shaded.shader == null or not _is_addons(shaded.shader):
+	if not is_addons(material):
 		return material
+	var shaded: ShaderMaterial = material as ShaderMaterial
 	var made: ShaderMaterial = ShaderMaterial.new()
 	made.resource_name = material.resource_path.get_file().get_basename()
 	made.shader = Shader.new()

@@ -4,7 +4,7 @@ extends RefCounted
 ## Turns trees into plain scenes and meshes that need neither this addon nor its library.
 ##
 ## A baked scene holds a mesh for each level of detail, of a surface of bark and one of leaves, that
-## take turns by their distance; its materials, with the wind; and a body of capsules. Share it,
+## take turns by their distance; its materials, with the wind; and a body along its wood. Share it,
 ## use it in a project without the addon, or give the meshes to a tool that scatters them.
 ## [codeblock]
 ## var baker := TreeBaker.new()
@@ -64,10 +64,22 @@ var wind: bool = true
 ## its materials.
 var global_wind: bool = false
 
-## Whether there is a [StaticBody3D] of capsules along its stout wood.
+## Whether there is a [StaticBody3D] along its stout wood.
 var collision: bool = true
 
-## The bark's material; without one, that of the tree's leaf preset.
+## The shapes of that body.
+var collision_kind: TreeInstance3D.CollisionKind = TreeInstance3D.CollisionKind.CAPSULES
+
+## How many shapes it has at most; see [member TreeInstance3D.collision_shapes].
+var collision_shapes: int = 32:
+	set(value):
+		collision_shapes = maxi(value, 1)
+
+## Thinner wood, measured from its middle, lets everything through.
+var collision_minimum_radius: float = 0.03
+
+## The bark's material; without one, that of the tree's leaf preset. For one without the addon's
+## shader the bark's picture goes around each branch a whole number of times, and meets itself.
 var bark_material: Material
 
 ## The leaves' material; without one, that of the tree's leaf preset.
@@ -89,8 +101,9 @@ class Parts:
 	var buffers: Array[PackedFloat32Array] = []
 	## The size of the bark's lightmap of each level, if there is one.
 	var lightmaps: Array[Vector2i] = []
-	## See [method TreeReconstruction.build_capsules].
-	var capsules: Array[Dictionary] = []
+	## See [method TreeReconstruction.build_capsules] and
+	## [method TreeReconstruction.build_convex_parts].
+	var shapes: Array[Dictionary] = []
 	## The box around all levels, at rest.
 	var box: AABB
 	## The pictures of the materials, packed, by the paths of those that they are copies of.
@@ -120,7 +133,9 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 			parts.buffers.append(tree.build_leaf_buffer(level))
 		parts.leaves.append(built)
 	if collision:
-		parts.capsules = tree.build_capsules()
+		parts.shapes = Collision.gather(
+			tree, collision_kind, collision_shapes, collision_minimum_radius
+		)
 	parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
 	parts.pictures.merge(PlainMaterials.plain_pictures(_leaf_of(tree)))
 	for place: Vector3 in _places(parts.bark[0]):
@@ -136,7 +151,8 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 
 
 func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
-	var arrays: Array = tree.build_mesh_arrays(level)
+	# Only the addon's shader knows how to hide the seam of a picture that does not fit around.
+	var arrays: Array = tree.build_mesh_arrays(level, not PlainMaterials.is_addons(_bark_of(tree)))
 	var size: Vector2i = Vector2i.ZERO
 	if lightmap_uv2 and not arrays.is_empty():
 		var unwrapped: Lightmap.Unwrapped = Lightmap.unwrap(arrays, lightmap_texel_size)
@@ -187,12 +203,12 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 				each.visibility_range_end_margin = Levels.margin(switches[level])
 	if form == Form.MULTIMESH and not apart.is_empty():
 		LeavesApart.teach(root, _shader_values(tree, parts.height))
-	if not parts.capsules.is_empty():
+	if not parts.shapes.is_empty():
 		var body: StaticBody3D = StaticBody3D.new()
 		body.name = "Wood"
 		root.add_child(body)
 		body.owner = root
-		Collision.fill(body, parts.capsules)
+		Collision.fill(body, parts.shapes)
 		# Its shapes are the scene's own, seen and saved.
 		for shape: Node in body.get_children(true):
 			body.remove_child(shape)

@@ -90,7 +90,7 @@ func _build() -> void:
 	body.add_child(lightmap)
 	collision = CheckBox.new()
 	collision.text = "With collision"
-	collision.tooltip_text = "Adds a body of capsules along the trunk and the stout branches."
+	collision.tooltip_text = ("Adds a body along the trunk and the stout branches, of the node's kind of collision.")
 	collision.button_pressed = true
 	body.add_child(collision)
 	bake = Widgets.button(
@@ -140,6 +140,9 @@ func _bake(path: String, write: Callable) -> void:
 	baker.form = form.get_selected_id() as TreeBaker.Form
 	baker.lightmap_uv2 = lightmap.button_pressed
 	baker.collision = collision.button_pressed
+	baker.collision_kind = session.node.collision_kind
+	baker.collision_shapes = session.node.collision_shapes
+	baker.collision_minimum_radius = session.node.collision_minimum_radius
 	baker.leaves = session.node.leaves
 	baker.wind = session.node.wind
 	baker.bark_material = session.node.bark_material
