@@ -221,13 +221,20 @@ void run_reconstruct(const std::vector<std::string>& words) {
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    SubProgress reconstructing(&progress, 0.0, 0.9);
-    const Reconstruction result = reconstruct_file(scan, options, &reconstructing);
+    SubProgress reconstructing(&progress, 0.0, 0.88), scoring(&progress, 0.88, 0.9);
+    Reconstruction result = reconstruct_tree(scan, options, &reconstructing);
     details.leaves = chosen_leaves(details.leaves, result);
     exports.leaves = suited_leaves(details.leaves, result);
     exports.textures = details.leaves;
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
+    // What is to be written is made while the tree is scored.
+    parallel_for(2, 1, [&](size_t part, size_t) {
+        if (part == 0)
+            exporter.prepare(outs);
+        else
+            score_reconstruction(result, options, &scoring);
+    });
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();
         progress.update(0.9 + 0.05 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");

@@ -38,14 +38,13 @@ bool before(const Vec3& a, const Vec3& b) {
 // How far apart points that belong together lie: a few times the median distance to the fifth neighbour.
 double found_gap(const std::vector<Vec3>& points) {
     if (points.size() <= static_cast<size_t>(kSpacingNeighbours)) return kMostGap;
-    const KdPoints source{points};
-    const KdTree tree(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(32));
+    const KdTree tree(points, 32);
     const size_t step = std::max<size_t>(1, points.size() / kSpacingSamples);
     std::vector<double> distances;
     for (size_t i = 0; i < points.size(); i += step) {
         std::array<uint32_t, kSpacingNeighbours + 1> found;
         std::array<float, kSpacingNeighbours + 1> squares;
-        tree.knnSearch(&points[i].x, found.size(), found.data(), squares.data());
+        tree.nearest(points[i], found.size(), found.data(), squares.data());
         distances.push_back(std::sqrt(static_cast<double>(squares.back())));
     }
     return std::clamp(kSpacingFactor * quantile(distances, 0.5), kLeastGap, kMostGap);
@@ -102,7 +101,7 @@ void suggest_joint(const Tree& tree, const std::vector<NodeId>& ids, const KdTre
     for (uint32_t i : cluster.points) {
         uint32_t found = 0;
         float square = 0.0F;
-        nodes.knnSearch(&points[i].x, 1, &found, &square);
+        nodes.nearest(points[i], 1, &found, &square);
         const double distance = glm::distance(DVec3(points[i]), tree.node(ids[found]).position);
         if (distance > least || (distance == least && ids[found] >= cluster.joint)) continue;
         least = distance;
@@ -179,8 +178,7 @@ std::vector<UnexplainedCluster> find_unexplained(const Tree& tree, const PointCl
     std::vector<Vec3> node_points;
     for (NodeId id : ids)
         node_points.emplace_back(tree.node(id).position);
-    const KdPoints source{node_points};
-    const KdTree nodes(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const KdTree nodes(node_points);
     parallel_for(clusters.size(), 1, [&](size_t begin, size_t end) {
         for (size_t c = begin; c < end; c++) {
             if (progress) progress->check();

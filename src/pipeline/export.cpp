@@ -9,9 +9,9 @@
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "foliage/foliage_twigs.h"
+#include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
-#include "tree/measure.h"
 
 namespace treerec {
 
@@ -75,6 +75,24 @@ const Mesh& TreeExporter::leaf_cards() {
     return *leaf_cards_;
 }
 
+const Measurements& TreeExporter::measured() {
+    if (!measured_) measured_ = measure(tree_);
+    return *measured_;
+}
+
+void TreeExporter::prepare(const std::vector<std::string>& paths) {
+    if (tree_.empty() || std::none_of(paths.begin(), paths.end(), [](const std::string& path) {
+            const Format format = format_of(path);
+            return format == Format::kGltf || format == Format::kObj;
+        }))
+        return;
+    parallel_for(3, 1, [&](size_t part, size_t) {
+        if (part == 0) bark();
+        if (part == 1) leaf_cards();
+        if (part == 2) measured();
+    });
+}
+
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
     if (!coarser_.empty() || options_.levels == 1) return coarser_;
     const Tree leafy = leafy_tree(tree_, options_.leaves, options_.foliage);
@@ -123,7 +141,7 @@ void TreeExporter::write(const std::string& path) {
     }
     if (pictures_.empty())
         pictures_ = pictures_of_leaves(make_pictures(options_.textures), uses_blade_picture(options_.leaves));
-    const Measurements measured = measure(tree_);
+    prepare({path});
     ModelFile model;
     model.bark = &bark();
     model.leaves = &leaf_cards();
@@ -133,9 +151,9 @@ void TreeExporter::write(const std::string& path) {
     }
     model.preset = options_.textures;
     model.pictures = pictures_;
-    model.extras = {{"height_m", measured.height},
-                    {"dbh_m", measured.dbh},
-                    {"nodes", static_cast<double>(measured.nodes)},
+    model.extras = {{"height_m", measured().height},
+                    {"dbh_m", measured().dbh},
+                    {"nodes", static_cast<double>(measured().nodes)},
                     {"seed", static_cast<double>(options_.seed)}};
     if (format == Format::kGltf)
         write_gltf(path, model, progress_);

@@ -10,6 +10,7 @@
 #include "foliage/leaves.h"
 #include "mesh/mesh.h"
 #include "progress.h"
+#include "tree/measure.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -30,6 +31,9 @@ class TreeExporter {
   public:
     TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);
 
+    // Makes all that write() needs for the files at these paths, so that the parts are made side by side.
+    void prepare(const std::vector<std::string>& paths);
+
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
     // the tree has it; with leaves) or .ply .txt .csv .lstring (the skeleton in scan coordinates). Throws
     // Error for another extension, or if it cannot be written.
@@ -42,6 +46,7 @@ class TreeExporter {
     const Mesh& bark();
     const std::vector<LeafPlacement>& placed();
     const Mesh& leaf_cards();
+    const Measurements& measured();
     int card_level();
     struct Coarser {
         Mesh bark, leaves;
@@ -54,6 +59,7 @@ class TreeExporter {
     std::optional<Mesh> bark_;
     std::optional<std::vector<LeafPlacement>> placed_;
     std::optional<Mesh> leaf_cards_;
+    std::optional<Measurements> measured_;
     std::vector<Coarser> coarser_;
     std::vector<NamedPicture> pictures_;
 };

@@ -90,6 +90,14 @@ LeafRules suited_leaves(const std::string& preset, const Reconstruction& result)
 
 Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
                                 Progress* progress, ReconstructCache* cache) {
+    SubProgress reconstructing(progress, 0.0, kCompletedEnd), scoring(progress, kCompletedEnd, 1.0);
+    Reconstruction result = reconstruct_tree(path, options, &reconstructing, cache);
+    score_reconstruction(result, options, &scoring);
+    return result;
+}
+
+Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& options,
+                                Progress* progress, ReconstructCache* cache) {
     Reconstruction result;
     StageClock clock(result.stages);
     bool kept = false;
@@ -168,6 +176,7 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     result.kind_told = skeleton.kind_told;
     result.steps = std::move(skeleton.steps);
     result.palm = told.fronds;
+    result.noise = told.noise;
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);
     if (result.tree.size() < 2)
@@ -175,33 +184,39 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     rebase_cloud(result.cloud, result.tree.frame());
 
     clock.restart();
-    PointCloud wood;
     if (told.foliage) {
         result.foliage = foliage_of(result.cloud, told.leaf, telling);
         result.foliage.reach = told.reach;
         result.leaf_points = static_cast<size_t>(std::count(told.leaf.begin(), told.leaf.end(), uint8_t{1}));
-        wood = result.cloud;
         for (uint8_t& flag : told.leaf)
             flag = !flag;
-        wood.keep_only(told.leaf);
         result.wood = std::move(told.leaf);
         clock.stop("Foliage", result.leaf_points);
     }
     if (options.complete && !told.fronds) {
-        SubProgress completing(progress, kSkeletonEnd, kCompletedEnd);
+        SubProgress completing(progress, kSkeletonEnd, 1.0);
         const CompletedTree walked = complete_all(result.tree, result.cloud, {}, result.wood, &completing);
         result.completed = walked.branches.size();
         for (const Completion& branch : walked.branches)
             result.completed_length += branch.length;
         clock.stop("Completion", result.tree.size());
     }
+    return result;
+}
+
+void score_reconstruction(Reconstruction& result, const ReconstructOptions& options, Progress* progress) {
+    StageClock clock(result.stages);
+    PointCloud wood;
+    if (!result.wood.empty()) {
+        wood = result.cloud;
+        wood.keep_only(result.wood);
+    }
     const PointCloud& judged = wood.empty() ? result.cloud : wood;
-    SubProgress scoring(progress, kCompletedEnd, 1.0);
     result.measured = measure(result.tree);
-    result.fit = score_scan(result.tree, judged, 0.0, &scoring, options.score_points);
+    result.fit = score_scan(result.tree, judged, 0.0, progress, options.score_points);
     const bool unexplained = result.fit.explained_2cm < kLeastExplained;
     const bool guessed = result.measured.measured_volume_share < kLeastMeasured;
-    const bool noisy = told.noise > 0.0;
+    const bool noisy = result.noise > 0.0;
     if (unexplained && !noisy)
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +
                                   " % of the wood's points lie within 2 cm of the wood that was found. Is it "
@@ -213,10 +228,9 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     if (noisy && (unexplained || guessed))
         result.warnings.push_back(
             "The scan is noisy: even the stem's points lie on no surface, but about " +
-            std::to_string(std::max(1L, std::lround(100.0 * told.noise))) +
+            std::to_string(std::max(1L, std::lround(100.0 * result.noise))) +
             " cm or more to either side of it. Twigs and the radii of thin wood are guesses.");
     clock.stop("Score", result.cloud.size());
-    return result;
 }
 
 PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,

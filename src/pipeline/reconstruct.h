@@ -47,6 +47,7 @@ struct Reconstruction {
     CloudKind kind = CloudKind::kSurface;
     bool kind_told = false;
     std::vector<FloodStep> steps;  // in the tree's frame
+    double noise = 0.0;            // metres, where the scan is noisy all over; else 0
     size_t completed = 0;          // branches that were added afterwards
     double completed_length = 0.0;
     ReadCloudReport read;
@@ -65,6 +66,14 @@ std::string chosen_leaves(const std::string& asked, const Reconstruction& result
 // The rules of a preset, with fronds as long as the scan's where the tree is a palm. Throws Error for a name
 // that is none.
 LeafRules suited_leaves(const std::string& preset, const Reconstruction& result);
+
+// The two halves of reconstruct_file(): everything but `measured`, `fit` and the warnings that stand on them;
+// and those. The second one reads nothing but the options and what the first one made, and the first half's
+// tree, cloud and foliage may be read meanwhile.
+Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& options,
+                                Progress* progress = nullptr, ReconstructCache* cache = nullptr);
+void score_reconstruction(Reconstruction& result, const ReconstructOptions& options,
+                          Progress* progress = nullptr);
 
 // Throws Error with a sentence, or Cancelled.
 // cache: if given, stages that it has with the same options of the same file are taken from it

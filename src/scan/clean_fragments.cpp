@@ -63,32 +63,20 @@ Line line_through(const std::vector<DVec3>& points) {
     return line;
 }
 
-// All points within a distance, as nanoflann hands them over.
+// For KdTree::search(): all points within a distance.
 struct Within {
-    using DistanceType = float;
-
     float square = 0.0F;
     std::vector<uint32_t> points;
 
-    bool addPoint(float distance, uint32_t i) {
-        if (distance < square) points.push_back(i);
-        return true;
-    }
-    float worstDist() const { return square; }
-    bool full() const { return true; }
-    size_t size() const { return points.size(); }
-    bool empty() const { return points.empty(); }
-    void sort() {}
+    float limit() const { return square; }
+    void add(float, uint32_t i) { points.push_back(i); }
 };
 
 // The tree found so far, which grows by the parts that belong to it.
 class Main {
   public:
     Main(std::vector<Vec3> points, double extent)
-        : points_(std::move(points)),
-          extent_(extent),
-          kd_points_{points_},
-          tree_(3, kd_points_, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {
+        : points_(std::move(points)), extent_(extent), tree_(points_) {
         std::vector<float> heights;
         for (const Vec3& p : points_)
             heights.push_back(p.y);
@@ -108,7 +96,7 @@ class Main {
 
     double nearest(const Vec3& p, uint32_t& found) const {
         float square = 0.0F;
-        tree_.knnSearch(&p.x, 1, &found, &square);
+        tree_.nearest(p, 1, &found, &square);
         return std::sqrt(static_cast<double>(square));
     }
     const Vec3& point(uint32_t i) const { return points_[i]; }
@@ -116,7 +104,7 @@ class Main {
     // The points within `reach` of a place.
     std::vector<DVec3> around(const Vec3& place, double reach) const {
         Within found{static_cast<float>(reach * reach), {}};
-        tree_.findNeighbors(found, &place.x, {});
+        tree_.search(place, found);
         std::vector<uint32_t>& order = found.points;
         std::sort(order.begin(), order.end());
         std::vector<DVec3> points;
@@ -218,7 +206,6 @@ class Main {
   private:
     std::vector<Vec3> points_;
     double extent_;
-    KdPoints kd_points_;
     KdTree tree_;
     double low_ = 0.0;
     DVec3 foot_{0.0};

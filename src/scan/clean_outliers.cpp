@@ -17,7 +17,6 @@ constexpr int kMostNeighbours = 64;
 constexpr double kLocalContrast = 2.5;
 constexpr size_t kTypical = 512;  // points that tell the typical distance
 constexpr double kReach = 0.75;   // of the limit: the cells in which a point is looked for company
-constexpr size_t kLeaf = 16;
 constexpr size_t kPointsPerTask = 512;
 
 // Mean distances to the nearest neighbours, found when they are asked for.
@@ -28,8 +27,7 @@ class Neighbours {
         : points_(points),
           count_(count),
           progress_(progress),
-          kd_points_{points},
-          tree_(3, kd_points_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)),
+          tree_(points),
           distance_(points.size(), -1.0F) {}
 
     // which: distinct indices.
@@ -53,7 +51,7 @@ class Neighbours {
                 const uint32_t i = which[w];
                 if (!nearest && distance_[i] >= 0.0F) continue;
                 // The first one found is the point itself, as all points are distinct.
-                tree_.knnSearch(&points_[i].x, count_ + 1, found.data(), squares.data());
+                tree_.nearest(points_[i], count_ + 1, found.data(), squares.data());
                 double sum = 0.0;
                 for (size_t n = 0; n < count_; n++) {
                     sum += std::sqrt(static_cast<double>(squares[n + 1]));
@@ -67,7 +65,6 @@ class Neighbours {
     const std::vector<Vec3>& points_;
     size_t count_;
     const Progress* progress_;
-    KdPoints kd_points_;
     KdTree tree_;
     std::vector<float> distance_;
 };

@@ -40,8 +40,7 @@ double blur_of(const std::vector<Vec3>& points, const Progress& progress) {
         if (h > kFootLow && h < kFootHigh) foot.push_back(p);
     }
     if (foot.size() < kFewest || around.size() <= kPieces.back()) return 0.0;
-    const KdPoints kd_points{around};
-    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const KdTree tree(around);
     std::array<size_t, kPieces.size()> thin{};
     size_t looked_at = 0;
     std::vector<double> thickness;
@@ -50,7 +49,7 @@ double blur_of(const std::vector<Vec3>& points, const Progress& progress) {
     const size_t stride = std::max<size_t>(1, foot.size() / kLookedAt);
     for (size_t i = stride / 2; i < foot.size(); i += stride, looked_at++) {
         progress.check();
-        tree.knnSearch(&foot[i].x, found.size(), found.data(), squares.data());
+        tree.nearest(foot[i], found.size(), found.data(), squares.data());
         for (size_t s = 0; s < kPieces.size(); s++) {
             const auto count = static_cast<float>(kPieces[s]);
             Vec3 mean(0.0F);

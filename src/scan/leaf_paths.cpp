@@ -64,15 +64,14 @@ std::vector<Bridge> bridge_parts(const Cells& cells, const Progress& progress) {
         }
     }
     progress.check();
-    const KdPoints kd_cells{main};
-    const KdTree tree(3, kd_cells, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const KdTree tree(main);
     std::vector<std::pair<float, uint32_t>> nearest(others.size());
     parallel_for(others.size(), kGrain, [&](size_t begin, size_t end) {
         progress.check();
         for (size_t i = begin; i < end; i++) {
             uint32_t found = 0;
             float square = 0.0F;
-            tree.knnSearch(&cells.centres[others[i]].x, 1, &found, &square);
+            tree.nearest(cells.centres[others[i]], 1, &found, &square);
             nearest[i] = {square, main_cell[found]};
         }
     });

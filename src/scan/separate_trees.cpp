@@ -119,8 +119,7 @@ void take_in_the_rest(const Voxels& voxels, const std::vector<float>& low_above,
         reached.push_back(voxels.centre[c]);
         label.push_back(tree[c]);
     }
-    const KdPoints kd_points{reached};
-    const KdTree nearest(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    const KdTree nearest(reached);
     std::vector<uint8_t> seen(tree.size());
     const std::vector<uint32_t> grown = tree;
     std::vector<uint32_t> part;
@@ -139,7 +138,7 @@ void take_in_the_rest(const Voxels& voxels, const std::vector<float>& low_above,
             highest = std::max(highest, low_above[c]);
             uint32_t found = 0;
             float square = 0.0F;
-            nearest.knnSearch(&voxels.centre[c].x, 1, &found, &square);
+            nearest.nearest(voxels.centre[c], 1, &found, &square);
             if (square < best) {
                 best = square;
                 owner = label[found];

@@ -11,18 +11,18 @@ namespace treerec {
 
 namespace {
 
-constexpr int kLookAround = 2;       // stations to each side
+constexpr int kLookAround = 2;  // stations to each side
+constexpr size_t kLeafSize = 10;
 constexpr size_t kNearest = 8;       // stations looked at
 constexpr size_t kNearestThick = 3;  // likewise, of stout wood
 constexpr double kThick = 0.03;      // metres: from stouter wood,
 constexpr double kWhisker = 0.6;     // so many times what it is stouter, besides
 constexpr float kFar = 0.12f;        // metres: no station of thin wood so far away explains a place
+constexpr double kRounding = 1e-3;   // metres, more than that of places to floats
 constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
 
-// nanoflann's result set for the nearest stations of limbs that are not left aside.
+// For KdTree::search(): the nearest stations of limbs that are not left aside.
 struct NearestAllowed {
-    using DistanceType = float;
-
     const std::vector<std::pair<int32_t, int32_t>>& names;
     const std::vector<uint8_t>* except;
     size_t wanted;
@@ -31,34 +31,36 @@ struct NearestAllowed {
     std::array<float, kNearest> distance{};
     std::array<uint32_t, kNearest> index{};
 
-    size_t size() const { return found; }
-    bool full() const { return found == wanted; }
-    float worstDist() const { return full() ? distance[found - 1] : most; }
-    bool addPoint(float squared, uint32_t candidate) {
-        if (except != nullptr && (*except)[names[candidate].first] != 0) return true;
-        size_t at = full() ? found - 1 : found++;
+    float limit() const { return found == wanted ? distance[found - 1] : most; }
+    void add(float squared, uint32_t candidate) {
+        if (except != nullptr && (*except)[names[candidate].first] != 0) return;
+        size_t at = found == wanted ? found - 1 : found++;
         for (; at > 0 && distance[at - 1] > squared; at--) {
             distance[at] = distance[at - 1];
             index[at] = index[at - 1];
         }
         distance[at] = squared;
         index[at] = candidate;
-        return true;
     }
-    void sort() {}
 };
 
 }  // namespace
 
 BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DVec3& p) {
     const int32_t last = static_cast<int32_t>(line.size()) - 1;
-    BarkPlace best{-1, station, glm::distance(line[station].position, p), line[station].radius};
+    const DVec3 off = line[station].position - p;
+    double least = glm::dot(off, off);
+    BarkPlace best{-1, station, std::sqrt(least), line[station].radius};
     for (int32_t i = std::max(0, station - kLookAround); i < std::min(last, station + kLookAround); i++) {
         double t;
-        const double distance = distance_to_segment(p, line[i].position, line[i + 1].position, &t);
-        if (distance < best.distance)
-            best = {-1, t < 0.5 ? i : i + 1, distance,
-                    line[i].radius + t * (line[i + 1].radius - line[i].radius)};
+        const double square = square_to_segment(p, line[i].position, line[i + 1].position, t);
+        if (square >= least) continue;
+        // Squares that differ may have the same root.
+        const double distance = std::sqrt(square);
+        if (distance >= best.distance) continue;
+        least = square;
+        best = {-1, t < 0.5 ? i : i + 1, distance,
+                line[i].radius + t * (line[i + 1].radius - line[i].radius)};
     }
     return best;
 }
@@ -74,7 +76,9 @@ Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station
         for (size_t i = 0; i < axes[l].size(); i++) {
             const Station& station = axes[l][i];
             add(all_, station.position, limb, static_cast<int32_t>(i));
-            if (station.radius > kThick) add(thick_, station.position, limb, static_cast<int32_t>(i));
+            if (station.radius <= kThick) continue;
+            add(thick_, station.position, limb, static_cast<int32_t>(i));
+            thick_reach_ = std::max(thick_reach_, reach_of(limb, static_cast<int32_t>(i)));
         }
         if (limbs[l].parent < 0) continue;
         // And along the way from the fork to the limb's first station.
@@ -83,9 +87,21 @@ Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station
             add(all_, fork + t * (axes[l][0].position - fork), limb, 0);
     }
     for (Index* index : {&all_, &thick_})
-        if (!index->positions.empty())
-            index->tree =
-                std::make_unique<KdTree>(3, index->kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+        if (!index->positions.empty()) index->tree = std::make_unique<KdTree>(index->positions, kLeafSize);
+}
+
+double Bark::reach_of(int32_t limb, int32_t station) const {
+    const std::vector<Station>& line = axes_[limb];
+    const int32_t last = static_cast<int32_t>(line.size()) - 1;
+    double farthest = 0.0, thickest = 0.0;
+    for (int32_t i = std::max(0, station - kLookAround); i <= std::min(last, station + kLookAround); i++) {
+        farthest = std::max(farthest, glm::distance(line[i].position, line[station].position));
+        thickest = std::max(thickest, line[i].radius);
+    }
+    if (station == 0 && limbs_[limb].parent >= 0)
+        farthest = std::max(farthest, glm::distance(axes_[limbs_[limb].parent][limbs_[limb].attach].position,
+                                                    line[0].position));
+    return farthest + thickest;
 }
 
 BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
@@ -103,8 +119,8 @@ void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
                 const std::vector<uint8_t>* except, BarkPlace& best) const {
     if (!index.tree) return;
     NearestAllowed found{index.names, except, count, reach * reach};
-    index.tree->findNeighbors(found, &p.x, nanoflann::SearchParams());
-    for (size_t k = 0; k < found.size(); k++) {
+    index.tree->search(p, found);
+    for (size_t k = 0; k < found.found; k++) {
         const auto [limb, station] = index.names[found.index[k]];
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
@@ -115,7 +131,11 @@ BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except, float
     BarkPlace best;
     best.distance = std::numeric_limits<double>::max();
     look(all_, kNearest, reach, p, except, best);
-    look(thick_, kNearestThick, std::numeric_limits<float>::infinity(), p, except, best);
+    // From farther away, no stout wood comes nearer than what is found.
+    const float far = best.limb < 0
+                          ? std::numeric_limits<float>::infinity()
+                          : static_cast<float>(1.00001 * (best.outside() + thick_reach_) + kRounding);
+    if (far > 0.0f) look(thick_, kNearestThick, far, p, except, best);
     return best;
 }
 

@@ -45,14 +45,16 @@ class Bark {
     struct Index {
         std::vector<Vec3> positions;
         std::vector<std::pair<int32_t, int32_t>> names;  // the limb and station of each position
-        KdPoints kd_points{positions};
         std::unique_ptr<KdTree> tree;
     };
+    // Metres from the station that the bark which on_limb() looks at there reaches at most.
+    double reach_of(int32_t limb, int32_t station) const;
     void look(const Index& index, size_t count, float reach, const Vec3& p,
               const std::vector<uint8_t>* except, BarkPlace& best) const;
 
     Index all_;
-    Index thick_;  // of stout limbs alone, which many twigs would hide
+    Index thick_;               // of stout limbs alone, which many twigs would hide
+    double thick_reach_ = 0.0;  // the largest reach_of() of these
 };
 
 // What leaves the bark must reach at least so far out of it: less is relief, or a strip of the bark itself.

@@ -32,26 +32,19 @@ struct Link {
     uint32_t to;
 };
 
-// nanoflann's result set for the nearest point of another part.
+// For KdTree::search(): the nearest point of another part.
 struct NearestOutside {
-    using DistanceType = float;
-
     const std::vector<uint32_t>& part;
     uint32_t own;
     float best;  // squared metres
     uint32_t index;
 
-    size_t size() const { return 1; }
-    bool full() const { return true; }
-    float worstDist() const { return best; }
-    bool addPoint(float distance, uint32_t candidate) {
-        if (part[candidate] != own && distance < best) {
-            best = distance;
-            index = candidate;
-        }
-        return true;
+    float limit() const { return best; }
+    void add(float distance, uint32_t candidate) {
+        if (part[candidate] == own || distance >= best) return;
+        best = distance;
+        index = candidate;
     }
-    void sort() {}
 };
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
@@ -177,7 +170,7 @@ class Bridges {
     // A link from v to itself where no other part is nearer than `most` (squared metres).
     Link nearest_outside(uint32_t v, float most) const {
         NearestOutside nearest{part_, part_[v], most, v};
-        tree_.findNeighbors(nearest, &points_[v].x, nanoflann::SearchParams());
+        tree_.search(points_[v], nearest);
         return {nearest.best, v, nearest.index};
     }
 
@@ -195,7 +188,7 @@ class Bridges {
     // around: scratch.
     Run run_around(const Link& link, std::vector<std::pair<uint32_t, float>>& around) const {
         const float radius = static_cast<float>(kAround) * std::sqrt(link.squared);
-        tree_.radiusSearch(&points_[link.from].x, radius * radius, around, nanoflann::SearchParams());
+        tree_.within(points_[link.from], radius * radius, around);
         Run run;
         double count = 0.0;
         for (const auto& [v, distance] : around) {
@@ -227,7 +220,7 @@ class Bridges {
                      double& least, Link& best) const {
         const Run run = run_around(link, around);
         const float radius = static_cast<float>(longest);
-        tree_.radiusSearch(&points_[link.from].x, radius * radius, around, nanoflann::SearchParams());
+        tree_.within(points_[link.from], radius * radius, around);
         for (const auto& [to, squared] : around) {
             if (part_[to] == part_[link.from]) continue;
             const double length = std::sqrt(squared);

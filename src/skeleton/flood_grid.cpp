@@ -91,8 +91,7 @@ FloodGrid::FloodGrid(const std::vector<Vec3>& points, const CellLayout& layout, 
     });
     const size_t touching = edges.size();
     if (size() > 1) {
-        const KdPoints kd_points{means};
-        const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+        const KdTree tree(means);
         bridge_parts(means, tree, edges, progress);
     }
 

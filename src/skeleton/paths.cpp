@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <limits>
-#include <queue>
+
+#include "skeleton/heap.h"
 
 namespace treerec {
 
@@ -19,7 +19,7 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
     std::vector<float> cost(count, std::numeric_limits<float>::max());
     std::vector<uint8_t> done(count, 0);
     // The bits of positive floats are in the order of their values, so that one integer holds an entry.
-    std::priority_queue<uint64_t, std::vector<uint64_t>, std::greater<>> queue;
+    LeastFirst queue;
     const auto entry = [](float value, uint32_t vertex) {
         return (static_cast<uint64_t>(std::bit_cast<uint32_t>(value)) << 32) | vertex;
     };
@@ -31,8 +31,7 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
         queue.push(entry(distance, seed.vertex));
     }
     while (!queue.empty()) {
-        const uint32_t v = static_cast<uint32_t>(queue.top());
-        queue.pop();
+        const uint32_t v = static_cast<uint32_t>(queue.pop());
         if (done[v]) continue;
         done[v] = 1;
         if (tree.order.size() % 8192 == 0) progress.check();

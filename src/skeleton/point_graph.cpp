@@ -14,7 +14,6 @@ namespace {
 
 constexpr size_t kNeighbours = 9;
 constexpr size_t kGrain = 2048;  // points between two looks at the cancel flag
-constexpr size_t kLeafSize = 16;
 constexpr size_t kScaleMax = 8;
 constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of this shortest edge
 constexpr int kScaleSmoothings = 3;
@@ -25,9 +24,8 @@ constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer 
 }  // namespace
 
 PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) {
-    const KdPoints kd_points{points};
     progress.check();
-    const KdTree tree(3, kd_points, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize));
+    const KdTree tree(points);
     const size_t near = std::min(kNeighbours, points.size() - 1);
     std::vector<uint32_t> nearest(points.size() * near);
     parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
@@ -35,7 +33,7 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
         std::array<uint32_t, kNeighbours + 1> index;
         std::array<float, kNeighbours + 1> distance;
         for (size_t v = begin; v < end; v++) {
-            const size_t found = tree.knnSearch(&points[v].x, near + 1, index.data(), distance.data());
+            const size_t found = tree.nearest(points[v], near + 1, index.data(), distance.data());
             uint32_t* to = &nearest[v * near];
             const uint32_t* last = to + near;
             for (size_t i = 0; i < found && to != last; i++)

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
-#include <queue>
 #include <utility>
 
 #include "geometry/parallel.h"
 #include "skeleton/bark.h"
+#include "skeleton/heap.h"
 
 namespace treerec {
 
@@ -96,9 +95,10 @@ class TwigFinder {
     void run(Progress& progress) {
         std::vector<float> outside(points_.size(), 0.0f);
         std::vector<uint8_t> may(points_.size(), 0);  // something on the way from the wood may escape it
-        // The farthest first. The bits of positive floats are in the order of their values.
+        // The farthest first. The bits of positive floats are in the order of their values; all bits turned,
+        // the largest number becomes the least.
         const auto entry = [](float length, uint32_t vertex) {
-            return (static_cast<uint64_t>(std::bit_cast<uint32_t>(length)) << 32) | vertex;
+            return ~((static_cast<uint64_t>(std::bit_cast<uint32_t>(length)) << 32) | vertex);
         };
         std::vector<uint64_t> entries;
         for (const uint32_t v : paths_.order)
@@ -108,16 +108,15 @@ class TwigFinder {
                 may[v] = may[paths_.parent[v]] != 0 || may_escape(v) ? 1 : 0;
                 if (may[v] != 0) entries.push_back(entry(outside[v], v));
             }
-        std::priority_queue<uint64_t> queue(std::less<uint64_t>(), std::move(entries));
+        LeastFirst queue(std::move(entries));
         size_t looked = 0;
         while (!queue.empty()) {
             if (++looked % 1024 == 0) progress.check();
-            const uint64_t top = queue.top();
-            const uint32_t v = static_cast<uint32_t>(top);
-            queue.pop();
+            const uint64_t top = queue.pop();
+            const uint32_t v = static_cast<uint32_t>(~top);
             if (line_[v] >= 0) continue;
             const float now = path_to(v);
-            if (entry(now, v) < top) {
+            if (entry(now, v) > top) {
                 queue.push(entry(now, v));
                 continue;
             }

@@ -1,7 +1,9 @@
 #include "tree/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/portable_math.h"
 #include "tree/branches.h"
@@ -75,16 +77,21 @@ void measure_crown(const Tree& tree, const BranchList& list, Measurements& resul
     }
     if (weight <= 0.0) return;
     axis /= weight;
-    double sum = 0.0;
+    std::array<double, kCrownDirections> x, y, reach{};
     for (int i = 0; i < kCrownDirections; i++) {
         const double angle = 2.0 * kPi * i / kCrownDirections;
-        const DVec2 direction(portable::cos(angle), portable::sin(angle));
-        double reach = 0.0;
-        for (const DVec2& p : crown)
-            reach = std::max(reach, glm::dot(p - axis, direction));
-        sum += reach;
+        x[i] = portable::cos(angle);
+        y[i] = portable::sin(angle);
     }
-    result.crown_radius = sum / kCrownDirections;
+    // All directions for one point after another: none waits for the one before.
+    for (const DVec2& p : crown) {
+        const DVec2 off = p - axis;
+        for (int i = 0; i < kCrownDirections; i++) {
+            const double along = off.x * x[i] + off.y * y[i];
+            reach[i] = reach[i] < along ? along : reach[i];
+        }
+    }
+    result.crown_radius = std::accumulate(reach.begin(), reach.end(), 0.0) / kCrownDirections;
 }
 
 }  // namespace

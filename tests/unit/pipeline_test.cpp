@@ -91,6 +91,25 @@ TEST_F(Pipeline, FindsTheTreeThatWasScanned) {
     EXPECT_GT(score.by_distance[5].recall, 0.4);
 }
 
+TEST_F(Pipeline, ItsHalvesAndPartsMadeAheadMakeTheSame) {
+    const Reconstruction whole = reconstruct_file(path("scan.ply"), {});
+    Reconstruction halves = reconstruct_tree(path("scan.ply"), {});
+    EXPECT_EQ(halves.measured.nodes, 0u);
+    TreeExporter exporter(halves.tree, {});
+    exporter.prepare({path("halves.txt"), path("halves.glb")});
+    score_reconstruction(halves, {});
+    EXPECT_EQ(halves.warnings, whole.warnings);
+    EXPECT_EQ(halves.fit.mean_mm, whole.fit.mean_mm);
+    EXPECT_EQ(halves.measured.crown_radius, whole.measured.crown_radius);
+    EXPECT_EQ(halves.stages.size(), whole.stages.size());
+    TreeExporter at_once(whole.tree, {});
+    for (const char* name : {".txt", ".glb"}) {
+        exporter.write(path("halves") + name);
+        at_once.write(path("whole") + name);
+        EXPECT_EQ(bytes_of(path("halves") + name), bytes_of(path("whole") + name)) << name;
+    }
+}
+
 TEST_F(Pipeline, TheCloudLiesOnTheTreeInTheTreesFrame) {
     const Reconstruction result = reconstruct_file(path("scan.ply"), {});
     EXPECT_EQ(result.cloud.frame, result.tree.frame());
