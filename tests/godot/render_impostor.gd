@@ -6,6 +6,10 @@ const Impostor := preload("res://addons/tree_reconstruction/editor/dock/impostor
 const Files := preload("res://addons/tree_reconstruction/editor/dock/files.gd")
 const PlainMaterials := preload("res://addons/tree_reconstruction/baking/plain_materials.gd")
 const SIZE: Vector2i = Vector2i(192, 192)
+# The mean colors of the pictures that an impostor keeps, and of its tree in the sun, whichever
+# renderer it is.
+const KEPT: Color = Color(0.356, 0.412, 0.187)
+const IN_THE_SUN: Color = Color(0.356, 0.410, 0.190)
 
 
 # From as far as impostors are seen, with a lens that fills the picture.
@@ -72,9 +76,32 @@ func test_an_impostor_looks_like_its_tree() -> void:
 			check_near(
 				shown[1][channel], of[1][channel], 0.05, "channel %d from %s" % [channel, way]
 			)
+		if way.y == 0.0:
+			_check_color(of[1], IN_THE_SUN, "the tree's color")
+	_check_color(_kept_color(impostor), KEPT, "the color that the impostor keeps")
 	await _check_places(impostor, card, center, reach)
 	await _check_wind(card, 1.7 * impostor.height)
 	_viewport.free()
+
+
+func _check_color(given: Color, wanted: Color, what: String) -> void:
+	for channel: int in 3:
+		check_near(given[channel], wanted[channel], 0.01, "channel %d of %s" % [channel, what])
+
+
+static func _kept_color(impostor: TreeImpostor) -> Color:
+	var texture: Texture2D = impostor.material.get_shader_parameter(&"albedo_texture")
+	var picture: Image = texture.get_image()
+	picture.decompress()
+	var sum: Color = Color(0.0, 0.0, 0.0)
+	var count: int = 0
+	for y: int in range(0, picture.get_height(), 3):
+		for x: int in range(0, picture.get_width(), 3):
+			var pixel: Color = picture.get_pixel(x, y)
+			if pixel.a > 0.5:
+				sum += pixel
+				count += 1
+	return sum / maxf(count, 1.0)
 
 
 # Turned and scaled, alone and in a MultiMesh, it is the same.

@@ -5,6 +5,10 @@ const Scatter := preload("res://addons/tree_reconstruction/nodes/spawning/scatte
 const Stand := preload("res://addons/tree_reconstruction/nodes/spawning/stand.gd")
 const Ground := preload("res://addons/tree_reconstruction/nodes/spawning/ground.gd")
 const Cells := preload("res://addons/tree_reconstruction/nodes/spawning/cells.gd")
+const Individual := preload("res://addons/tree_reconstruction/nodes/spawning/individual.gd")
+const Leftovers := preload("res://addons/tree_reconstruction/nodes/spawning/leftovers.gd")
+const Materials := preload("res://addons/tree_reconstruction/nodes/spawning/materials.gd")
+const Reading := preload("res://addons/tree_reconstruction/nodes/spawning/reading.gd")
 const NEVER: int = 0x7fffffffffffffff
 
 var _world: Node3D
@@ -381,6 +385,82 @@ func test_a_changed_tree_changes_its_forest() -> void:
 	check(_hash(forest) != before, "The forest is the old one.")
 	check_equal(forest.get_statistics()["variants"], 3, "individuals")
 	_clear()
+
+
+func test_the_old_trees_stay_until_new_ones_come() -> void:
+	var forest: TreeVariantSpawner3D = _forest()
+	await _plant(forest)
+	var before: Array[MultiMeshInstance3D] = _parts(forest)
+	check(not before.is_empty(), "Nothing is drawn.")
+	forest.seed += 1
+	var frames: int = 0
+	while frames == 0 or forest.get_tree_count() == 0:
+		check_equal(_parts(forest).size(), before.size(), "what is drawn in frame %d" % frames)
+		await tree.process_frame
+		frames += 1
+	await _grown(forest)
+	var drawn: int = 0
+	for part: MultiMeshInstance3D in _parts(forest):
+		drawn += part.multimesh.instance_count
+	check(drawn >= forest.get_tree_count(), "Only %d are drawn." % drawn)
+	check_equal(forest.get_statistics()["multimeshes"], _parts(forest).size(), "multimeshes")
+	# What nobody wants any longer has ended, or will.
+	Leftovers.wait()
+	forest.source = null
+	await _grown(forest)
+	check_equal(_parts(forest).size(), 0, "what is drawn of no tree")
+	_clear()
+
+
+func test_materials_are_read_a_piece_per_frame() -> void:
+	var pieces: PackedStringArray = []
+	var made: ShaderMaterial = ShaderMaterial.new()
+	made.shader = load("res://addons/tree_reconstruction/shaders/bark.gdshader")
+	for name: String in ["albedo_texture", "normal_texture"]:
+		var picture: Image = Image.create_empty(64, 64, true, Image.FORMAT_RGB8)
+		var texture: ImageTexture = ImageTexture.create_from_image(picture)
+		pieces.append(folder.path_join(name + ".res"))
+		ResourceSaver.save(texture, pieces[-1])
+		texture.take_over_path(pieces[-1])
+		made.set_shader_parameter(name, texture)
+	pieces.append(folder.path_join("bark.tres"))
+	ResourceSaver.save(made, pieces[-1])
+	made = null
+	var plan: Individual = Individual.new()
+	plan.bark_path = pieces[-1]
+	plan.leaf_path = Materials.preset_path(grown_tree(3, 60), "leaf")
+	var reading: Reading = Reading.new()
+	check_equal(_count_cached(pieces), 0, "what is there already")
+	reading.start([plan], [])
+	var ready: Array[Individual] = []
+	var known: int = 0
+	for frame: int in 100:
+		if not ready.is_empty():
+			break
+		check(reading.is_busy(), "It is done with nothing.")
+		ready = reading.poll()
+		var now: int = _count_cached(pieces)
+		check(now - known <= 1, "%d pieces are read at once." % (now - known))
+		known = now
+	check_equal(known, pieces.size(), "what was read")
+	check_equal(ready, [plan] as Array[Individual], "whose materials are there")
+	check(not reading.is_busy(), "It never ends.")
+	check_equal(plan.bark_material.resource_path, plan.bark_path, "the bark's material")
+	check_equal(plan.leaf_material.resource_path, plan.leaf_path, "the leaves' material")
+
+
+static func _count_cached(paths: PackedStringArray) -> int:
+	var count: int = 0
+	for path: String in paths:
+		count += 1 if ResourceLoader.has_cached(path) else 0
+	return count
+
+
+# Each tree of a forest knows its own level where the shaders do.
+func test_the_presets_know_levels() -> void:
+	for name: String in ["bark", "leaf", "blade"]:
+		var path: String = Materials.preset_path(grown_tree(3, 60), name)
+		check(Materials.knows_levels(load(path) as Material), "%s does not." % path)
 
 
 func test_a_saved_scene_holds_nothing_that_was_built() -> void:

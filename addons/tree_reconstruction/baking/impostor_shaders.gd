@@ -11,7 +11,8 @@ const LEAST: float = 0.3
 # Goes to the end of fragment().
 const _END: String = """
 	// Of wood only this is kept of what lies in shade.
-	vec3 impostor_shown = ALBEDO * mix(mix(1.0, AO, 0.7), 1.0, impostor_leaf);
+	float impostor_dim = mix(mix(1.0, AO, 0.7), 1.0, impostor_leaf);
+	vec3 impostor_shown = ALBEDO * (OUTPUT_IS_SRGB ? pow(impostor_dim, 0.4545) : impostor_dim);
 	if (impostor_pass == 1) {
 		impostor_shown = 0.5 + 0.5 * normalize(mat3(INV_VIEW_MATRIX) * NORMAL);
 	} else if (impostor_pass == 2) {

@@ -418,7 +418,7 @@ func _notification(what: int) -> void:
 			_forest.clear()
 			_telling = false
 		NOTIFICATION_PREDELETE:
-			_forest.stop()
+			_forest.finish()
 
 
 func _process(delta: float) -> void:

@@ -32,6 +32,15 @@ class Shown:
 	var parts: Dictionary[int, MultiMeshInstance3D] = {}
 
 
+## What is to be made: these individuals of a cell of a level.
+class Task:
+	extends RefCounted
+	var level: int
+	var key: Vector2i
+	var places: PackedInt32Array
+	var done: int = 0
+
+
 ## The node that bears what is drawn.
 var parent: Node3D
 var stand: Stand
@@ -45,16 +54,22 @@ var begins: PackedFloat32Array = []
 var count: int = 0
 
 var _shown: Array[Dictionary] = []
-# What is to be made: level, cell, individual; the nearest last.
-var _queue: Array[Array] = []
+# The nearest last.
+var _queue: Array[Task] = []
 var _goners: Array[MultiMeshInstance3D] = []
 var _spare: Array[MultiMeshInstance3D] = []
 var _viewer: Vector3 = Vector3.INF
 
 
-## Begins anew with another stand; what was shown goes.
+## Begins anew with another stand; what was shown goes, a few per frame.
 func start(of: Stand, individuals: int) -> void:
-	clear()
+	for level: Dictionary in _shown:
+		for shown: Shown in level.values():
+			_goners.append_array(shown.parts.values())
+	_shown = []
+	_queue = []
+	_viewer = Vector3.INF
+	count = 0
 	stand = of
 	turns = []
 	for i: int in individuals:
@@ -96,7 +111,7 @@ func add_individual(place: int, mine: Array[Turn]) -> void:
 	for level: int in _shown.size():
 		for key: Vector2i in _shown[level]:
 			cells.append([_away(level, key), level, key])
-	_enqueue(cells, [place])
+	_enqueue(cells, PackedInt32Array([place]))
 	_viewer = Vector3.INF
 
 
@@ -110,7 +125,7 @@ func touch(at: Vector3, individual: int) -> void:
 	for level: int in _shown.size():
 		var key: Vector2i = stand.grids[level].cell_at(at)
 		if _shown[level].has(key):
-			_queue.append([level, key, stand_in(individual)])
+			_add_task(level, key, PackedInt32Array([stand_in(individual)]))
 	_viewer = Vector3.INF
 
 
@@ -122,7 +137,7 @@ func look_from(viewer: Vector3) -> void:
 	var cells: Array[Array] = []
 	for level: int in _shown.size():
 		_look_at(level, cells)
-	var places: Array[int] = []
+	var places: PackedInt32Array = []
 	for place: int in turns.size():
 		if not turns[place].is_empty():
 			places.append(place)
@@ -137,9 +152,13 @@ func work(deadline: int) -> bool:
 			return false
 		if not _goners.is_empty():
 			_drop(_goners.pop_back())
+			continue
+		var next: Task = _queue.back()
+		if next.done < next.places.size():
+			next.done += 1
+			_make(next.level, next.key, next.places[next.done - 1])
 		else:
-			var next: Array = _queue.pop_back()
-			_make(next[0], next[1], next[2])
+			_queue.pop_back()
 	return true
 
 
@@ -158,11 +177,18 @@ func get_parts() -> Array[MultiMeshInstance3D]:
 
 
 # What comes from far to near is taken from the end.
-func _enqueue(cells: Array[Array], places: Array[int]) -> void:
+func _enqueue(cells: Array[Array], places: PackedInt32Array) -> void:
 	cells.sort_custom(func(a: Array, b: Array) -> bool: return a[0] > b[0])
 	for cell: Array in cells:
-		for place: int in places:
-			_queue.append([cell[1], cell[2], place])
+		_add_task(cell[1], cell[2], places)
+
+
+func _add_task(level: int, key: Vector2i, places: PackedInt32Array) -> void:
+	var task: Task = Task.new()
+	task.level = level
+	task.key = key
+	task.places = places
+	_queue.append(task)
 
 
 # Adds the cells that are new to `cells`: how far away, level, cell.

@@ -5,7 +5,9 @@ extends RefCounted
 
 const Individual := preload("individual.gd")
 const Individuals := preload("individuals.gd")
+const Leftovers := preload("leftovers.gd")
 const Materials := preload("materials.gd")
+const Reading := preload("reading.gd")
 const Scatter := preload("scatter.gd")
 const Stand := preload("stand.gd")
 const Cells := preload("cells.gd")
@@ -33,13 +35,11 @@ var _node: Node3D
 var _individuals: Individuals = Individuals.new()
 var _cells: Cells = Cells.new()
 var _bodies: Bodies = Bodies.new()
+var _reading: Reading = Reading.new()
 var _region: Region
 # Whether each tree knows its level of detail; else a cell shows one.
 var _by_tree: bool = false
-# Plans whose materials are being read.
-var _waiting: Array[Individual] = []
-# What the materials are made with, kept until they are.
-var _shaders: Array[Shader] = []
+var _threaded: bool = true
 
 
 func _init(node: Node3D) -> void:
@@ -50,16 +50,21 @@ func _init(node: Node3D) -> void:
 
 ## Begins anew; with other individuals, too, or with those that there are.
 func start(with_individuals: bool, threaded: bool) -> void:
-	_clear_places()
 	var from: Array[TreeReconstruction] = _node.get_all_sources()
 	if from.is_empty():
-		stop()
+		clear()
 		return
+	# What is drawn stays until there is something else.
+	_threaded = threaded
+	_leave_places()
 	if with_individuals or _individuals.ready.is_empty():
 		_individuals.stop()
 		_individuals.threaded = threaded
 		_individuals.budget = _node.memory_budget_mb * _MEGABYTE
-		_waiting = _plans(from)
+		var others: Array[Material] = []
+		if _has_card():
+			others.append(_node.impostor.material)
+		_reading.start(_plans(from), others)
 	_region = _make_region(_sizes(from))
 	_region.start(threaded)
 
@@ -67,11 +72,13 @@ func start(with_individuals: bool, threaded: bool) -> void:
 ## Builds and draws until [param deadline] (see [method Time.get_ticks_usec]), for [param camera]
 ## or, without one, for that of the viewport.
 func go_on(deadline: int, camera: Node3D) -> void:
-	if not _waiting.is_empty() and _have_materials():
-		_individuals.start(_waiting)
-		_waiting = []
+	Leftovers.tidy()
+	if _reading.is_busy():
+		var plans: Array[Individual] = _reading.poll()
+		if not plans.is_empty():
+			_individuals.start(plans)
 	var fresh: PackedInt32Array = _individuals.poll(deadline)
-	if _waiting.is_empty() and _region != null and _region.poll(deadline):
+	if not _reading.is_busy() and _region != null and _region.poll(deadline):
 		stand = _region.stand
 		_region = null
 		_start_cells()
@@ -95,19 +102,26 @@ func go_on(deadline: int, camera: Node3D) -> void:
 			pass
 
 
-## Ends what is under way, and waits for it.
+## Ends what is under way.
 func stop() -> void:
-	_waiting = []
+	_reading.stop()
 	_individuals.stop()
 	if _region != null:
 		_region.stop()
 		_region = null
 
 
+## Ends for good, and waits for the workers.
+func finish() -> void:
+	stop()
+	Leftovers.wait()
+
+
 ## Takes all away.
 func clear() -> void:
 	stop()
-	_clear_places()
+	_leave_places()
+	_cells.clear()
 
 
 ## What was built of a tree that has changed is not used again.
@@ -119,7 +133,7 @@ func forget() -> void:
 func get_progress() -> float:
 	var share: float = _individuals.progress()
 	var placed: bool = stand != null or (_region == null and _individuals.ready.is_empty())
-	if not (_waiting.is_empty() and placed and _individuals.is_done() and _cells.is_done()):
+	if not (not _reading.is_busy() and placed and _individuals.is_done() and _cells.is_done()):
 		share = minf(share, 0.99)
 	return share
 
@@ -203,17 +217,19 @@ func get_statistics() -> Dictionary:
 	}
 
 
-func _clear_places() -> void:
+func _leave_places() -> void:
 	if _region != null:
 		_region.stop()
 		_region = null
 	stand = null
-	_cells.clear()
 	_bodies.clear()
 
 
 func _start_cells() -> void:
+	var before: Array = [_cells.stand]
 	_cells.start(stand, maxi(_individuals.accepted, 1))
+	if before[0] != stand:
+		Leftovers.drop(before, _threaded)
 	var ready: PackedInt32Array = []
 	for index: int in _individuals.accepted:
 		if _individuals.ready[index] != null:
@@ -259,6 +275,7 @@ func _make_card(one: Individual) -> ArrayMesh:
 
 func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 	var plans: Array[Individual] = []
+	var seasons: Dictionary[TreeReconstruction, Dictionary] = {}
 	for index: int in _node.variants:
 		var plan: Individual = Individual.new()
 		plan.source = from[index % from.size()]
@@ -273,7 +290,15 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
 		plan.bark_material = _node.bark_material
 		plan.leaf_material = _node.leaf_material
-		plan.season = Materials.season_values(plan.source.leaf_rule, _node.season_spread)
+		if not seasons.has(plan.source):
+			seasons[plan.source] = Materials.season_values(
+				plan.source.leaf_rule, _node.season_spread
+			)
+		plan.season = seasons[plan.source]
+		if plan.bark_material == null:
+			plan.bark_path = Materials.preset_path(plan.source, "bark")
+		if plan.leaf_material == null:
+			plan.leaf_path = Materials.preset_path(plan.source, "leaf")
 		plan.key = str(
 			[
 				plan.source.get_instance_id(),
@@ -295,32 +320,13 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 	return plans
 
 
-# Those that the user did not choose are the presets'. One is read per frame, on this thread: one of
-# the engine's would need it for the pictures, while it may wait for the same ones.
-func _have_materials() -> bool:
-	for plan: Individual in _waiting:
-		var read: String = ""
-		if plan.bark_material == null:
-			read = Materials.preset_path(plan.source, "bark")
-			plan.bark_material = load(read) as Material
-		elif plan.leaf_material == null:
-			read = Materials.preset_path(plan.source, "leaf")
-			plan.leaf_material = load(read) as Material
-		if not read.is_empty():
-			return false
-	# One shader per frame.
-	for plan: Individual in _waiting:
-		for material: Material in [plan.bark_material, plan.leaf_material]:
-			if Materials.needs_shader(material):
-				_shaders.append(Materials.shader_for(material))
-				return false
-	return true
-
-
 # With the card.
 func _count_levels() -> int:
-	var card: bool = _node.impostor != null and _node.impostor.material != null
-	return mini(_node.levels + (1 if card else 0), TreeLevels.MOST)
+	return mini(_node.levels + (1 if _has_card() else 0), TreeLevels.MOST)
+
+
+func _has_card() -> bool:
+	return _node.impostor != null and _node.impostor.material != null
 
 
 # How large the cells of each level are.
@@ -331,7 +337,7 @@ func _sizes(from: Array[TreeReconstruction]) -> PackedFloat32Array:
 	var distances: PackedFloat32Array = TreeLevels.distances(
 		height, _count_levels(), _node.level_distances
 	)
-	_by_tree = Materials.presets_know_levels()
+	_by_tree = true
 	for material: Material in [_node.bark_material, _node.leaf_material]:
 		if material != null and not Materials.knows_levels(material):
 			_by_tree = false

@@ -35,6 +35,9 @@ var capsules_wanted: int = 0
 var capsule_radius: float = 0.03
 var bark_material: Material
 var leaf_material: Material
+## Where the materials are read from; empty where they are given.
+var bark_path: String
+var leaf_path: String
 ## What the leaves' material takes on (see [method Materials.season_values]).
 var season: Dictionary[StringName, Variant] = {}
 ## How many levels take turns, with those of other meshes that come after these, and where.

@@ -4,6 +4,7 @@ extends RefCounted
 ## meshes to the engine little by little.
 
 const Individual := preload("individual.gd")
+const Leftovers := preload("leftovers.gd")
 # So much of meshes is handed over in one frame, or one surface.
 const _BYTES_PER_FRAME: int = 1_000_000
 # What is built and not handed over yet stays below so many surfaces.
@@ -56,15 +57,15 @@ func start(plans: Array[Individual]) -> void:
 			_built[i] = true
 
 
-## Ends what is under way, and waits for it.
+## Ends what is under way. What workers are at ends by itself.
 func stop() -> void:
 	for plan: Individual in _plans:
 		if not plan.is_given():
 			plan.stale = true
-	for task: int in _tasks.values():
-		WorkerThreadPool.wait_for_task_completion(task)
+	for place: int in _tasks:
+		Leftovers.leave(_tasks[place], _plans[place])
 	if _upload_task >= 0:
-		WorkerThreadPool.wait_for_task_completion(_upload_task)
+		Leftovers.leave(_upload_task, _plans[_uploads[0]])
 	_upload_task = -1
 	_tasks = {}
 	_built = {}

@@ -32,17 +32,9 @@ static func for_trees(material: Material, values: Dictionary[StringName, Variant
 
 
 ## The shader that [method for_trees] gives a copy of [param material], made now unless something
-## has it: that takes some milliseconds.
+## has it; [code]null[/code] where the copy is the material itself.
 static func shader_for(material: Material) -> Shader:
 	return _shader_of((material as ShaderMaterial).shader) if _is_ours(material) else null
-
-
-## Whether [method shader_for] would have to make it.
-static func needs_shader(material: Material) -> bool:
-	if not _is_ours(material):
-		return false
-	var path: String = (material as ShaderMaterial).shader.resource_path
-	return not _shaders.has(path) or _shaders[path].get_ref() == null
 
 
 ## Whether the material's shader is the addon's, which shows each tree of a multimesh at its own
@@ -51,12 +43,6 @@ static func knows_levels(material: Material) -> bool:
 	return (
 		_is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels_gone")
 	)
-
-
-## Whether the shaders of the presets do.
-static func presets_know_levels() -> bool:
-	var code: String = (load(_ADDON + "shaders/leaf.gdshader") as Shader).code
-	return code.contains("tree_levels_gone")
 
 
 ## Where the material is that a tree's leaf preset has for its [code]bark[/code] or

@@ -5,6 +5,7 @@ extends RefCounted
 
 const Scatter := preload("scatter.gd")
 const Stand := preload("stand.gd")
+const Leftovers := preload("leftovers.gd")
 # Points of a curve are no farther apart, in metres.
 const _CURVE_STEP: float = 0.5
 const _TREES_BETWEEN_LOOKS: int = 16
@@ -61,11 +62,11 @@ func start(threaded: bool) -> void:
 		_task = WorkerThreadPool.add_task(_run.bind(_NEVER), false, "Find the places of a forest")
 
 
-## Ends early, and waits for the worker.
+## Ends early. What a worker is at ends by itself.
 func stop() -> void:
 	scatter.stale = true
 	if _task >= 0:
-		WorkerThreadPool.wait_for_task_completion(_task)
+		Leftovers.leave(_task, self)
 		_task = -1
 
 
