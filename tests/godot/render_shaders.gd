@@ -74,6 +74,7 @@ func test_thin_wood_is_young_whatever_its_level() -> void:
 	var material: ShaderMaterial = ShaderMaterial.new()
 	material.shader = load("res://addons/tree_reconstruction/shaders/bark.gdshader")
 	material.set_shader_parameter(&"twig_color", Color(1.0, 0.0, 0.0, 1.0))
+	_instance.bark_material = material
 	var seen: Dictionary[float, float] = {}
 	for radius: float in [0.003, 0.02, 0.1]:
 		for level: float in [0.0, 6.0]:

@@ -2,6 +2,7 @@
 extends MeshInstance3D
 ## The card of a [TreeInstance3D]'s impostor, beyond its last level of detail.
 
+const OwnMaterials := preload("own_materials.gd")
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 
 
@@ -13,6 +14,7 @@ func show_for(tree: TreeInstance3D) -> void:
 		mesh = card
 		# Where the levels' materials are.
 		material_override = tree.impostor.material
+	OwnMaterials.give(self, material_override)
 	custom_aabb = tree.mesh.custom_aabb
 	_set_value(&"tree_height", tree.get_tree_height())
 	_set_value(&"tree_wind", 1.0 if tree.wind else 0.0)
@@ -26,4 +28,4 @@ func show_for(tree: TreeInstance3D) -> void:
 
 
 func _set_value(name: StringName, value: Variant) -> void:
-	RenderingServer.instance_geometry_set_shader_parameter(get_instance(), name, value)
+	OwnMaterials.tell(self, name, value)

@@ -28,6 +28,7 @@ const Collision := preload("tree_collision.gd")
 const Felling := preload("tree_felling.gd")
 const BuildJob := preload("tree_build_job.gd")
 const LevelNodes := preload("tree_level_nodes.gd")
+const OwnMaterials := preload("own_materials.gd")
 const Levels := preload("tree_levels.gd")
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _WIND_MARGIN: float = 0.25
@@ -168,6 +169,8 @@ static var threaded: bool = true
 		_update_body()
 
 var _leaves_node: MultiMeshInstance3D
+# What own_materials.gd draws this node with.
+var _own_material: RefCounted
 var _levels: LevelNodes = LevelNodes.new(self)
 var _body: StaticBody3D
 var _queued: bool = false
@@ -277,6 +280,8 @@ func _notification(what: int) -> void:
 func _set(property: StringName, _value: Variant) -> bool:
 	if property in _SHARED:
 		_update_instances.call_deferred()
+	elif property == &"material_override":
+		_update_materials.call_deferred()
 	return false
 
 
@@ -428,10 +433,14 @@ func _update_materials() -> void:
 		mesh.surface_set_material(0, bark)
 	if _leaves_node != null:
 		_leaves_node.material_override = leaf
+		OwnMaterials.give(_leaves_node, leaf)
+	OwnMaterials.give(self, bark if material_override == null else material_override)
 	for node: GeometryInstance3D in _levels.get_barks():
 		node.material_override = bark
+		OwnMaterials.give(node, bark)
 	for node: GeometryInstance3D in _levels.get_leaves():
 		node.material_override = leaf
+		OwnMaterials.give(node, leaf)
 	_levels.update()
 
 
@@ -458,32 +467,27 @@ func _update_instances() -> void:
 			_leaves_node.set(property, get(property))
 		foliage.append(_leaves_node)
 	for node: GeometryInstance3D in wood + foliage:
-		_set_shader_values(node.get_instance(), height)
+		_set_shader_values(node, height)
 	for node: GeometryInstance3D in foliage:
-		_set_season(node.get_instance())
+		_set_season(node)
 	_levels.update()
 
 
 # What the season makes of the leaves' colour: of those that are early, and late, in it.
-func _set_season(instance: RID) -> void:
+func _set_season(part: GeometryInstance3D) -> void:
 	var tints: PackedColorArray = [Color(1.0, 1.0, 1.0, 0.0), Color(1.0, 1.0, 1.0, 0.0)]
 	if reconstruction != null and reconstruction.leaf_rule != null:
 		tints = reconstruction.leaf_rule.get_season_tints()
 	for i: int in 2:
 		# Colors would be converted by some renderers and not by others.
 		var tint: Color = tints[i].srgb_to_linear()
-		RenderingServer.instance_geometry_set_shader_parameter(
-			instance, _SEASON_PARAMETERS[i], Vector4(tint.r, tint.g, tint.b, tint.a)
-		)
+		OwnMaterials.tell(part, _SEASON_PARAMETERS[i], Vector4(tint.r, tint.g, tint.b, tint.a))
 
 
-func _set_shader_values(instance: RID, height: float) -> void:
-	var amount: float = 1.0 if wind else 0.0
-	RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_height", height)
-	RenderingServer.instance_geometry_set_shader_parameter(instance, &"tree_wind", amount)
-	RenderingServer.instance_geometry_set_shader_parameter(
-		instance, &"tree_origin", global_position
-	)
+func _set_shader_values(part: GeometryInstance3D, height: float) -> void:
+	OwnMaterials.tell(part, &"tree_height", height)
+	OwnMaterials.tell(part, &"tree_wind", 1.0 if wind else 0.0)
+	OwnMaterials.tell(part, &"tree_origin", global_position)
 
 
 func _leaf_card() -> Mesh:

@@ -9,6 +9,7 @@ signal built(box: AABB)
 const Levels := preload("tree_levels.gd")
 const BuildJob := preload("tree_build_job.gd")
 const Card := preload("tree_impostor_card.gd")
+const OwnMaterials := preload("own_materials.gd")
 # In the editor, the further levels wait until nothing has changed for so many milliseconds: what is
 # seen from near comes first.
 const _QUIET: int = 500
@@ -227,10 +228,10 @@ func _show(
 	if _tree.visibility_range_end > 0.0 and (end == 0.0 or _tree.visibility_range_end < end):
 		end = _tree.visibility_range_end
 		end_margin = _tree.visibility_range_end_margin
-	var server: Object = RenderingServer
-	server.instance_geometry_set_shader_parameter(part.get_instance(), &"tree_levels", turn)
+	OwnMaterials.tell(part, &"tree_levels", turn)
 	if part == _tree:
 		# Its own properties are the user's.
+		var server: Object = RenderingServer
 		server.instance_geometry_set_cast_shadows_setting(part.get_instance(), shadow)
 		server.instance_geometry_set_visibility_range(
 			part.get_instance(),

@@ -3,6 +3,7 @@ extends RefCounted
 ## Colours trees by what their shaders read of them: see TreeWind.show_channel(). In the rendering
 ## server alone, so that no scene knows of it.
 
+const OwnMaterials := preload("own_materials.gd")
 const _SHADER: String = "res://addons/tree_reconstruction/shaders/tree_channels.gdshader"
 
 # By the channel, and whether for leaves.
@@ -11,12 +12,10 @@ static var _materials: Dictionary[Vector2i, ShaderMaterial] = {}
 
 ## Shows it of `instance` and of what is drawn below it; 0 shows them as they are.
 static func show(instance: GeometryInstance3D, channel: int) -> void:
-	var shown: RID = RID()
 	if channel > 0:
-		shown = _material(channel, instance is MultiMeshInstance3D).get_rid()
-	elif instance.material_override != null:
-		shown = instance.material_override.get_rid()
-	RenderingServer.instance_geometry_set_material_override(instance.get_instance(), shown)
+		OwnMaterials.lend(instance, _material(channel, instance is MultiMeshInstance3D))
+	else:
+		OwnMaterials.restore(instance)
 	for child: Node in instance.get_children(true):
 		if child is GeometryInstance3D:
 			show(child as GeometryInstance3D, channel)

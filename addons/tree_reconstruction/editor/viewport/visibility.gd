@@ -4,6 +4,7 @@ extends RefCounted
 ## scene knows nothing of it, and nothing of it is saved.
 
 const Session: GDScript = preload("../session.gd")
+const OwnMaterials: GDScript = preload("../../nodes/own_materials.gd")
 
 var _session: Session
 var _node: TreeInstance3D
@@ -49,6 +50,4 @@ func _apply(bark: bool, leaves: bool, wind: bool) -> void:
 
 func _set_up(instance: GeometryInstance3D, seen: bool, wind: bool) -> void:
 	RenderingServer.instance_set_visible(instance.get_instance(), seen)
-	RenderingServer.instance_geometry_set_shader_parameter(
-		instance.get_instance(), &"tree_wind", 1.0 if wind else 0.0
-	)
+	OwnMaterials.tell(instance, &"tree_wind", 1.0 if wind else 0.0)
