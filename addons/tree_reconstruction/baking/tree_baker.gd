@@ -45,8 +45,9 @@ var distances: PackedFloat32Array = []
 ## How the leaves are drawn.
 var form: Form = Form.JOINED
 
-## Whether the bark gets the second texture coordinates that a [LightmapGI] needs. The leaves are
-## nodes of their own then, lit by the lightmap's probes. Only the editor can do this.
+## Whether the finest level's bark gets the second texture coordinates that a [LightmapGI] needs.
+## The leaves are nodes of their own then, and they and the coarser levels are lit by the lightmap's
+## probes: levels that stand in one place would shade each other in it. Only the editor can do this.
 var lightmap_uv2: bool = false
 
 ## The length of a texel of the lightmap in metres.
@@ -99,8 +100,8 @@ class Parts:
 	var leaves: Array[Array] = []
 	## With [constant TreeBaker.MULTIMESH]: see [method TreeReconstruction.build_leaf_buffer].
 	var buffers: Array[PackedFloat32Array] = []
-	## The size of the bark's lightmap of each level, if there is one.
-	var lightmaps: Array[Vector2i] = []
+	## The size of the finest level's lightmap, if there is one.
+	var lightmap: Vector2i = Vector2i.ZERO
 	## See [method TreeReconstruction.build_capsules] and
 	## [method TreeReconstruction.build_convex_parts].
 	var shapes: Array[Dictionary] = []
@@ -153,16 +154,14 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
 	# Only the addon's shader knows how to hide the seam of a picture that does not fit around.
 	var arrays: Array = tree.build_mesh_arrays(level, not PlainMaterials.is_addons(_bark_of(tree)))
-	var size: Vector2i = Vector2i.ZERO
-	if lightmap_uv2 and not arrays.is_empty():
+	if lightmap_uv2 and level == 0 and not arrays.is_empty():
 		var unwrapped: Lightmap.Unwrapped = Lightmap.unwrap(arrays, lightmap_texel_size)
 		if unwrapped.arrays.is_empty():
 			push_error("Only the editor's program can make coordinates for a lightmap.")
 		else:
 			arrays = unwrapped.arrays
-			size = unwrapped.size
+			parts.lightmap = unwrapped.size
 	parts.bark.append(arrays)
-	parts.lightmaps.append(size)
 
 
 ## Makes a scene of what [method build] returned for the same tree, on the main thread.
@@ -187,6 +186,7 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 		var part: MeshInstance3D = MeshInstance3D.new()
 		part.name = "Level%d" % level if level < parts.bark.size() else "Impostor"
 		part.mesh = meshes[level]
+		part.gi_mode = _gi_mode(level == 0)
 		var drawn: Array[GeometryInstance3D] = [part]
 		root.add_child(part)
 		part.owner = root
@@ -240,8 +240,8 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 			mesh.surface_set_material(mesh.get_surface_count() - 1, bark)
 		if not parts.leaves[level].is_empty() and not _are_leaves_apart():
 			_add_leaves(mesh, parts.leaves[level], leaf)
-		if parts.lightmaps[level] != Vector2i.ZERO:
-			mesh.lightmap_size_hint = parts.lightmaps[level]
+		if level == 0 and parts.lightmap != Vector2i.ZERO:
+			mesh.lightmap_size_hint = parts.lightmap
 		mesh.custom_aabb = _box_of(parts)
 		meshes.append(mesh)
 	return meshes
@@ -295,14 +295,17 @@ func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[GeometryInsta
 			)
 		node.name = "Leaves"
 		node.custom_aabb = _box_of(parts)
-		# No lightmap has a place for each leaf; its probes light them.
-		node.gi_mode = (
-			GeometryInstance3D.GI_MODE_DYNAMIC
-			if lightmap_uv2
-			else GeometryInstance3D.GI_MODE_STATIC
-		)
+		# No lightmap has a place for each leaf.
+		node.gi_mode = _gi_mode(false)
 		made.append(node)
 	return made
+
+
+# Of what the lightmap has a place for, and of what its probes light.
+func _gi_mode(mapped: bool) -> GeometryInstance3D.GIMode:
+	if lightmap_uv2 and not mapped:
+		return GeometryInstance3D.GI_MODE_DYNAMIC
+	return GeometryInstance3D.GI_MODE_STATIC
 
 
 # With all that the wind may move.
