@@ -4,7 +4,7 @@
 #include <new>
 
 #include "cli/commands.h"
-#include "cli/large_pages.h"
+#include "cli/memory.h"
 #include "cli/terminal_progress.h"
 #include "exchange/ready_pictures.h"
 #include "version.h"
@@ -90,7 +90,7 @@ int run(const std::vector<std::string>& words) {
 }  // namespace treerec
 
 int main(int argc, char** argv) {
-    treerec::use_large_pages();
+    treerec::keep_freed_memory();
     treerec::listen_for_interrupt();
     treerec::use_ready_pictures();
     try {

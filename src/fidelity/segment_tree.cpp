@@ -79,10 +79,19 @@ bool solid_holds(const WoodSegment& segment, const DVec3& p, double tolerance) {
 SegmentTree::SegmentTree(std::vector<WoodSegment> segments) : segments_(std::move(segments)) {
     if (segments_.empty()) return;
     cells_.reserve(segments_.size());
-    build(0, static_cast<int32_t>(segments_.size()));
+    std::vector<Key> keys(segments_.size());
+    for (size_t i = 0; i < keys.size(); i++)
+        keys[i].segment = static_cast<int32_t>(i);
+    build(0, static_cast<int32_t>(segments_.size()), keys);
+    std::vector<WoodSegment> sorted;
+    sorted.reserve(segments_.size());
+    for (const Key& key : keys)
+        sorted.push_back(segments_[static_cast<size_t>(key.segment)]);
+    segments_ = std::move(sorted);
 }
 
-int32_t SegmentTree::build(int32_t begin, int32_t end) {
+// Sorts the keys: they are lighter to move than the segments.
+int32_t SegmentTree::build(int32_t begin, int32_t end, std::vector<Key>& keys) {
     const int32_t index = static_cast<int32_t>(cells_.size());
     Cell cell;
     cell.begin = begin;
@@ -90,7 +99,7 @@ int32_t SegmentTree::build(int32_t begin, int32_t end) {
     cell.least_radius = std::numeric_limits<double>::max();
     Bounds middles;
     for (int32_t i = begin; i < end; i++) {
-        const WoodSegment& segment = segments_[i];
+        const WoodSegment& segment = segments_[keys[i].segment];
         cell.box.add(segment.from);
         cell.box.add(segment.to);
         middles.add(0.5 * (segment.from + segment.to));
@@ -103,12 +112,14 @@ int32_t SegmentTree::build(int32_t begin, int32_t end) {
     const DVec3 size = middles.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const int32_t middle = begin + (end - begin) / 2;
-    std::nth_element(segments_.begin() + begin, segments_.begin() + middle, segments_.begin() + end,
-                     [axis](const WoodSegment& a, const WoodSegment& b) {
-                         return a.from[axis] + a.to[axis] < b.from[axis] + b.to[axis];
-                     });
-    build(begin, middle);
-    const int32_t right = build(middle, end);
+    for (int32_t i = begin; i < end; i++) {
+        const WoodSegment& segment = segments_[keys[i].segment];
+        keys[i].along = segment.from[axis] + segment.to[axis];
+    }
+    std::nth_element(keys.begin() + begin, keys.begin() + middle, keys.begin() + end,
+                     [](const Key& a, const Key& b) { return a.along < b.along; });
+    build(begin, middle, keys);
+    const int32_t right = build(middle, end, keys);
     cells_[index].right = right;
     return index;
 }

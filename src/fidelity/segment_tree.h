@@ -72,7 +72,11 @@ class SegmentTree {
         int32_t end = 0;
         int32_t right = -1;  // second child; the first follows its parent; -1 for a leaf
     };
-    int32_t build(int32_t begin, int32_t end);
+    struct Key {
+        double along;  // twice the middle's coordinate
+        int32_t segment;
+    };
+    int32_t build(int32_t begin, int32_t end, std::vector<Key>& keys);
 
     std::vector<WoodSegment> segments_;
     std::vector<Cell> cells_;

@@ -13,8 +13,7 @@ namespace treerec {
 namespace {
 
 constexpr size_t kNeighbours = 9;
-constexpr size_t kGrain = 2048;  // points between two looks at the cancel flag
-constexpr size_t kScaleMax = 8;
+constexpr size_t kGrain = 2048;        // points between two looks at the cancel flag
 constexpr size_t kScaleNeighbour = 2;  // the local spacing is the length of this shortest edge
 constexpr int kScaleSmoothings = 3;
 constexpr float kStrayFactor = 2.5f;  // times the neighbours' spacing, at most
@@ -88,7 +87,7 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
     const size_t count = graph.size();
     std::vector<float> spacing(count);
     for (size_t v = 0; v < count; v++) {
-        std::array<float, kScaleMax> shortest;
+        std::array<float, kScaleNeighbour> shortest;
         shortest.fill(std::numeric_limits<float>::max());
         for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
             float length = graph.length[e];

@@ -109,12 +109,24 @@ T median_of(std::vector<T>& values) {
     return *middle;
 }
 
+// What limbs refined one after another take turns with.
+struct Scratch {
+    std::vector<std::array<DVec3, 2>> frame;
+    std::vector<std::pair<int, Sample>> found;
+    std::vector<size_t> begin, fill;
+    std::vector<Sample> samples;
+    std::vector<float> values;
+    std::vector<uint8_t> round;
+    std::vector<DVec3> shift;
+};
+
 // One limb in one round. Reads the axes of the round before.
 class LimbRefiner {
   public:
     LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
                 const std::vector<std::vector<int32_t>>& sides, const PointPlaces& places,
-                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise)
+                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise,
+                Scratch& scratch)
         : axes_(axes),
           limbs_(limbs),
           limb_(limbs[index]),
@@ -124,7 +136,8 @@ class LimbRefiner {
           points_(points),
           noise_(noise),
           line_(axes[index]),
-          count_(static_cast<int>(line_.size())) {}
+          count_(static_cast<int>(line_.size())),
+          scratch_(scratch) {}
 
     std::vector<Station> run() {
         if (count_ < 2) return line_;
@@ -132,7 +145,8 @@ class LimbRefiner {
         collect();
         round_.assign(line_.size(), 0);
         std::vector<Station> result = line_;
-        std::vector<DVec3> shift(line_.size(), DVec3(0.0));
+        std::vector<DVec3>& shift = scratch_.shift;
+        shift.assign(line_.size(), DVec3(0.0));
         for (int i = 0; i < count_; i++)
             refine_station(i, result[i], shift[i]);
         believe_round(result);
@@ -226,8 +240,8 @@ class LimbRefiner {
 
     // The samples, by station.
     void collect() {
-        std::vector<std::pair<int, Sample>> found;
-        found.reserve(own_points_.size());
+        std::vector<std::pair<int, Sample>>& found = scratch_.found;
+        found.clear();
         for (const uint32_t v : own_points_)
             add_point(v, places_.station[v], found);
         begin_.assign(line_.size() + 1, 0);
@@ -236,7 +250,8 @@ class LimbRefiner {
         for (size_t i = 0; i < line_.size(); i++)
             begin_[i + 1] += begin_[i];
         samples_.resize(found.size());
-        std::vector<size_t> fill(begin_.begin(), begin_.end() - 1);
+        std::vector<size_t>& fill = scratch_.fill;
+        fill.assign(begin_.begin(), begin_.end() - 1);
         for (const auto& [station, sample] : found)
             samples_[fill[station]++] = sample;
     }
@@ -345,11 +360,12 @@ class LimbRefiner {
     double noise_;
     const std::vector<Station>& line_;
     int count_;
-    std::vector<std::array<DVec3, 2>> frame_;
-    std::vector<size_t> begin_;
-    std::vector<Sample> samples_;
-    std::vector<float> values_;
-    std::vector<uint8_t> round_;  // by station
+    Scratch& scratch_;
+    std::vector<std::array<DVec3, 2>>& frame_ = scratch_.frame;
+    std::vector<size_t>& begin_ = scratch_.begin;
+    std::vector<Sample>& samples_ = scratch_.samples;
+    std::vector<float>& values_ = scratch_.values;
+    std::vector<uint8_t>& round_ = scratch_.round;  // by station
 };
 
 }  // namespace
@@ -378,10 +394,11 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
         const double noise = noise_of(axes);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
+            Scratch scratch;
             for (size_t l = from; l < to; l++) {
                 progress.check();
                 const std::span<const uint32_t> own(members.data() + begin[l], begin[l + 1] - begin[l]);
-                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise).run();
+                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise, scratch).run();
             }
         });
         axes.swap(next);

@@ -45,18 +45,19 @@ std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& sc
 void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scale,
                  const std::vector<uint32_t>& slice_of) {
     std::vector<std::pair<uint32_t, uint32_t>> pairs;
-    for (uint32_t v = 0; v < graph.size(); v++)
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+    for (uint32_t v = 0; v < graph.size(); v++) {
+        const uint32_t a = slice_of[v];
+        const int32_t parent = slices.parent[a];
+        for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
             const uint32_t n = graph.neighbour[e];
-            const uint32_t a = slice_of[v];
             const uint32_t b = slice_of[n];
-            if (a >= b || slices.parent[a] == static_cast<int32_t>(b) ||
-                slices.parent[b] == static_cast<int32_t>(a))
+            if (a >= b || parent == static_cast<int32_t>(b) || slices.parent[b] == static_cast<int32_t>(a))
                 continue;
             if (graph.length[e] > kBesideReach * edge_reach(scale, v, n)) continue;
             if (!pairs.empty() && pairs.back() == std::pair(a, b)) continue;
             pairs.emplace_back(a, b);
         }
+    }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     slices.beside_begin.assign(slices.size() + 1, 0);
@@ -87,11 +88,14 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
         const uint32_t b = find(leader, n);
         leader[std::max(a, b)] = std::min(a, b);
     };
-    for (uint32_t v = 0; v < count; v++)
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+    for (uint32_t v = 0; v < count; v++) {
+        const int32_t own = level[v];
+        for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
             const uint32_t n = graph.neighbour[e];
-            if (n < v && level[n] == level[v] && graph.length[e] <= edge_reach(scale, v, n)) join(v, n);
+            if (n > v) break;  // they ascend
+            if (level[n] == own && graph.length[e] <= edge_reach(scale, v, n)) join(v, n);
         }
+    }
 
     // Number the groups by level, then by their smallest vertex. Slice 0 is the root itself and has no
     // points.

@@ -325,35 +325,42 @@ class TwigFinder {
         }
     }
 
-    std::vector<Station> smooth_line(const DVec3& base) const {
+    std::vector<Station> smooth_line(const DVec3& base) {
         std::vector<Station> line(path_.size());
-        std::vector<double> weight(path_.size(), 0.0);
+        std::vector<double>& weight = weight_;
+        weight.assign(path_.size(), 0.0);
         for (const uint32_t v : near_) {
             line[nearest_[v]].position += DVec3(points_[v]);
             weight[nearest_[v]] += 1.0;
         }
         for (size_t i = 0; i < line.size(); i++)
             line[i].position /= weight[i];
-        const std::vector<Station> seen = line;
+        std::vector<DVec3>& seen = seen_;
+        seen.clear();
+        for (const Station& station : line)
+            seen.push_back(station.position);
         for (int round = 0; round < kSmoothings; round++) {
             DVec3 before = base;
             for (size_t i = 0; i + 1 < line.size(); i++) {
                 const DVec3 here = line[i].position;
-                DVec3 move = 0.25 * before + 0.5 * here + 0.25 * line[i + 1].position - seen[i].position;
+                DVec3 move = 0.25 * before + 0.5 * here + 0.25 * line[i + 1].position - seen[i];
                 const double most = kMostMove;
                 if (glm::length(move) > most) move *= most / glm::length(move);
-                line[i].position = seen[i].position + move;
+                line[i].position = seen[i] + move;
                 before = here;
             }
         }
         // The points' distances, by station.
-        std::vector<size_t> begin(line.size() + 1, 0);
+        std::vector<size_t>& begin = begin_;
+        begin.assign(line.size() + 1, 0);
         for (const uint32_t v : near_)
             begin[static_cast<size_t>(nearest_[v]) + 1]++;
         for (size_t i = 0; i < line.size(); i++)
             begin[i + 1] += begin[i];
-        std::vector<double> distances(near_.size());
-        std::vector<size_t> fill(begin.begin(), begin.end() - 1);
+        std::vector<double>& distances = distances_;
+        distances.resize(near_.size());
+        std::vector<size_t>& fill = fill_;
+        fill.assign(begin.begin(), begin.end() - 1);
         for (const uint32_t v : near_)
             distances[fill[static_cast<size_t>(nearest_[v])]++] =
                 place_near(line, nearest_[v], DVec3(points_[v])).distance;
@@ -385,6 +392,9 @@ class TwigFinder {
     std::vector<int32_t> nearest_;  // scratch of gather()
     std::vector<uint32_t> near_;
     std::vector<uint32_t> path_;
+    std::vector<double> weight_, distances_;  // scratch of smooth_line()
+    std::vector<DVec3> seen_;
+    std::vector<size_t> begin_, fill_;
     uint32_t foot_ = 0;
 };
 
