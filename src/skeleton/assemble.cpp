@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/parallel.h"
+
 namespace treerec {
 
 namespace {
@@ -11,6 +13,7 @@ namespace {
 constexpr double kRelativeTolerance = 0.1;  // of the local radius
 constexpr double kLeastTolerance = 0.003;   // metres
 constexpr double kLongestSegment = 0.2;     // metres
+constexpr size_t kLimbsPerTask = 64;
 
 // How far station i is off the straight cone between a and b.
 double deviation(const Station& station, const Station& a, const Station& b) {
@@ -83,41 +86,47 @@ Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vec
     for (const Limb& limb : limbs)
         if (limb.parent >= 0) keep[limb.parent][limb.attach] = 1;
 
+    // The line that is simplified starts on the parent's axis.
+    parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
+        std::vector<Station> line;
+        std::vector<uint8_t> kept;
+        for (size_t l = begin; l < end; l++) {
+            line.clear();
+            if (limbs[l].parent >= 0) {
+                line.push_back(axes[limbs[l].parent][limbs[l].attach]);
+                line.back().radius = axes[l].front().radius;
+            }
+            const auto first = static_cast<ptrdiff_t>(line.size());
+            line.insert(line.end(), axes[l].begin(), axes[l].end());
+            kept.assign(static_cast<size_t>(first), 1);
+            kept.insert(kept.end(), keep[l].begin(), keep[l].end());
+            kept.front() = 1;
+            for (size_t a = 0, b = 1; b < line.size(); b++)
+                if (kept[b]) {
+                    keep_bends(line, a, b, simplify_distance, kept);
+                    a = b;
+                }
+            std::copy(kept.begin() + first, kept.end(), keep[l].begin());
+        }
+    });
+
     Tree tree;
     std::vector<std::vector<NodeId>> ids(axes.size());
     for (size_t l = 0; l < axes.size(); l++) {
-        // The line that is simplified starts on the parent's axis.
-        std::vector<Station> line;
-        if (limbs[l].parent >= 0) {
-            line.push_back(axes[limbs[l].parent][limbs[l].attach]);
-            line.back().radius = axes[l].front().radius;
-        }
-        const size_t first = line.size();
-        line.insert(line.end(), axes[l].begin(), axes[l].end());
-        std::vector<uint8_t> kept(line.size(), 0);
-        kept.front() = 1;
-        for (size_t i = first; i < line.size(); i++)
-            kept[i] = kept[i] | keep[l][i - first];
-        for (size_t a = 0, b = 1; b < line.size(); b++)
-            if (kept[b]) {
-                keep_bends(line, a, b, simplify_distance, kept);
-                a = b;
-            }
-
         ids[l].assign(axes[l].size(), kNoNode);
         NodeId last = limbs[l].parent >= 0 ? ids[limbs[l].parent][limbs[l].attach] : kNoNode;
-        for (size_t i = first; i < line.size(); i++) {
-            if (!kept[i]) continue;
-            const Station& station = line[i];
+        for (size_t i = 0; i < axes[l].size(); i++) {
+            if (!keep[l][i]) continue;
+            const Station& station = axes[l][i];
             uint8_t flags = 0;
             if (station.measured) flags |= kMeasuredRadiusFlag;
             if (station.bridged) {
                 flags |= kGuessFlag;
-                if (i > first) last = taper_over_gap(tree, last, line[i - 1], station);
+                if (i > 0) last = taper_over_gap(tree, last, axes[l][i - 1], station);
             }
             last = last == kNoNode ? tree.add_root(station.position, station.radius, flags)
                                    : tree.add_child(last, station.position, station.radius, flags);
-            ids[l][i - first] = last;
+            ids[l][i] = last;
         }
     }
     return tree.compacted();

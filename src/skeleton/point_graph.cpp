@@ -39,16 +39,24 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
                 if (index[i] != v) *to++ = index[i];
         }
     });
+    std::vector<std::vector<PointEdge>> parts((points.size() + kGrain - 1) / kGrain);
+    parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        std::vector<PointEdge>& part = parts[begin / kGrain];
+        part.reserve((end - begin) * kNeighbours * 2 / 3);
+        for (size_t v = begin; v < end; v++)
+            for (size_t i = 0; i < near; i++) {
+                const uint32_t own = static_cast<uint32_t>(v);
+                const uint32_t n = nearest[v * near + i];
+                const uint32_t* others = &nearest[n * near];
+                // An edge that both ends know is taken from its smaller end.
+                if (own < n || std::find(others, others + near, own) == others + near)
+                    part.emplace_back(std::min(own, n), std::max(own, n));
+            }
+    });
     std::vector<PointEdge> edges;
     edges.reserve(points.size() * kNeighbours * 2 / 3);
-    for (uint32_t v = 0; v < points.size(); v++)
-        for (size_t i = 0; i < near; i++) {
-            const uint32_t n = nearest[v * near + i];
-            const uint32_t* others = &nearest[n * near];
-            // An edge that both ends know is taken from its smaller end.
-            if (v < n || std::find(others, others + near, v) == others + near)
-                edges.emplace_back(std::min(v, n), std::max(v, n));
-        }
+    for (const std::vector<PointEdge>& part : parts)
+        edges.insert(edges.end(), part.begin(), part.end());
     bridge_parts(points, tree, edges, progress);
 
     PointGraph graph;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/parallel.h"
+
 namespace treerec {
 
 namespace {
@@ -21,6 +23,7 @@ constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured limb
 constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
 constexpr double kFoot = 6.0;         // radii of the base: how far up its flare may reach
 constexpr int kMedianWindow = 4;      // stations to each side
+constexpr size_t kLimbsPerTask = 64;
 
 struct Block {
     double value;
@@ -142,11 +145,14 @@ void keep_width(std::vector<Station>& stem) {
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs) {
     const double noise = noise_of(axes);
     const double slenderness = slenderness_of(axes);
+    parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
+        for (size_t l = begin; l < end; l++)
+            running_median(axes[l]);
+    });
     std::vector<double> values;
     std::vector<double> weights;
     for (size_t l = 0; l < axes.size(); l++) {
         std::vector<Station>& stations = axes[l];
-        running_median(stations);
         double limit = std::numeric_limits<double>::max();
         if (limbs[l].parent >= 0) limit = axes[limbs[l].parent][limbs[l].attach].radius;
 

@@ -56,6 +56,8 @@ void bench_beside(const std::vector<std::string>& scans, const Settings& setting
                 throw Error("'" + settings.beside +
                             "' wrote nothing into the folder that is its second argument.");
             for (Runs* runs : {&ours, &alone}) {
+                // Neither takes the place of a file that was there.
+                std::filesystem::remove(path_of(folder.file("tree.glb")));
                 const ChildRun run = run_child(ours_words, runs == &alone);
                 if (run.exit_code != 0) throw Error("treerec failed:\n" + run.output);
                 runs->add(run);
