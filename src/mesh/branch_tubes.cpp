@@ -183,12 +183,19 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     pick_rings(branch, points, tube, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
+    if (branch.attach != kNoNode && options.level == 0) {
+        const double own = tree.node(list.nodes[branch.begin]).radius;
+        if (own >= kCollarRadius)
+            limit_slant(out.data() + tube.first_ring, tube.rings,
+                        std::max(tube.exit + 3.0 * own, 2.0 * tube.exit));
+    }
     double thickest = 0.0;
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
     if (branch.attach == kNoNode && tree.node(tree.root()).is_trunk())
         tube.foot = cut_level(out.data() + tube.first_ring, tube.rings);
     if (!tube.foot) tube.flare = {};
+    if (tube.foot) stretch_foot(tube.flare, out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.cut = tube.round_tip && out.back().radius >= kCutRadius;

@@ -33,7 +33,8 @@ struct BarkPlace {
     double height;   // metres above that
     double along;
     double radius;
-    bool beyond;  // past either end
+    double shown;  // the radius that the bark's picture goes around by
+    bool beyond;   // past either end
 };
 
 // Between which two rings p lies, and where between them.
@@ -85,6 +86,7 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     place.beyond = at.beyond;
     place.centre = glm::mix(low.centre, high.centre, at.t);
     place.radius = low.radius + (high.radius - low.radius) * at.t;
+    place.shown = place.radius * (low.stretch + (high.stretch - low.stretch) * at.t);
     place.along = low.along + (high.along - low.along) * at.t;
     const DVec3 axis = normalized_or(glm::mix(low.normal, high.normal, at.t), low.normal);
     const DVec3 mixed = glm::mix(low.x, high.x, at.t);
@@ -161,6 +163,13 @@ class CollarMaker {
         const size_t ring = below(along);
         const double t = share_of(ring, along);
         return branch_.rings[ring].radius * (1.0 - t) + branch_.rings[ring + 1].radius * t;
+    }
+    // The radius that the bark's picture goes around by.
+    double shown_at(double along) const {
+        const size_t ring = below(along);
+        const Ring &low = branch_.rings[ring], &high = branch_.rings[ring + 1];
+        const double t = share_of(ring, along);
+        return low.radius * low.stretch * (1.0 - t) + high.radius * high.stretch * t;
     }
     DVec3 point_at(uint32_t index, double along) const {
         const size_t ring = below(along);
@@ -346,18 +355,18 @@ void CollarMaker::dress_as_host(CollarVertex& vertex, const BarkPlace& at) const
     // Not across the parent's seam: on either side of it the picture goes on from the branch's middle.
     const double rounds = at.corner / host_.sides;
     vertex.around = rounds + std::round(middle_ / host_.sides - rounds);
-    vertex.radius = at.radius;
+    vertex.radius = at.shown;
     vertex.v = at.along;
 }
 
 Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
-    double first = HUGE_VAL, last = 0.0, own = 0.0, down = 0.0;
+    double first = HUGE_VAL, last = 0.0, own = 0.0, shown = 0.0;
     for (uint32_t j = 0; j < branch_.sides; j++) {
         const Generator& line = lines_[j];
         first = std::min(first, line.end);
         last = std::max(last, line.end);
         own += radius_at(line.end) / branch_.sides;
-        down += glm::distance(line.foot, line.crossing) / branch_.sides;
+        shown += shown_at(line.end) / branch_.sides;
     }
     const double gap = 0.25 * own;
     Collar collar;
@@ -384,12 +393,12 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
         if (!as_host) out.back().around = 1.0;
         collar.rows++;
     };
+    // As wide as it becomes, the picture does not become: it would wind about the branch.
     const auto web_row = [&](double share) {
-        const double radius = own + (1.0 - share) * (1.0 - share) * down;
-        row(false, [&](uint32_t j, CollarVertex& vertex) { web(j, share, radius, vertex); });
+        row(false, [&](uint32_t j, CollarVertex& vertex) { web(j, share, shown, vertex); });
     };
     row(true, [&](uint32_t j, CollarVertex& vertex) {
-        web(j, 0.0, own + down, vertex);
+        web(j, 0.0, shown, vertex);
         dress_as_host(vertex, lines_[j].at);
     });
     web_row(thick ? 1.0 / 3.0 : 0.5);  // where the picture changes
@@ -404,7 +413,7 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
         const double share = static_cast<double>(i) / (slant + 1);
         double radius = 0.0;
         for (uint32_t j = 0; j < sides; j++)
-            radius += radius_at(lines_[j].end + (until - lines_[j].end) * share) / sides;
+            radius += shown_at(lines_[j].end + (until - lines_[j].end) * share) / sides;
         row(false, [&](uint32_t j, CollarVertex& vertex) {
             const double along = lines_[j].end + (until - lines_[j].end) * share;
             web(j, 1.0, radius, vertex);

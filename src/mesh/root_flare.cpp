@@ -16,6 +16,7 @@ constexpr double kLookUp = 3.0;        // radii: where the trunk above is measur
 constexpr double kLobe = 0.45;         // of the flare: how much further out it is at a root than between two
 constexpr double kRoughly = 0.05;      // less than that is left out
 constexpr uint32_t kSidesPerLobe = 4;  // fewer show no root
+constexpr double kFootHeight = 3.0;    // radii: how far up a trunk widens into its roots
 
 }  // namespace
 
@@ -58,9 +59,12 @@ FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle) {
     return at;
 }
 
-double mean_radius(const RootFlare& flare, const Ring& ring) {
-    const double left = std::clamp(1.0 - ring.along / flare.reach, 0.0, 1.0);
-    return ring.radius * (1.0 + flare.amount * left * left);
+void stretch_foot(const RootFlare& flare, Ring* rings, size_t count) {
+    for (size_t i = 0; i < count && rings[i].along < flare.reach; i++) {
+        const double left = 1.0 - rings[i].along / flare.reach;
+        rings[i].stretch = 1.0 + flare.amount * left * left;
+    }
+    limit_slant(rings, count, std::max(kFootHeight * rings[0].radius, flare.reach));
 }
 
 }  // namespace treerec

@@ -29,7 +29,8 @@ struct FlareAt {
 // At an angle of a ring that lies below the flare's reach.
 FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle);
 
-// Of a ring below the flare's reach, all round.
-double mean_radius(const RootFlare& flare, const Ring& ring);
+// The picture of a foot's bark: as wide as the wood is on average there, as far as limit_slant() lets it.
+// rings: of the trunk, from the root.
+void stretch_foot(const RootFlare& flare, Ring* rings, size_t count);
 
 }  // namespace treerec

@@ -128,7 +128,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         const Vec4 color = color_at(ring.centre, ring.along,
                                     light_at(tube, run[0].radius, ring.centre, ring.along, 1.0), phase);
         const bool flares = tube.flare.amount > 0.0 && ring.along < tube.flare.reach;
-        const double shown = flares ? mean_radius(tube.flare, ring) : ring.radius;
+        const double shown = ring.radius * ring.stretch;
         const double ring_repeats = repeats_of(index, shown);
         const double blend = i == 0 ? 0.0 : blend_at(ring);
         const bool free = wind.is_free(index, ring.way);

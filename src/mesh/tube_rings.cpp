@@ -10,6 +10,7 @@ namespace {
 constexpr double kFootRadii = 1.0;  // how far the trunk goes on below the ground, over its radius,
 constexpr double kMostFoot = 0.25;  // and in metres at most
 constexpr double kUpright = 0.5;    // the least y of a standing trunk's direction
+constexpr double kMostSlant = 0.3;  // of the bark's picture at its seam: metres around per metre along
 
 }  // namespace
 
@@ -59,6 +60,20 @@ void frame_rings(Ring* rings, size_t count) {
         normal = ring.normal;
         x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
         ring.x = x;
+    }
+}
+
+void limit_slant(Ring* rings, size_t count, double height) {
+    size_t above = 0;
+    while (above + 1 < count && rings[above].along < height)
+        above++;
+    if (above == 0) return;
+    double shown = rings[above].radius * rings[above].stretch;
+    for (size_t i = above; i-- > 0;) {
+        Ring& ring = rings[i];
+        const double change = kMostSlant / (2.0 * kPi) * (rings[i + 1].along - ring.along);
+        shown = std::clamp(ring.radius * ring.stretch, shown - change, shown + change);
+        ring.stretch = shown / ring.radius;
     }
 }
 

@@ -16,6 +16,7 @@ struct Ring {
     double along;      // from the branch's start
     DVec3 x{0.0};      // unit, across the normal: where the ring's first corner lies; set by frame_rings()
     double way = 0.0;  // AxisPoint::way
+    double stretch = 1.0;  // of the bark's picture: the radius that it goes around by, over this one
     DVec3 y() const { return glm::cross(normal, x); }  // a quarter turn on
 };
 
@@ -29,6 +30,11 @@ std::optional<double> cut_level(Ring* rings, size_t count);
 
 // Parallel transport: each ring's x is the last one's by the smallest turn that takes its normal to this one.
 void frame_rings(Ring* rings, size_t count);
+
+// Where the wood widens or thins within a short way, the bark's picture would wind about it if it kept its
+// scale, since more of it goes around at one end. Up to `height` metres along it stretches instead, so that
+// it slants little.
+void limit_slant(Ring* rings, size_t count, double height);
 
 // How much wider the tube becomes per metre at ring i, by its neighbours; -1..1.
 double ring_slope(const Ring* rings, size_t count, size_t i);

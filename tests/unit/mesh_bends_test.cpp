@@ -64,5 +64,77 @@ TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
     }
 }
 
+// Where a trunk widens into its roots, its bark runs on down, and does not wind about it.
+TEST(BranchTubes, TheBarkOfAFootDoesNotSlant) {
+    for (const double foot : {0.17, 0.2, 0.25}) {
+        Tree tree;
+        NodeId at = tree.add_root({0, 0, 0}, foot, kTrunkFlag);
+        for (int i = 1; i <= 40; i++) {
+            const double y = 0.1 * i, left = std::max(0.0, 1.0 - y / 0.4);
+            at = tree.add_child(at, {0, y, 0}, 0.16 - 0.01 * y + (foot - 0.16) * left, kTrunkFlag);
+        }
+        const TubeOptions options;
+        const Mesh mesh = build_branch_tubes(tree, options);
+        std::vector<Vec2> ends;  // of each round: metres around, metres along
+        for (size_t i = 0; i < mesh.uvs.size(); i++) {
+            const Vec2 end(mesh.uvs[i].x * static_cast<float>(options.bark_width), mesh.uvs[i].y);
+            if (end.y > 2.0f || end.y < 0.0f) continue;
+            if (ends.empty() || std::abs(ends.back().y - end.y) > 1e-4f)
+                ends.push_back(end);
+            else
+                ends.back() = end;
+        }
+        ASSERT_GT(ends.size(), 2u);
+        for (size_t i = 1; i < ends.size(); i++) {
+            ASSERT_GT(ends[i].y, ends[i - 1].y);
+            EXPECT_LT(std::abs(ends[i].x - ends[i - 1].x) / (ends[i].y - ends[i - 1].y), 0.32f) << ends[i].y;
+            // And is not stretched out of shape either.
+            const double around = 2.0 * kPi * (0.16 - 0.01 * ends[i].y);
+            EXPECT_NEAR(ends[i].x, around, 0.3 * around) << ends[i].y;
+        }
+    }
+}
+
+// Nor does that of a branch wind about it where it comes out of its parent: the picture is neither sheared
+// nor stretched beyond what an eye takes for bark.
+TEST(BranchTubes, TheBarkOfACollarDoesNotWind) {
+    for (const double thick : {0.025, 0.035, 0.05}) {
+        Tree tree;
+        NodeId at = tree.add_root({0, 0, 0}, 0.1, kTrunkFlag), fork = kNoNode;
+        for (int i = 1; i <= 30; i++) {
+            at = tree.add_child(at, {0, 0.1 * i, 0}, 0.1 - 0.001 * i, kTrunkFlag);
+            if (i == 20) fork = at;
+        }
+        for (int i = 1; i <= 8; i++)
+            fork = tree.add_child(fork, DVec3(0.12 * i, 2.0 + 0.08 * i, 0.02 * i), thick * (1.0 - 0.05 * i));
+        const TubeOptions options;
+        const Mesh mesh = build_branch_tubes(tree, options);
+        size_t looked_at = 0;
+        for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
+            // The parent's picture begins 2 m along.
+            const auto own = [&](uint32_t v) {
+                return mesh.custom0[v].w == 1.0f && mesh.uvs[v].y < 0.5f && mesh.colors[v].g < 1.0f;
+            };
+            if (!own(a) || !own(b) || !own(c)) continue;
+            const DVec3 along(mesh.positions[b] - mesh.positions[a]);
+            const DVec3 across(mesh.positions[c] - mesh.positions[a]);
+            const double length = glm::length(along), x = glm::dot(across, along) / length;
+            const double y = glm::length(across - along * (x / length));
+            if (length < 1e-3 || y < 1e-3) continue;
+            const DVec2 scale(options.bark_width, 1.0);
+            const DVec2 p = DVec2(mesh.uvs[b] - mesh.uvs[a]) * scale / length;
+            const DVec2 q = (DVec2(mesh.uvs[c] - mesh.uvs[a]) * scale - p * x) / y;
+            // Metres of picture per metre of bark, in the ways where they are most and fewest.
+            const double squares = glm::dot(p, p) + glm::dot(q, q), area = std::abs(p.x * q.y - p.y * q.x);
+            ASSERT_GT(area, 0.0);
+            const double most = std::sqrt(0.5 * (squares + std::sqrt(squares * squares - 4.0 * area * area)));
+            EXPECT_LT(most * most / area, 2.5) << mesh.uvs[a].y << " m along, of " << thick;
+            looked_at++;
+        }
+        EXPECT_GT(looked_at, 50u);
+    }
+}
+
 }  // namespace
 }  // namespace treerec
