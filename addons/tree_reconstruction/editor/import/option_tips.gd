@@ -12,6 +12,7 @@ const Sentences: GDScript = preload("../translations/sentences.gd")
 # What the engine calls the object whose properties the dock shows.
 const _DOCK_OBJECT: String = "ImportDockParameters"
 const _KIND: String = "local_variable"
+const _TOOLTIP: String = "EditorHelpBitTooltip"
 
 var _due: bool = false
 
@@ -63,8 +64,27 @@ func _fill() -> void:
 		for node: Node in dock.find_children("*", "EditorProperty", true, false):
 			var field: EditorProperty = node as EditorProperty
 			var text: String = describe(field.get_edited_property())
-			if not text.is_empty():
-				field.tooltip_text = to_tooltip(field.label, text)
+			if text.is_empty():
+				continue
+			field.tooltip_text = to_tooltip(field.label, text)
+			if not field.child_entered_tree.is_connected(_on_child_entered):
+				field.child_entered_tree.connect(_on_child_entered)
+
+
+# The engine's tooltip would be titled as that of a variable.
+func _on_child_entered(child: Node) -> void:
+	if child.get_class() == _TOOLTIP:
+		_retitle.call_deferred(child)
+
+
+func _retitle(tooltip: Node) -> void:
+	if not is_instance_valid(tooltip) or not tooltip.get_parent() is EditorProperty:
+		return
+	for node: Node in tooltip.find_children("*", "RichTextLabel", true, false):
+		var title: RichTextLabel = node as RichTextLabel
+		title.clear()
+		title.add_text((tooltip.get_parent() as EditorProperty).label)
+		return
 
 
 ## What the engine's tooltips of properties take: the kind of thing, its class, its name, and more

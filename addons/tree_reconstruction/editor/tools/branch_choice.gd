@@ -6,7 +6,7 @@ extends OptionButton
 const Session := preload("../session.gd")
 
 const _ICON_WIDTH: int = 32
-const _ICON_DRAWN: int = 96
+const _ICON_DRAWN: int = 64
 # Of the tree's own branches these are offered: their ranks by their number of nodes.
 const _RANKS: PackedFloat32Array = [0.4, 0.65, 0.85, 0.97]
 const _LEAST_NODES: int = 3

@@ -45,8 +45,8 @@ const _PLACES: int = 4000
 const _UNTOUCHED: Vector3 = Vector3(1.682942, 1.917702, 3.080605)
 # How much of the picture's narrower side a part of the tree takes that is brought into view; how
 # small it may be to be seen well, and how near to the border.
-const _SHARE: float = 0.4
-const _LEAST_SHARE: float = 0.1
+const _SHARE: float = 0.7
+const _LEAST_SHARE: float = 0.25
 const _BORDER: float = 0.1
 # Seconds after which the camera is left where it is.
 const _PATIENCE: float = 3.0
@@ -121,7 +121,7 @@ func is_well_seen(box: AABB, camera: Camera3D) -> bool:
 ## How far around the middle of [param box] the picture goes, in metres of the tree: also around a
 ## single node so much that it is seen what it belongs to.
 func get_reach(box: AABB) -> float:
-	return maxf(0.5 * box.size.length(), 0.03 * _session.tree.get_aabb().size.length())
+	return maxf(0.5 * box.size.length(), 0.05 * _session.tree.get_aabb().size.length())
 
 
 ## To be called once a frame.

@@ -113,6 +113,10 @@ func _read_parameters() -> void:
 	check(seen > 10, "Only %d parameters have a tooltip." % seen)
 	await user.move(field.get_screen_transform() * Vector2(30.0, field.size.y / 2.0))
 	await until(func() -> bool: return _tooltip() != null, "a tooltip is shown")
+	await user.frames(2)
+	if _tooltip() != null:
+		var title: Node = _tooltip().find_children("*", "RichTextLabel", true, false)[0]
+		check_equal((title as RichTextLabel).get_parsed_text(), "Up Axis", "the tooltip's title")
 	await picture("tooltip-of-a-parameter")
 	await user.move(middle(view().get_parent() as Control))
 	# The Scene dock comes back where they share a place.

@@ -160,10 +160,11 @@ func _find_missing() -> void:
 		await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN)
 	await view_rests()
 	for i: int in tool.call(&"get_left"):
+		await user.key("y")
+		await user.frames(2)
 		# What no branch explains comes after the doubtful branches.
 		if not tool.call(&"get_place").points.is_empty():
 			break
-		await user.key("y")
 	await until(_has_ghosts, "the place is shown")
 	await view_rests()
 	_check_brought(tool)
