@@ -84,10 +84,20 @@ for kind in release debug; do
     ! grep -E 'ERROR|WARNING' "$work/$kind.log"
     check "the $kind game says nothing else" [ $? = 0 ]
 done
+# seen WHAT: how many pixels of the game's pictures did that.
+seen() { sed -n "s/^$1 \([0-9]*\)\$/\1/p" "$work/window.log"; }
 if command -v xvfb-run >/dev/null; then
     (cd "$work/out" && timeout 120 xvfb-run -a -s '-screen 0 640x640x24' \
         ./release.x86_64 --rendering-driver opengl3 --audio-driver Dummy -- --picture "$work/picture.png") >"$work/window.log" 2>&1
     check 'the game shows itself in a window' [ -s "$work/picture.png" ]
+    # A screen that nobody sees has no V-Sync, which is a warning.
+    ! grep ERROR "$work/window.log"
+    check 'its shaders find the wind that its project knows nothing of' [ $? = 0 ]
+    check "the project's own value ships: no wind" [ "$(seen 'moved without a TreeWind')" = 0 ]
+    check "a TreeWind bends the tree: $(seen bent) pixels" [ "0$(seen bent)" -gt 2000 ]
+    check "and moves it: $(seen moved) pixels" [ "0$(seen moved)" -gt 1000 ]
+    check 'a wind that stands does not' [ "$(seen 'moved in a wind that stands')" = 0 ]
+    check 'without the TreeWind all is as it was' [ "$(seen 'moved afterwards')" = 0 ]
 fi
 
 # Nothing of the editor ships.
@@ -101,6 +111,14 @@ check 'only the libraries of the two templates are beside it' \
     [ "$(echo "$libraries" | wc -l)" = 2 ]
 ! echo "$libraries" | grep editor
 check 'not that of the editor' [ $? = 0 ]
+for library in "$work"/out/*.so; do
+    tests/windows/carries_editor.sh "$library"
+    carries=$?
+    check "$(basename "$library") carries nothing of the reconstruction" [ "$carries" = 1 ]
+    strangers=$(objdump -p "$library" | sed -n 's/^ *NEEDED *//p' |
+        grep -vE '^(libstdc\+\+\.so\.6|libm\.so\.6|libgcc_s\.so\.1|libc\.so\.6|libpthread\.so\.0|ld-linux-.*)$')
+    check "and needs no library but the system's ($strangers)" [ -z "$strangers" ]
+done
 echo "Shipped with a game: $(du -bc "$work"/out/*template_release*.so | tail -n 1 | cut -f 1) bytes of library," \
     "$(stat -c %s "$work/out/release.pck") bytes of pack."
 finish
