@@ -23,13 +23,13 @@ func _ready() -> void:
 	_noise.frequency = 0.006
 	_noise.fractal_octaves = 3
 	_hills.mesh = _make_hills()
-	_hills.material_override = ($World/Ground as MeshInstance3D).mesh.surface_get_material(0)
+	_make_air()
 	_walker.ground = height_at
 	_walker.position = Vector3(0.0, height_at(0.0, 0.0) + 1.7, 0.0)
 	var source: TreeReconstruction = DemoTree.load_tree()
 	_trees.minimum_distance = 0.3 * source.get_aabb().size.y
 	_trees.source = source
-	_trees.finished.connect(_find_glade.bind(0.25 * source.get_aabb().size.y), CONNECT_ONE_SHOT)
+	_trees.finished.connect(_find_glade.bind(0.6 * source.get_aabb().size.y), CONNECT_ONE_SHOT)
 	_make_panel()
 
 
@@ -52,7 +52,16 @@ func height_at(x: float, z: float) -> float:
 	return _RELIEF * _noise.get_noise_2d(x, z)
 
 
-# Goes to where no tree stands in the way, and looks at the nearest ones.
+# Between trees one sees far: what is there is veiled.
+func _make_air() -> void:
+	var world: WorldEnvironment = $World/Environment
+	# The other scenes share it.
+	world.environment = world.environment.duplicate() as Environment
+	world.environment.fog_density = 0.004
+	world.environment.fog_light_color = Color(0.78, 0.83, 0.82)
+
+
+# Goes to where no tree stands in the way, and looks to where the next ones are a little way off.
 func _find_glade(room: float) -> void:
 	for i: int in 400:
 		# Outwards in a spiral.
@@ -60,7 +69,27 @@ func _find_glade(room: float) -> void:
 		var place: Vector3 = Vector3(away.x, height_at(away.x, away.y), away.y)
 		if _trees.find_trees(place, room).is_empty():
 			_walker.position = place + Vector3.UP * 1.7
+			_walker.turn_to(_find_view(place, 2.0 * room))
 			return
+
+
+# The heading in which the first tree, within some 25 degrees, is about so far away.
+func _find_view(place: Vector3, wanted: float) -> float:
+	var best: float = 0.0
+	var least: float = INF
+	for i: int in 24:
+		var yaw: float = TAU * i / 24.0
+		var ahead: Vector3 = Basis(Vector3.UP, yaw) * Vector3.FORWARD
+		var free: float = 3.0 * wanted
+		for id: int in _trees.find_trees(place, 3.0 * wanted):
+			var way: Vector3 = (_trees.get_tree_transform(id).origin - place) * Vector3(1, 0, 1)
+			if way.normalized().dot(ahead) > 0.9:
+				free = way.length()
+				break
+		if absf(free - wanted) < least:
+			least = absf(free - wanted)
+			best = yaw
+	return best
 
 
 func _make_panel() -> void:

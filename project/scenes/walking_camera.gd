@@ -20,6 +20,11 @@ func _ready() -> void:
 	_yaw = rotation.y
 
 
+## Looks that way, an angle about the vertical in radians.
+func turn_to(yaw: float) -> void:
+	_yaw = yaw
+
+
 func _process(delta: float) -> void:
 	var step: Vector2 = Input.get_vector(&"ui_left", &"ui_right", &"ui_up", &"ui_down")
 	step.x += (
