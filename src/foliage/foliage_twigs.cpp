@@ -150,10 +150,10 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
         const auto [x, y, z] = growth.place;
         for (int i = x - kNeighbours; i <= x + kNeighbours; i++)
             for (int j = y - kNeighbours; j <= y + kNeighbours; j++)
-                for (int k = z - kNeighbours; k <= z + kNeighbours; k++) {
-                    const auto found = ends.find({i, j, k});
-                    if (found == ends.end() || found->second.reached) continue;
+                for (auto found = ends.lower_bound({i, j, z - kNeighbours});
+                     found != ends.end() && found->first <= Place{i, j, z + kNeighbours}; ++found) {
                     End& other = found->second;
+                    if (other.reached) continue;
                     const double distance = glm::distance(other.position, grown.node(tip).position);
                     const double cost = cost_of(distance, along);
                     if (cost >= other.cost || distance > kStep * spacing) continue;

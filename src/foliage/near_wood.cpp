@@ -14,6 +14,13 @@ constexpr int64_t kCellsPerReach = 3;
 constexpr double kSamplesPerReach = 8.0;
 constexpr int64_t kMostPerAxis = 128;
 constexpr double kThickPenalty = 2.0;
+constexpr double kSlack = 1.0 + 1e-9;  // of squares of distances: rounding leaves nothing out
+
+// From a place to the cell `number`, in cells along one axis.
+double gap(double at, int64_t number) {
+    const auto low = static_cast<double>(number);
+    return std::max({low - at, at - (low + 1.0), 0.0});
+}
 
 }  // namespace
 
@@ -73,31 +80,45 @@ const WoodSample* NearWood::nearest(const DVec3& p) const {
         if (!(at[axis] > -1e6 && at[axis] < 1e6)) return nullptr;
         own[axis] = static_cast<int64_t>(std::floor(at[axis]));
     }
+    // The squares of what is left to find, in metres and in cells.
+    double most = best_distance * best_distance * kSlack;
+    double most_cells = most / (cell_ * cell_) * kSlack + 1e-12;
     // Shell by shell: what lies in shell r is at least r - 1 cells away.
     for (int64_t ring = 0; ring <= rings; ring++) {
         if (best && best_distance < cell_ * static_cast<double>(ring - 1)) break;
         const int64_t x_first = std::max<int64_t>(own[0] - ring, 0);
         const int64_t x_last = std::min<int64_t>(own[0] + ring, count_[0] - 1);
-        for (int64_t x = x_first; x <= x_last; x++)
+        for (int64_t x = x_first; x <= x_last; x++) {
+            const double across = gap(at.x, x) * gap(at.x, x);
+            if (across > most_cells) continue;
             for (int64_t y = std::max<int64_t>(own[1] - ring, 0); y <= std::min(own[1] + ring, count_[1] - 1);
                  y++) {
+                const double beside = across + gap(at.y, y) * gap(at.y, y);
+                if (beside > most_cells) continue;
                 const bool whole = std::abs(x - own[0]) == ring || std::abs(y - own[1]) == ring;
                 const int64_t step = whole || ring == 0 ? 1 : 2 * ring;
                 for (int64_t z = own[2] - ring; z <= own[2] + ring; z += step) {
                     if (z < 0 || z >= count_[2]) continue;
+                    if (beside + gap(at.z, z) * gap(at.z, z) > most_cells) continue;
                     const auto cell = static_cast<size_t>((x * count_[1] + y) * count_[2] + z);
                     for (uint32_t i = begin_[cell]; i < begin_[cell + 1]; i++) {
                         const WoodSample& s = samples_[i];
-                        const double distance = glm::distance(s.at.position, p) +
-                                                kThickPenalty * std::max(0.0, s.at.radius - slender_);
+                        const DVec3 off = s.at.position - p;
+                        const double square = glm::dot(off, off);
+                        if (square > most) continue;
+                        const double distance =
+                            std::sqrt(square) + kThickPenalty * std::max(0.0, s.at.radius - slender_);
                         if (distance > best_distance ||
                             (distance == best_distance && best && best->branch <= s.branch))
                             continue;
                         best = &s;
                         best_distance = distance;
+                        most = distance * distance * kSlack;
+                        most_cells = most / (cell_ * cell_) * kSlack + 1e-12;
                     }
                 }
             }
+        }
     }
     return best;
 }
