@@ -16,14 +16,13 @@ namespace {
 constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
 constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
 constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
-constexpr double kStubbiest = 0.15;        // of a widened twig's length: its radius at most
 constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
 constexpr double kCutRadius = 0.025;       // metres; no branch ends by itself so thick: those are cut flat
 constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
 constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
 constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
 constexpr double kHeightSlack = 1e-3;      // and over the tree's height
-constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings
+constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings, at level 0
 constexpr size_t kFewBranches = 256;       // are built sooner than threads start
 
 // Radians between rings at level 0, of branches of such a radius in metres: the eye rests on the stout ones.
@@ -103,6 +102,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
     const double slack = kAxisSlack * (1 << level);
+    const size_t most_left_out = kMostLeftOut << level;
     const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
         out.push_back({point.position, point.direction, std::max(point.radius, least), point.along,
@@ -131,7 +131,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
         for (size_t next = last + 1; next < points.size(); next++) {
             const AxisPoint& to = points[next];
             const bool near = points[best].along - from.along < gap;
-            const bool far = to.along - from.along > spacing_limit || next - last > kMostLeftOut;
+            const bool far = to.along - from.along > spacing_limit || next - last > most_left_out;
             const bool bent = glm::dot(from.direction, to.direction) < bend_limit;
             const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
             if (!near && (far || bent || changed || misses(last, next))) break;
@@ -158,10 +158,6 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     if (widened[index] == 0.0f) return;
     sample_axis(tree, list, branch, 2.0 * least, points);
     if (points.size() < 2) return;
-    // A short twig stays a twig, however many it stands for.
-    for (AxisPoint& point : points)
-        point.radius =
-            std::max(point.radius, std::min(point.radius * widened[index], kStubbiest * branch.length));
     size_t nearest = 0;
     for (NodeId id : list.nodes_of(branch)) {
         const DVec3 position = tree.node(id).position;
@@ -197,10 +193,11 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     if (!tube.foot) tube.flare = {};
     if (tube.foot) stretch_foot(tube.flare, out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
+    tube.foot_radius = points.front().radius;
     tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
     tube.cut = tube.round_tip && out.back().radius >= kCutRadius;
     tube.base = branch.attach == kNoNode && !tube.foot;
-    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius * widened[index];
+    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
     frame_rings(out.data() + tube.first_ring, tube.rings);
 }
@@ -283,6 +280,9 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
     });
     for (size_t i = 0; i < branches; i++)  // parents before children
         builder.seat(i);
+    if (options.level > 0)
+        for (size_t i = 0; i < branches; i++)
+            builder.widen(i);
     builder.for_all(progress, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++)
             builder.join(i);

@@ -13,7 +13,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kWidth = 0.0006;     // over the tree's height, at level 0
+constexpr double kWidth = 0.0004;     // over the tree's height, at level 0
 constexpr double kCoarsest = 16.0;    // a trunk of a few triangles
 constexpr double kStep = 1.0 / 64;    // between two levels that a budget tells apart
 constexpr double kWidestBark = 1.5;   // of a node's radius
@@ -49,7 +49,7 @@ LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t se
     for (NodeId id = 0; id < wood_.id_end(); id++)
         if (wood_.contains(id)) box_.add(wood_.node(id).position, kWidestBark * wood_.node(id).radius);
     if (!wood_.empty()) {
-        const double wider = level_width(box_.size().y, kMostLevels - 1);
+        const double wider = 2.0 * level_width(box_.size().y, kMostLevels - 1);
         box_.min -= wider;
         box_.max += wider;
         const Node& root = wood_.node(wood_.root());

@@ -3,9 +3,9 @@
 // All levels are of one skeleton and one set of leaves: everything random is used up before, so that they
 // have the same silhouette and, the wind being a function of the place, the same motion. Level k
 //   - has half the sides of level k - 1, and rings only where the axis bends by more than twice as much;
-//   - draws an even share of the twigs that are thinner than level_width(), as much wider (twig_shares.h),
-//   and
-//     none of those that are a small share of the tree's height; with them goes nothing that they bear:
+//   - draws an even share of the twigs that are thinner than level_width(), or short, and with a twig that is
+//     not drawn goes what it bears; what stays is as much wider, so that the bark covers as much of a
+//     picture as at level 0 (twig_shares.h, tube_widths.cpp);
 //   - leaves stay where level 0 puts them, 0.42 of those of level k - 1, as much larger about their middles
 //     (leaf_cards.h), and their cards have fewer triangles.
 // Wind channels and colours are functions of the place and the wood at level 0, so they are the same in all.
@@ -29,7 +29,7 @@ inline constexpr int kMostLevels = 5;
 
 // Metres: of a tree of such a height the width at which twigs begin to stand for others. At the distances
 // where levels are first seen (2.5, 6, 14 and 30 heights) a pixel of a picture of 1080 lines and 75 degrees
-// is about three times as wide. level: any number, doubles per level.
+// is about five times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
 
 struct TreeLevel {

@@ -37,6 +37,7 @@ struct Tube {
     bool cut = false;             // the tip is a cut face
     bool base = false;            // closed where it begins
     bool point = false;           // the last ring is only the apex
+    bool plug = false;            // closed where it begins by flat faces on its own corners
     double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
     double parent_radius = 0.0;   // metres, 0 for the trunk
     DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
@@ -44,6 +45,7 @@ struct Tube {
     RootFlare flare;              // of that trunk
     Collar collar;                // on its parent's bark
     size_t first_collar = 0;      // its vertices in the chunk
+    double foot_radius = 0.0;     // metres, of the wood where it starts; coarser levels only
     uint32_t host_ring = 0;       // of the parent, below where this one starts
     size_t first_vertex = 0;
     size_t first_index = 0;
@@ -55,7 +57,10 @@ struct Tube {
     size_t spans() const { return rows() - (collar.rows ? 2u : 1u); }
     size_t caps() const { return base ? sides + 2 : 0; }
     size_t vertices() const { return rings ? rows() * (sides + 1) + sides + caps() : 0; }
-    size_t indices() const { return rings ? spans() * sides * 6 + sides * 3 + (base ? sides * 3 : 0) : 0; }
+    size_t indices() const {
+        return rings ? spans() * sides * 6 + sides * 3 + (base ? sides * 3 : 0) + (plug ? (sides - 2) * 3 : 0)
+                     : 0;
+    }
 };
 
 // Everything that the tubes of one tree share.
@@ -69,8 +74,8 @@ struct Builder {
     std::vector<Tube> tubes;               // by branch
     std::vector<std::vector<Ring>> rings;  // by chunk of branches
     std::vector<std::vector<CollarVertex>> collars;  // by chunk of branches
-    const std::vector<float> widened;  // by branch: how many times its width it is drawn; 0: not at all
-    std::vector<float> node_along;     // by node id: metres along its branch's axis
+    std::vector<float> widened;     // by branch: how many times its width it is drawn; 0: not at all
+    std::vector<float> node_along;  // by node id: metres along its branch's axis
 
     Builder(const Tree& t, const TubeOptions& o)
         : tree(t),
@@ -110,6 +115,8 @@ struct Builder {
     void plan(size_t index, std::vector<AxisPoint>& points);
     void seat(size_t index);
     void join(size_t index);
+    // Coarser levels cover as much as level 0: see tube_widths.cpp.
+    void widen(size_t index);
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                     std::vector<Ring>& out) const;

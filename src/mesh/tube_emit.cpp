@@ -234,6 +234,9 @@ void Builder::emit(size_t index, Mesh& mesh) const {
         for (uint32_t corner : {a, a + 1, apexes + j})
             mesh.indices[at++] = corner;
     }
+    for (uint32_t j = 1; tube.plug && j + 1 < sides; j++)
+        for (const uint32_t corner : {base, base + j + 1, base + j})
+            mesh.indices[at++] = corner;
     for (uint32_t j = 0; tube.base && j < sides; j++) {
         const uint32_t a = base + rows * stride + j;
         for (uint32_t corner : {a + 1, a, base + rows * stride + stride})

@@ -13,6 +13,8 @@ const SIDE: int = 288
 const SKY: Color = Color(0.62, 0.72, 0.86)
 # A pixel that differs by less than this in all of its channels is not seen to change.
 const SEEN: float = 0.1
+# Pixels that the same level is moved by, to see how much of a change is that of thin things alone.
+const ASIDE: float = 0.5
 
 var _viewport: SubViewport
 var _camera: Camera3D
@@ -33,10 +35,10 @@ func _measure() -> void:
 	print(
 		(
 			"| tree | leaves | level | triangles | from, m | pixels of its height | changed pixels"
-			+ " of the screen | of the tree | silhouette | lightness |"
+			+ " of the screen | of the tree | silhouette | of itself | cover | lightness |"
 		)
 	)
-	print("|---|---|---|---|---|---|---|---|---|---|")
+	print("|---|---|---|---|---|---|---|---|---|---|---|---|")
 	for row: int in rows:
 		await _measure_tree(arguments[1 + 2 * row], arguments[2 + 2 * row], row)
 	if not arguments.is_empty() and not arguments[0].is_empty():
@@ -94,7 +96,7 @@ func _measure_tree(path: String, look: String, row: int) -> void:
 			"| %s | %s | %d | %d |" % [name, look, level, _instance.get_triangle_count()]
 		)
 		if level == 0:
-			print(line + " | | | | | |")
+			print(line + " | | | | | | | |")
 			continue
 		var away: float = switches[level - 1]
 		# As large as the tree is there, with room for the wind.
@@ -104,6 +106,7 @@ func _measure_tree(path: String, look: String, row: int) -> void:
 		var before: Image = await _picture(box, away, side)
 		await _show_level(0)
 		var finest: Image = await _picture(box, away, side)
+		var moved: Image = await _picture(box, away, side, ASIDE * _pixel(away))
 		await _show_level(level)
 		_blit_pair(before, now, level, row)
 		print(
@@ -111,7 +114,7 @@ func _measure_tree(path: String, look: String, row: int) -> void:
 				line
 				+ (
 					" %.0f | %.0f | %s |"
-					% [away, height / _pixel(away), " | ".join(_compare(finest, now))]
+					% [away, height / _pixel(away), " | ".join(_compare(finest, now, moved))]
 				)
 			)
 		)
@@ -128,7 +131,7 @@ func _pixel(away: float) -> float:
 	return 2.0 * away * tan(deg_to_rad(0.5 * FIELD)) / LINES
 
 
-func _picture(box: AABB, away: float, side: int) -> Image:
+func _picture(box: AABB, away: float, side: int, aside: float = 0.0) -> Image:
 	_viewport.size = Vector2i(side, side)
 	_camera.fov = rad_to_deg(2.0 * atan(0.5 * side * _pixel(away) / away))
 	if away < 2.0 * box.size.y:
@@ -136,6 +139,8 @@ func _picture(box: AABB, away: float, side: int) -> Image:
 	var way: Vector3 = Vector3(0.5, 0.12, 1.0).normalized()
 	_camera.position = box.get_center() + way * away
 	_camera.look_at(box.get_center())
+	_camera.h_offset = aside
+	_camera.v_offset = aside
 	_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	await RenderingServer.frame_post_draw
 	await RenderingServer.frame_post_draw
@@ -143,10 +148,12 @@ func _picture(box: AABB, away: float, side: int) -> Image:
 	return _viewport.get_texture().get_image()
 
 
-func _compare(before: Image, after: Image) -> PackedStringArray:
+func _compare(before: Image, after: Image, moved: Image) -> PackedStringArray:
 	var changed: int = 0
 	var covered: float = 0.0
+	var covered_after: float = 0.0
 	var outline: float = 0.0
+	var own_outline: float = 0.0
 	var light: float = 0.0
 	var light_before: float = 0.0
 	for y: int in before.get_height():
@@ -154,7 +161,9 @@ func _compare(before: Image, after: Image) -> PackedStringArray:
 			var a: Color = before.get_pixel(x, y)
 			var b: Color = after.get_pixel(x, y)
 			covered += a.a
+			covered_after += b.a
 			outline += absf(a.a - b.a)
+			own_outline += absf(a.a - moved.get_pixel(x, y).a)
 			var over: Color = _over_sky(a)
 			var now: Color = _over_sky(b)
 			light_before += over.get_luminance() - SKY.get_luminance()
@@ -168,6 +177,8 @@ func _compare(before: Image, after: Image) -> PackedStringArray:
 			"%.3f %%" % (100.0 * changed / SCREEN),
 			"%.0f %%" % (100.0 * changed / maxf(covered, 1.0)),
 			"%.0f %%" % (100.0 * outline / maxf(covered, 1.0)),
+			"%.0f %%" % (100.0 * own_outline / maxf(covered, 1.0)),
+			"%+.1f %%" % (100.0 * (covered_after / maxf(covered, 1.0) - 1.0)),
 			"%+.1f %%" % (100.0 * (light / light_before - 1.0)),
 		]
 	)

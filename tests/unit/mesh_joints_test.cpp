@@ -124,7 +124,8 @@ TEST(Joints, TubesAreClosedWhereTheyAreSeen) {
             size_t twice = 0, seen = 0, checked = 0;
             for (size_t i = 0; i < tubes.size(); i++) {
                 const std::vector<std::pair<uint32_t, uint32_t>> open = open_edges(mesh, tubes[i], twice);
-                ASSERT_FALSE(open.empty());
+                // What stands for many twigs is wider than its parent, and so closed itself.
+                ASSERT_TRUE(level > 0 || !open.empty());
                 for (const auto& [from, to] : open) {
                     ASSERT_EQ(mesh.colors[from].g, 0.0f);
                     ASSERT_EQ(mesh.colors[to].g, 0.0f);

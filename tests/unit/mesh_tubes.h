@@ -87,4 +87,17 @@ inline bool has_collar(const Mesh& mesh, const TubeRange& tube) {
     return next < tube.end_vertex && mesh.positions[end] == mesh.positions[next];
 }
 
+// A face that closes the start of a twig that stands for many, at coarser levels.
+inline bool is_plug(const Mesh& mesh, size_t face) {
+    for (size_t k = 0; k < 3; k++)
+        if (mesh.colors[mesh.indices[face + k]].g != 0.0f) return false;
+    return true;
+}
+
+inline bool has_plug(const Mesh& mesh, const TubeRange& tube) {
+    for (size_t i = tube.first_index; i < tube.end_index; i += 3)
+        if (is_plug(mesh, i)) return true;
+    return false;
+}
+
 }  // namespace treerec::test
