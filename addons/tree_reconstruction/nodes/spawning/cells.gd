@@ -58,6 +58,8 @@ var _shown: Array[Dictionary] = []
 var _queue: Array[Task] = []
 var _goners: Array[MultiMeshInstance3D] = []
 var _spare: Array[MultiMeshInstance3D] = []
+# Of the stand before: they have meshes that may not be there for long.
+var _old: Array[MultiMeshInstance3D] = []
 var _viewer: Vector3 = Vector3.INF
 
 
@@ -65,7 +67,10 @@ var _viewer: Vector3 = Vector3.INF
 func start(of: Stand, individuals: int) -> void:
 	for level: Dictionary in _shown:
 		for shown: Shown in level.values():
-			_goners.append_array(shown.parts.values())
+			_old.append_array(shown.parts.values())
+	_old.append_array(_goners + _spare)
+	_goners = []
+	_spare = []
 	_shown = []
 	_queue = []
 	_viewer = Vector3.INF
@@ -88,12 +93,13 @@ func clear() -> void:
 		for shown: Shown in level.values():
 			for part: MultiMeshInstance3D in shown.parts.values():
 				part.queue_free()
-	for part: MultiMeshInstance3D in _goners + _spare:
+	for part: MultiMeshInstance3D in _goners + _spare + _old:
 		part.queue_free()
 	_shown = []
 	_queue = []
 	_goners = []
 	_spare = []
+	_old = []
 	_viewer = Vector3.INF
 	stand = null
 	count = 0
@@ -147,9 +153,12 @@ func look_from(viewer: Vector3) -> void:
 ## Makes what is missing until [param deadline] (see [method Time.get_ticks_usec]); returns whether
 ## all is there.
 func work(deadline: int) -> bool:
-	while not (_queue.is_empty() and _goners.is_empty()):
+	while not is_done():
 		if Time.get_ticks_usec() >= deadline:
 			return false
+		if not _old.is_empty():
+			(_old.pop_back() as MultiMeshInstance3D).queue_free()
+			continue
 		if not _goners.is_empty():
 			_drop(_goners.pop_back())
 			continue
@@ -163,7 +172,7 @@ func work(deadline: int) -> bool:
 
 
 func is_done() -> bool:
-	return _queue.is_empty() and _goners.is_empty()
+	return _queue.is_empty() and _goners.is_empty() and _old.is_empty()
 
 
 ## All that is drawn, for tests.
@@ -316,6 +325,6 @@ func _drop(part: MultiMeshInstance3D) -> void:
 		part.queue_free()
 		return
 	part.visible = false
+	# It keeps its mesh: the renderer forgets none.
 	part.multimesh.instance_count = 0
-	part.multimesh.mesh = null
 	_spare.append(part)

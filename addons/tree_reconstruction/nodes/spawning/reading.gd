@@ -12,6 +12,8 @@ const _SHORT: int = 300
 
 var _plans: Array[Individual] = []
 var _steps: Array[Callable] = []
+# Whether the last step has read a file.
+var _has_read: bool = false
 # Kept until there is a material or an individual that has it.
 var _kept: Array[Resource] = []
 var _before: Array[Resource] = []
@@ -54,8 +56,9 @@ func poll() -> Array[Individual]:
 	var deadline: int = Time.get_ticks_usec() + _SHORT
 	while not _steps.is_empty():
 		var step: Callable = _steps.pop_front()
+		_has_read = false
 		step.call()
-		if Time.get_ticks_usec() >= deadline:
+		if _has_read or Time.get_ticks_usec() >= deadline:
 			return []
 	var done: Array[Individual] = _plans
 	_plans = []
@@ -78,6 +81,7 @@ func _open(path: String) -> void:
 
 
 func _read(path: String) -> void:
+	_has_read = not ResourceLoader.has_cached(path)
 	var made: Resource = load(path)
 	if made == null:
 		return
