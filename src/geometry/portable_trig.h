@@ -22,12 +22,24 @@ inline SineCosine portable_sine_cosine(double radians) {
     const double quarters = std::floor(radians * (1.0 / 1.5707963267948966) + 0.5);
     const double x = (radians - quarters * kQuarter) - quarters * kQuarterRest;
     const double y = x * x;
-    double s = 1.0, c = 1.0;
-    for (int n = 18; n >= 2; n -= 2) {
-        s = 1.0 - y / (n * (n + 1.0)) * s;
-        c = 1.0 - y / (n * (n - 1.0)) * c;
-    }
-    s *= x;
+    // Both series side by side: two divisions take as long as one, and none waits for another. The constants
+    // are whole, so the order of their products is no matter.
+    using Both = double __attribute__((vector_size(16)));
+    const Both squares{y, y};
+    const auto next = [&](double n, const Both& sum) {
+        return 1.0 - squares / Both{n * (n + 1.0), n * (n - 1.0)} * sum;
+    };
+    Both sums{1.0, 1.0};
+    sums = next(18.0, sums);
+    sums = next(16.0, sums);
+    sums = next(14.0, sums);
+    sums = next(12.0, sums);
+    sums = next(10.0, sums);
+    sums = next(8.0, sums);
+    sums = next(6.0, sums);
+    sums = next(4.0, sums);
+    sums = next(2.0, sums);
+    const double s = x * sums[0], c = sums[1];
     const double turn = quarters - 4.0 * std::floor(quarters * 0.25);
     if (turn == 1.0) return {c, -s};
     if (turn == 2.0) return {-s, -c};

@@ -46,7 +46,8 @@ class Random {
         const double z = uniform(-1.0, 1.0);
         const double angle = uniform(0.0, 2.0 * kPi);
         const double r = std::sqrt(1.0 - z * z);
-        return {r * portable::cos(angle), r * portable::sin(angle), z};
+        const SineCosine turn = portable_sine_cosine(angle);
+        return {r * turn.cosine, r * turn.sine, z};
     }
 
   private:
