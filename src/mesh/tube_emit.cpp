@@ -90,6 +90,8 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     Vec4 shades[kMostSides];
     for (uint32_t row = 0; row < tube.collar.rows; row++) {
         const bool foot = row == 0, as_host = foot || row == 2;
+        // Where the branch's picture meets its parent's: the bark's shader blends them.
+        const double sign = row == 1 || row == 2 ? -1.0 : 1.0;
         const CollarVertex* const corners = collar + row * stride;
         for (uint32_t j = 0; j < stride; j++) {
             const CollarVertex& from = corners[j];
@@ -109,7 +111,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
             }
             code = codes[column];
             put(from.position, from.normal, from.tangent, from.around,
-                repeats_of(as_host ? host : index, from.radius), from.v, from.radius, shades[column]);
+                repeats_of(as_host ? host : index, from.radius), from.v, sign * from.radius, shades[column]);
         }
     }
     // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.

@@ -131,7 +131,7 @@ TEST(Joints, TubesAreClosedWhereTheyAreSeen) {
                     ASSERT_EQ(mesh.colors[to].g, 0.0f);
                     if (i == 0) continue;  // the trunk's cut, below the ground
                     // Thin wood by the ten thousand takes too long.
-                    if (mesh.radii[to] < 0.004f && i % 8 != 0) continue;
+                    if (std::abs(mesh.radii[to]) < 0.004f && i % 8 != 0) continue;
                     const DVec3 middle = 0.5 * (DVec3(mesh.positions[from]) + DVec3(mesh.positions[to]));
                     bool hidden = false;
                     for (size_t k = 0; k < tubes.size() && !hidden; k++)
@@ -262,7 +262,7 @@ TEST(Joints, TheFootContinuesTheParentsBark) {
                 if (best > 0.02) continue;
                 feet++;
                 // Beyond the parent's seam the picture goes on, a round of it further.
-                const double round = 2.0 * kPi * mesh.radii[v] / options.bark_width;
+                const double round = 2.0 * kPi * std::abs(mesh.radii[v]) / options.bark_width;
                 double around = std::abs(uv.x - mesh.uvs[v].x);
                 around = std::min(around, std::abs(around - round));
                 jumps += std::max(around, std::abs(uv.y - mesh.uvs[v].y)) > 0.01;
@@ -306,8 +306,40 @@ TEST(Joints, TheBarksPictureHasOneScale) {
     }
 }
 
+// Where the branch's picture gives way to its parent's, the shader fades between them: there it is told so.
+TEST(Joints, WherePicturesMeetBothSidesAreMarked) {
+    size_t collars = 0;
+    for (const Sample& sample : all_samples()) {
+        SCOPED_TRACE(sample.name);
+        const Mesh mesh = build_branch_tubes(sample.tree);
+        size_t marks = 0;
+        for (const float radius : mesh.radii)
+            marks += radius < 0.0f;
+        for (const TubeRange& tube : tubes_of(mesh)) {
+            uint32_t end = tube.first_vertex;
+            while (mesh.colors[end].g == 0.0f)
+                end++;
+            const uint32_t stride = end - tube.first_vertex;
+            if (end + 2 * stride > tube.end_vertex || mesh.positions[end] != mesh.positions[end + stride])
+                continue;
+            collars++;
+            for (uint32_t v = end; v < end + stride; v++) {
+                EXPECT_EQ(mesh.positions[v], mesh.positions[v + stride]);
+                EXPECT_LT(mesh.radii[v], 0.0f);
+                EXPECT_LT(mesh.radii[v + stride], 0.0f);
+            }
+            ASSERT_GE(marks, 2 * stride) << "marks elsewhere";
+            marks -= 2 * stride;
+        }
+        EXPECT_EQ(marks, 0u) << "marks elsewhere";
+    }
+    EXPECT_GT(collars, 20u);
+}
+
 TEST(Joints, FarLevelsHaveNoCollars) {
     const Mesh mesh = build_branch_tubes(all_samples()[0].tree, {.level = 1});
+    for (const float radius : mesh.radii)
+        EXPECT_GE(radius, 0.0f);
     for (const TubeRange& tube : tubes_of(mesh)) {
         std::set<std::tuple<float, float, float>> places;
         uint32_t end = tube.first_vertex;

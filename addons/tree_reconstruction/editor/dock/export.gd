@@ -90,7 +90,7 @@ func _build() -> void:
 	body.add_child(lightmap)
 	collision = CheckBox.new()
 	collision.text = "With collision"
-	collision.tooltip_text = ("Adds a body along trunk and stout branches, of the node's kind of collision.")
+	collision.tooltip_text = "Adds a body along trunk and stout branches, as the node has it."
 	collision.button_pressed = true
 	body.add_child(collision)
 	bake = Widgets.button(
