@@ -4,19 +4,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 zip=$1
-passed=0
-failed=0
-check() {
-    local what=$1
-    shift
-    if "$@"; then
-        echo "ok      $what"
-        passed=$((passed + 1))
-    else
-        echo "FAILED  $what"
-        failed=$((failed + 1))
-    fi
-}
+. tests/tools/checks.sh
 
 work=$PWD/build/package/project
 rm -rf "$work"
@@ -76,5 +64,4 @@ engine --script res://visit.gd
 check 'the baked tree opens where there is no addon' grep -q '^visited$' "$log"
 ! grep -E '^(SCRIPT )?ERROR|Parse Error' "$log"
 check 'without errors there' [ $? = 0 ]
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish

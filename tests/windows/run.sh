@@ -3,19 +3,7 @@
 # with everything built for both. The last line is 'N passed, N failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
-passed=0
-failed=0
-check() {
-    local what=$1
-    shift
-    if "$@"; then
-        echo "ok      $what"
-        passed=$((passed + 1))
-    else
-        echo "FAILED  $what"
-        failed=$((failed + 1))
-    fi
-}
+. tests/tools/checks.sh
 
 work=$PWD/build/windows
 rm -rf "$work/here" "$work/there"
@@ -89,5 +77,4 @@ for file in scan.ply made.glb made.obj made.mtl made.txt flood.ply made.lstring;
 done
 tail -n 3 "$work/there/log"
 
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+finish
