@@ -20,6 +20,8 @@ func _film() -> void:
 	change_scene_to_file("res://scenes/%s.tscn" % name)
 	await process_frame
 	await process_frame
+	# The controls are made for a larger window.
+	root.content_scale_factor = 0.6
 	_scene = current_scene
 	await _settle()
 	match name:
@@ -30,6 +32,8 @@ func _film() -> void:
 		"felling":
 			await _felling()
 		_:
+			# It is strolled through by itself.
+			(_scene.get_node(^"Panel") as CanvasItem).hide()
 			await _keep(48)
 	quit()
 
@@ -51,17 +55,19 @@ func _one_tree() -> void:
 
 
 func _scan_and_tree() -> void:
+	_slide("Points", 1.5)
 	for step: int in 40:
 		_slide("Line", 0.5 - 0.35 * sin(TAU * step / 40.0))
 		await _keep(1)
 
 
+# The one that stands nearest, at its foot, then the one in the middle, higher up.
 func _felling() -> void:
-	await _keep(4)
-	await _cut(1, 0.12)
-	await _keep(26)
-	await _cut(2, 0.35)
-	await _keep(22)
+	await _keep(3)
+	await _cut(3, 0.08)
+	await _keep(44)
+	await _cut(2, 0.3)
+	await _keep(32)
 
 
 func _cut(number: int, share: float) -> void:
