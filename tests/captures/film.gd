@@ -31,10 +31,6 @@ func _film() -> void:
 			await _scan_and_tree()
 		"felling":
 			await _felling()
-		_:
-			# It is strolled through by itself.
-			(_scene.get_node(^"Panel") as CanvasItem).hide()
-			await _keep(48)
 	quit()
 
 
@@ -118,6 +114,4 @@ func _settle() -> void:
 		quiet += 1
 		for node: Node in _scene.find_children("*", "Node3D", true, false):
 			if node is TreeInstance3D and (node as TreeInstance3D).is_rebuilding():
-				quiet = 0
-			elif node is TreeVariantSpawner3D and (node as TreeVariantSpawner3D).is_building():
 				quiet = 0

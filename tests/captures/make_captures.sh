@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Films the scenes of the demo project for README: docs/captures/NAME.webp, some seconds each. Run './dev demo' before,
-# on a machine that does nothing else; then, with GODOT naming the engine,
+# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each. (The forest is too much for
+# a software rasterizer; docs/game/forest.jpg is one picture of it.) Run './dev demo' before,
+# on a machine that does nothing else; then, with GODOT naming the engine and img2webp (Debian's package webp) at hand,
 #
 #   tests/captures/make_captures.sh [NAME…]
 set -euo pipefail
@@ -10,13 +11,14 @@ mkdir -p docs/captures
 frames=$(mktemp -d)
 trap 'rm -rf "$frames"' EXIT
 
-for name in "${@:-one_tree scan_and_tree forest felling}"; do
+for name in "${@:-one_tree scan_and_tree felling}"; do
     for scene in $name; do
         rm -f "$frames"/*
         # A fixed rate: what moves moves by a frame's time in each picture, however long it takes to draw.
         xvfb-run -a -s '-screen 0 640x360x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
             --resolution 640x360 --fixed-fps 12 --script "$PWD/tests/captures/film.gd" -- "$scene" "$frames"
-        convert -delay 8 "$frames"/*.png -define webp:method=5 -quality 62 -loop 0 "docs/captures/$scene.webp"
+        # A whole picture now and then: what is left out of the others as too faint would add up.
+        img2webp -loop 0 -kmin 3 -kmax 6 -lossy -q 62 -m 5 -d 83 "$frames"/*.png -o "docs/captures/$scene.webp"
         echo "docs/captures/$scene.webp: $(($(stat -c %s "docs/captures/$scene.webp") / 1024)) kB"
     done
 done
