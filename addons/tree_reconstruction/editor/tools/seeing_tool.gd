@@ -23,6 +23,8 @@ var _ghosts: Array = []
 # What would be done, in a sentence.
 var _hint: String = ""
 var _refused: bool = false
+# Where that stands.
+var _sentence_box: Rect2
 # The command that was shown last, if it can be done, and what it would change.
 var _foreseen: Array = []
 
@@ -33,6 +35,7 @@ func is_held() -> bool:
 
 
 func draw(overlay: Control) -> void:
+	_sentence_box = Rect2()
 	if _hint.is_empty() or not is_seen_on(overlay):
 		return
 	var font: Font = overlay.get_theme_default_font()
@@ -53,9 +56,14 @@ func draw(overlay: Control) -> void:
 	if at.y + box.y > overlay.size.y:
 		at.y = origin.y - 24.0 * scale - box.y
 	at = at.min(overlay.size - box - Vector2.ONE * 4.0 * scale).max(Vector2.ONE * 4.0 * scale)
-	overlay.draw_rect(Rect2(at, box), Color(0.06, 0.06, 0.07, 0.78))
+	_sentence_box = Rect2(at, box)
+	overlay.draw_rect(_sentence_box, Color(0.06, 0.06, 0.07, 0.78))
 	var color: Color = Color(1.0, 0.72, 0.6) if _refused else Color(0.95, 0.95, 0.95)
 	text.draw(overlay.get_canvas_item(), at + border, color)
+
+
+func get_sentence_box() -> Rect2:
+	return _sentence_box
 
 
 func get_ghosts() -> Array:

@@ -62,6 +62,11 @@ func draw(_overlay: Control) -> void:
 	pass
 
 
+## Where the last [method draw] has written; empty if nowhere.
+func get_sentence_box() -> Rect2:
+	return Rect2()
+
+
 ## Surface arrays of lines in the tree's space, to be drawn translucently over it: what a click
 ## would do.
 func get_ghosts() -> Array:

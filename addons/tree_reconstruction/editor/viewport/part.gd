@@ -109,9 +109,11 @@ func draw_over(overlay: Control) -> void:
 	_axes.draw(overlay, camera, _picker)
 	if not _session.view.editing or _actions.turntable.is_turning():
 		return
-	_overlay.draw(overlay, camera, _picker, camera == _router.camera)
+	var taken: Rect2 = Rect2()
 	if _session.tool != null:
 		_session.tool.call(&"draw", overlay)
+		taken = _session.tool.call(&"get_sentence_box")
+	_overlay.draw(overlay, camera, _picker, camera == _router.camera, taken)
 
 
 # --- making and unmaking --------------------------------------------------------------------------
