@@ -4,6 +4,7 @@
 
 #include <godot_cpp/core/class_db.hpp>
 
+#include "geometry/parallel.h"
 #include "l_system.h"
 #include "leaf_rule.h"
 #include "tree_edit.h"
@@ -59,7 +60,11 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
     }
 }
 
-void terminate_tree_reconstruction(ModuleInitializationLevel) {}
+void terminate_tree_reconstruction(ModuleInitializationLevel p_level) {
+    if (p_level == MODULE_INITIALIZATION_LEVEL_SCENE) {
+        treerec::end_idle_threads();
+    }
+}
 
 extern "C" GDExtensionBool GDE_EXPORT tree_reconstruction_library_init(
     GDExtensionInterfaceGetProcAddress p_get_proc_address, GDExtensionClassLibraryPtr p_library,

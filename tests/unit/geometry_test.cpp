@@ -64,5 +64,47 @@ TEST(ParallelFor, PassesAnExceptionOn) {
     EXPECT_LT(calls, 1000);
 }
 
+TEST(ParallelFor, RunsLoopsInsideOfLoopsOfManyThreadsAtOnce) {
+    set_thread_count(3);
+    std::atomic<int> sum{0}, caught{0};
+    std::vector<std::thread> callers;
+    for (int caller = 0; caller < 4; caller++)
+        callers.emplace_back([&, caller] {
+            for (int round = 0; round < 200; round++)
+                try {
+                    parallel_for(5, 1, [&](size_t outer, size_t) {
+                        parallel_for(100, 7, [&](size_t begin, size_t end) {
+                            if (caller == 0 && outer == 2 && begin > 50) throw Error("in the middle");
+                            sum += static_cast<int>(end - begin);
+                        });
+                    });
+                } catch (const Error&) {
+                    caught++;
+                }
+        });
+    for (std::thread& caller : callers)
+        caller.join();
+    EXPECT_EQ(caught, 200);
+    EXPECT_GE(sum, 3 * 200 * 500);
+    set_thread_count(0);
+}
+
+TEST(ParallelFor, GoesOnAfterItsThreadsHaveEnded) {
+    set_thread_count(4);
+    std::atomic<bool> done{false};
+    std::thread ending([&] {
+        while (!done)
+            end_idle_threads();
+    });
+    for (int round = 0; round < 300; round++) {
+        std::atomic<int> sum{0};
+        parallel_for(64, 1, [&](size_t begin, size_t) { sum += static_cast<int>(begin); });
+        EXPECT_EQ(sum, 64 * 63 / 2);
+    }
+    done = true;
+    ending.join();
+    set_thread_count(0);
+}
+
 }  // namespace
 }  // namespace treerec
