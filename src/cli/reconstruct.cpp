@@ -221,25 +221,23 @@ void run_reconstruct(const std::vector<std::string>& words) {
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    SubProgress reconstructing(&progress, 0.0, 0.88), scoring(&progress, 0.88, 0.9);
+    SubProgress reconstructing(&progress, 0.0, 0.88), scoring(&progress, 0.9, 0.95);
     Reconstruction result = reconstruct_tree(scan, options, &reconstructing);
     details.leaves = chosen_leaves(details.leaves, result);
     exports.leaves = suited_leaves(details.leaves, result);
     exports.textures = details.leaves;
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
-    // What is to be written is made while the tree is scored.
+    exporter.prepare(outs);
+    if (!outs.empty()) progress.update(0.9, "Writing");
+    // Writing waits for the disk, and leaves a core to the score.
     parallel_for(2, 1, [&](size_t part, size_t) {
-        if (part == 0)
-            exporter.prepare(outs);
-        else
-            score_reconstruction(result, options, &scoring);
+        if (part == 1) return score_reconstruction(result, options, &scoring);
+        for (const std::string& out : outs) {
+            progress.check();
+            exporter.write(out);
+        }
     });
-    for (size_t i = 0; i < outs.size(); i++) {
-        progress.check();
-        progress.update(0.9 + 0.05 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
-        exporter.write(outs[i]);
-    }
     progress.check();
     if (arguments.has("--report")) {
         details.triangles = exporter.triangles();

@@ -37,6 +37,9 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
     mesh.indices.resize(leaves.size() * card_indices);
+    std::vector<uint8_t> turned_alike(corners, 0);  // by corner: it faces as the one before it does
+    for (size_t k = 1; k < corners; k++)
+        turned_alike[k] = card.normals[k] == card.normals[k - 1] && card.tangents[k] == card.tangents[k - 1];
     parallel_for(leaves.size(), 1024, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         for (size_t i = begin; i < end; i++) {
@@ -45,6 +48,13 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
             for (size_t k = 0; k < corners; k++) {
                 const size_t v = i * corners + k;
                 mesh.positions[v] = leaf.position + turn * card.positions[k] * leaf.size;
+                mesh.uvs[v] = card.uvs[k];
+                mesh.colors[v] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
+                if (turned_alike[k]) {
+                    mesh.normals[v] = mesh.normals[v - 1];
+                    mesh.tangents[v] = mesh.tangents[v - 1];
+                    continue;
+                }
                 const Vec3 flat = turn * card.normals[k];
                 const Vec3 normal = flat * (1.0f - kRoundness) + leaf.outward * kRoundness;
                 const float length = glm::length(normal);
@@ -57,8 +67,6 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
                     Vec4(tangent_length > 1e-3f ? tangent / tangent_length
                                                 : glm::normalize(glm::cross(leaf.y, mesh.normals[v])),
                          1.0f);
-                mesh.uvs[v] = card.uvs[k];
-                mesh.colors[v] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
             }
             for (size_t k = 0; k < card_indices; k++)
                 mesh.indices[i * card_indices + k] = static_cast<uint32_t>(i * corners) + card.indices[k];
