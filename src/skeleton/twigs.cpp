@@ -20,11 +20,15 @@ constexpr int kStumpSteps = 12;      // stations back that the end of thick wood
 constexpr double kStumpEnd = 1.5;    // radii: so long it is
 constexpr double kGapFactor = 3.0;   // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
-constexpr double kMostMove = 0.003;   // metres: about a twig's radius, so that its points stay on its bark
-constexpr double kSharpest = 0.0;     // cosine of the sharpest turn of a twig
-constexpr double kFoot = 4.0;         // radii of the stem: up there roots and ground lie around it, and
-constexpr double kFootEscape = 4.0;   // what reaches less far out is one of them
-constexpr size_t kLeastPoints = 3;    // of a twig on measured wood: where that is seen, so are its twigs
+constexpr double kMostMove = 0.003;  // metres: about a twig's radius, so that its points stay on its bark
+constexpr double kSharpest = 0.0;    // cosine of the sharpest turn of a twig
+constexpr double kFoot = 4.0;        // radii of the stem: up there roots and ground lie around it, and
+constexpr double kFootEscape = 4.0;  // what reaches less far out is one of them
+constexpr size_t kLeastPoints = 3;   // of a twig on measured wood: where that is seen, so are its twigs
+constexpr size_t kShootPoints = 4;   // of a short shoot; fewer may be strays
+constexpr double kShortest = 0.7;    // of the shortest branch, where that many points show a shoot
+constexpr double kShootLength =
+    1.07;  // of it, that a shoot has from the parent's axis on: simplification takes some
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
 constexpr float kGather = 0.5f;       // point spacings: points so near to a path are one with it
@@ -220,12 +224,13 @@ class TwigFinder {
         std::vector<Station> line = smooth_line(axes_[parent][twig.attach].position);
         twig.attach = fork_station(axes_[parent], twig.attach, line);
         straighten(line, axes_[parent][twig.attach].position);
-        double length = glm::distance(axes_[parent][twig.attach].position, line.front().position);
+        double outer = 0.0;
         for (size_t i = 1; i < line.size(); i++)
-            length += glm::distance(line[i].position, line[i - 1].position);
+            outer += glm::distance(line[i].position, line[i - 1].position);
         for (const uint32_t v : near_)
             nearest_[v] = -1;
-        if (length < 1.01 * options_.minimum_branch) return;
+        twig.attach = long_enough(axes_[parent], twig.attach, line.front().position, outer);
+        if (twig.attach < 0) return;
         if (axes_[parent][twig.attach].measured && near_.size() < kLeastPoints) return;
 
         const int32_t index = static_cast<int32_t>(limbs_.size());
@@ -273,6 +278,25 @@ class TwigFinder {
             if (i > 0) back += glm::distance(parent[i].position, parent[i - 1].position);
         }
         return best;
+    }
+
+    // Where on the parent a twig leaves that is `outer` metres long from its first station on; -1 for none,
+    // if it is too short. A short shoot that several points show is wood all the same, and nobody sees how it
+    // runs under the bark: it leaves the axis as much further back as makes it a branch.
+    int32_t long_enough(const std::vector<Station>& parent, int32_t attach, const DVec3& first,
+                        double outer) const {
+        const auto length = [&](int32_t from) { return glm::distance(parent[from].position, first) + outer; };
+        const double found = length(attach);
+        if (found >= 1.01 * options_.minimum_branch) return attach;
+        if (near_.size() < kShootPoints || found < kShortest * options_.minimum_branch) return -1;
+        double back = 0.0;
+        while (length(attach) < kShootLength * options_.minimum_branch) {
+            // Further back than it is long, it would lie along its parent.
+            if (attach == 0 || parent[attach].bridged || back >= found) return -1;
+            back += glm::distance(parent[attach].position, parent[attach - 1].position);
+            attach--;
+        }
+        return attach;
     }
 
     // Takes out the stations where the twig would turn sharply.

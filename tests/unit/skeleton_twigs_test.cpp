@@ -46,6 +46,34 @@ TEST(Twigs, ASingleFileOfPointsIsATwig) {
     EXPECT_EQ(tips(result.tree), 2u);
 }
 
+// Shorter than the shortest branch: what many points show is wood, what two points show may be anything.
+TEST(Twigs, AShortShootIsATwigIfManyPointsShowIt) {
+    for (const int count : {2, 12}) {
+        PointCloud cloud;
+        Random random(10);
+        add_cone(cloud, random, {0, 0, 0}, {0, 1, 0}, 0.006, 0.004, 0.003, 0.0005);
+        for (int i = 1; i <= count; i++)
+            cloud.positions.emplace_back(0.005 + 0.038 * i / count, 0.5 + 0.01 * i / count, 0.0);
+        const SkeletonResult result = skeletonize(cloud, {});
+        ASSERT_EQ(result.tree.check(), std::nullopt);
+        EXPECT_EQ(tips(result.tree), count > 2 ? 2u : 1u) << count;
+        if (count == 2) continue;
+        // From the last fork on, it is a branch.
+        double shortest = 1e9;
+        for (NodeId tip : result.tree.nodes_of_kind(NodeKind::kLeaf)) {
+            double length = 0.0;
+            for (NodeId id = tip; result.tree.node(id).parent != kNoNode; id = result.tree.node(id).parent) {
+                const NodeId parent = result.tree.node(id).parent;
+                length += glm::distance(result.tree.node(id).position, result.tree.node(parent).position);
+                const NodeId first = result.tree.node(parent).first_child;
+                if (result.tree.node(first).next_sibling != kNoNode) break;
+            }
+            shortest = std::min(shortest, length);
+        }
+        EXPECT_GE(shortest, 0.05);
+    }
+}
+
 TEST(Twigs, TwoStrayPointsOnAStemAreNone) {
     PointCloud cloud = stem(9, 0.002);
     cloud.positions.emplace_back(0.135, 1.0, 0.0);
