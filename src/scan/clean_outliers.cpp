@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "geometry/cell_grid.h"
-#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/point_tree.h"
 #include "scan/clean_steps.h"
 #include "scan/robust.h"
 
@@ -27,7 +27,7 @@ class Neighbours {
         : points_(points),
           count_(count),
           progress_(progress),
-          tree_(points),
+          tree_(points, progress),
           distance_(points.size(), -1.0F) {}
 
     // which: distinct indices.
@@ -65,7 +65,7 @@ class Neighbours {
     const std::vector<Vec3>& points_;
     size_t count_;
     const Progress* progress_;
-    KdTree tree_;
+    PointTree tree_;
     std::vector<float> distance_;
 };
 

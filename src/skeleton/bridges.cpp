@@ -12,15 +12,15 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kGrain = 2048;        // points between two looks at the cancel flag
-constexpr float kLonger = 3.0f;        // times the shortest link: the links that are compared
-constexpr size_t kNearStarts = 4;      // of them: the shortest,
-constexpr size_t kEndStarts = 8;       // and those from the part's end
-constexpr size_t kPartsPerTask = 8;    // of parallel work
-constexpr uint32_t kSampled = 7;       // one of so many points
-constexpr size_t kLeastPart = 40;      // points: a smaller part runs nowhere
-constexpr size_t kLargePart = 200;     // points: of a larger part,
-constexpr uint32_t kOfLargePart = 3;   // only one of so many is looked at
+constexpr size_t kGrain = 256;     // points between two looks at the cancel flag
+constexpr float kLonger = 3.0f;    // times the shortest link: the links that are compared
+constexpr size_t kNearStarts = 4;  // of them: the shortest,
+constexpr size_t kEndStarts = 8;   // and those from the part's end
+constexpr uint32_t kMixed = std::numeric_limits<uint32_t>::max();  // no part: points of several
+constexpr uint32_t kSampled = 7;                                   // one of so many points
+constexpr size_t kLeastPart = 40;                                  // points: a smaller part runs nowhere
+constexpr size_t kLargePart = 200;                                 // points: of a larger part,
+constexpr uint32_t kOfLargePart = 3;                               // only one of so many is looked at
 constexpr double kAround = 2.0;        // link lengths: the wood that tells the direction
 constexpr double kLeastAround = 12.0;  // points
 constexpr double kElongated = 3.0;     // variance along over variance across: a direction that can be trusted
@@ -32,18 +32,68 @@ struct Link {
     uint32_t to;
 };
 
-// For KdTree::search(): the nearest point of another part.
+// For PointTree::search(): the nearest point of another part; of equals the first.
 struct NearestOutside {
     const std::vector<uint32_t>& part;
     uint32_t own;
     float best;  // squared metres
-    uint32_t index;
+    uint32_t index = 0;
 
     float limit() const { return best; }
     void add(float distance, uint32_t candidate) {
-        if (part[candidate] == own || distance >= best) return;
+        if (part[candidate] == own || (distance == best && candidate >= index)) return;
+        if (distance > best) return;
         best = distance;
         index = candidate;
+    }
+};
+
+// The points of one part nearer than a distance.
+struct Inside {
+    const std::vector<uint32_t>& part;
+    uint32_t own;
+    float squared;  // metres
+    std::vector<uint32_t>& found;
+
+    float limit() const { return squared; }
+    void add(float distance, uint32_t v) {
+        if (distance < squared && part[v] == own) found.push_back(v);
+    }
+};
+
+// Where the wood around a link's start runs: a line through `middle`, or no direction.
+struct Run {
+    DVec3 middle{0.0};
+    DVec3 axis{0.0};
+    bool known = false;
+};
+
+// The cheapest link from a point to another part: its length in metres, the more the further it turns aside.
+struct Straightest {
+    const std::vector<Vec3>& points;
+    const std::vector<uint32_t>& part;
+    const Run& run;
+    uint32_t from;
+    float longest;  // squared metres
+    double least;   // cost, of `best` or of a link from elsewhere
+    Link best;
+
+    // No link costs less than its length.
+    float limit() const { return static_cast<float>(std::min<double>(longest, 1.0001 * least * least)); }
+    void add(float squared, uint32_t to) {
+        if (part[to] == part[from] || squared >= longest) return;
+        double aside = 0.5;  // of the way
+        if (run.known) {
+            const DVec3 way = DVec3(points[to]) - run.middle;
+            const double ahead = std::abs(glm::dot(way, run.axis));
+            const double off = std::sqrt(std::max(0.0, glm::dot(way, way) - ahead * ahead));
+            aside = off / (ahead + off);
+        }
+        const double cost = std::sqrt(squared) * (1.0 + kAsideWeight * aside);
+        const bool first = squared != best.squared ? squared < best.squared : to < best.to;
+        if (cost > least || (cost == least && !(best.from == from && first))) return;
+        least = cost;
+        best = {squared, from, to};
     }
 };
 
@@ -61,7 +111,7 @@ void join(std::vector<uint32_t>& leader, uint32_t a, uint32_t b) {
 
 class Bridges {
   public:
-    Bridges(const std::vector<Vec3>& points, const KdTree& tree)
+    Bridges(const std::vector<Vec3>& points, const PointTree& tree)
         : points_(points), tree_(tree), leader_(points.size()), part_(points.size()) {
         std::iota(leader_.begin(), leader_.end(), 0u);
     }
@@ -70,27 +120,32 @@ class Bridges {
         for (const auto& [a, b] : edges)
             join(leader_, a, b);
         while (number_parts()) {
+            std::vector<uint32_t> outside;
+            for (uint32_t v = 0; v < points_.size(); v++)
+                if (part_[v] != largest_ && (v % kSampled == 0 || looked_at(v))) outside.push_back(v);
+            std::vector<Link> nearest(outside.size());
+            const auto link_all = [&](const auto& most_of) {
+                parallel_for(outside.size(), kGrain, [&](size_t begin, size_t end) {
+                    progress.check();
+                    for (size_t i = begin; i < end; i++)
+                        nearest[i] = nearest_outside(outside[i], most_of(outside[i]));
+                });
+            };
             // A few points of each part tell how far it is at most to the next.
             std::vector<Link> shortest(points_.size(), {std::numeric_limits<float>::infinity(), 0, 0});
-            for (uint32_t v = 0; v < points_.size(); v++) {
-                if (part_[v] == largest_ || v % kSampled != 0) continue;
-                Link& best = shortest[part_[v]];
-                const Link link = nearest_outside(v, best.squared);
-                if (link.squared < best.squared) best = link;
-            }
+            link_all(
+                [](uint32_t v) { return v % kSampled == 0 ? std::numeric_limits<float>::infinity() : 0.0F; });
+            for (const Link& link : nearest)
+                if (link.squared < shortest[part_[link.from]].squared && link.from != link.to)
+                    shortest[part_[link.from]] = link;
             // Then all: the link to the nearest other part, where that may count.
-            std::vector<Link> nearest(points_.size());
-            parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
-                progress.check();
-                for (size_t v = begin; v < end; v++)
-                    if (part_[v] != largest_ && looked_at(static_cast<uint32_t>(v)))
-                        nearest[v] = nearest_outside(static_cast<uint32_t>(v),
-                                                     1.0001f * longer(part_[v]) * shortest[part_[v]].squared);
+            link_all([&](uint32_t v) {
+                return looked_at(v) ? 1.0001F * longer(part_[v]) * shortest[part_[v]].squared : 0.0F;
             });
             std::vector<Link> links;
-            for (uint32_t v = 0; v < points_.size(); v++) {
-                const Link& link = nearest[v];
-                if (part_[v] == largest_ || link.from == link.to) continue;
+            for (const Link& link : nearest) {
+                const uint32_t v = link.from;
+                if (link.from == link.to) continue;
                 if (link.squared < shortest[part_[v]].squared) shortest[part_[v]] = link;
                 if (members_[part_[v]] >= kLeastPart) links.push_back(link);
             }
@@ -109,7 +164,7 @@ class Bridges {
                     next++;
                 parts.push_back({part, {links.data() + begin, next - begin}, shortest[part]});
             }
-            parallel_for(parts.size(), kPartsPerTask, [&](size_t begin, size_t end) {
+            parallel_for(parts.size(), 1, [&](size_t begin, size_t end) {
                 progress.check();
                 for (size_t i = begin; i < end; i++)
                     choose(parts[i]);
@@ -146,9 +201,16 @@ class Bridges {
                               const float to_b = glm::distance(points_[b.from], middle);
                               return to_a != to_b ? to_a > to_b : a.from < b.from;
                           });
-        std::vector<std::pair<uint32_t, float>> around;
-        for (const Link& link : links.first(all))
-            straightest(link, longest, around, least, of_part.best);
+        std::vector<uint32_t> around;
+        for (const Link& link : links.first(all)) {
+            const Run run = run_around(link, around);
+            const float radius = static_cast<float>(longest);
+            Straightest straightest{points_, part_, run, link.from, radius * radius, least, of_part.best};
+            tree_.search(points_[link.from], straightest,
+                         [&](uint32_t node) { return part_of_node_[node] != of_part.part; });
+            least = straightest.least;
+            of_part.best = straightest.best;
+        }
     }
 
     // False where only one part is left.
@@ -161,7 +223,18 @@ class Bridges {
         }
         largest_ =
             static_cast<uint32_t>(std::max_element(members_.begin(), members_.end()) - members_.begin());
-        return members_[largest_] < points_.size();
+        if (members_[largest_] == points_.size()) return false;
+        // A node whose points are all of one part is passed over by who looks for another one.
+        part_of_node_.resize(tree_.node_count());
+        const auto all_in = [&](std::span<const uint32_t> members, const std::vector<uint32_t>& part) {
+            const bool one = std::all_of(members.begin(), members.end(),
+                                         [&](uint32_t m) { return part[m] == part[members.front()]; });
+            return one ? part[members.front()] : kMixed;
+        };
+        for (size_t node = 0; node < tree_.node_count(); node++)
+            part_of_node_[node] = node < tree_.group_count() ? all_in(tree_.in_group(node), part_)
+                                                             : all_in(tree_.in_block(node), part_of_node_);
+        return true;
     }
 
     // Of a large part, some points do for all.
@@ -169,38 +242,34 @@ class Bridges {
 
     // A link from v to itself where no other part is nearer than `most` (squared metres).
     Link nearest_outside(uint32_t v, float most) const {
-        NearestOutside nearest{part_, part_[v], most, v};
-        tree_.search(points_[v], nearest);
-        return {nearest.best, v, nearest.index};
+        const uint32_t own = part_[v];
+        NearestOutside nearest{part_, own, most};
+        if (most > 0.0F)
+            tree_.search(points_[v], nearest, [&](uint32_t node) { return part_of_node_[node] != own; });
+        return {nearest.best, v, nearest.best < most ? nearest.index : v};
     }
 
     // Squared lengths, times the shortest: the links of a part that are compared. A few points run nowhere:
     // of their links, the shortest is the best.
     float longer(uint32_t part) const { return members_[part] < kLeastPart ? 1.0f : kLonger * kLonger; }
 
-    // Where the wood around a link's start runs: a line through `middle`, or no direction.
-    struct Run {
-        DVec3 middle{0.0};
-        DVec3 axis{0.0};
-        bool known = false;
-    };
-
     // around: scratch.
-    Run run_around(const Link& link, std::vector<std::pair<uint32_t, float>>& around) const {
+    Run run_around(const Link& link, std::vector<uint32_t>& around) const {
         const float radius = static_cast<float>(kAround) * std::sqrt(link.squared);
-        tree_.within(points_[link.from], radius * radius, around);
+        const uint32_t own = part_[link.from];
+        around.clear();
+        Inside inside{part_, own, radius * radius, around};
+        tree_.search(points_[link.from], inside, [&](uint32_t node) {
+            return part_of_node_[node] == own || part_of_node_[node] == kMixed;
+        });
         Run run;
-        double count = 0.0;
-        for (const auto& [v, distance] : around) {
-            if (part_[v] != part_[link.from]) continue;
-            run.middle += DVec3(points_[v]);
-            count += 1.0;
-        }
+        const double count = static_cast<double>(around.size());
         if (count < kLeastAround) return run;
+        for (const uint32_t v : around)
+            run.middle += DVec3(points_[v]);
         run.middle /= count;
         DMat3 covariance(0.0);
-        for (const auto& [v, distance] : around) {
-            if (part_[v] != part_[link.from]) continue;
+        for (const uint32_t v : around) {
             const DVec3 d = DVec3(points_[v]) - run.middle;
             covariance += glm::outerProduct(d, d);
         }
@@ -214,43 +283,19 @@ class Bridges {
         return run;
     }
 
-    // Takes the cheapest link from the start of `link` that is at most `longest` metres long, if it costs
-    // less than `least`: its length in metres, the more the further it turns aside.
-    void straightest(const Link& link, double longest, std::vector<std::pair<uint32_t, float>>& around,
-                     double& least, Link& best) const {
-        const Run run = run_around(link, around);
-        const float radius = static_cast<float>(longest);
-        tree_.within(points_[link.from], radius * radius, around);
-        for (const auto& [to, squared] : around) {
-            if (part_[to] == part_[link.from]) continue;
-            const double length = std::sqrt(squared);
-            if (length >= least) break;
-            double aside = 0.5;  // of the way
-            if (run.known) {
-                const DVec3 way = DVec3(points_[to]) - run.middle;
-                const double ahead = std::abs(glm::dot(way, run.axis));
-                const double off = std::sqrt(std::max(0.0, glm::dot(way, way) - ahead * ahead));
-                aside = off / (ahead + off);
-            }
-            const double cost = length * (1.0 + kAsideWeight * aside);
-            if (cost >= least) continue;
-            least = cost;
-            best = {squared, link.from, to};
-        }
-    }
-
     const std::vector<Vec3>& points_;
-    const KdTree& tree_;
+    const PointTree& tree_;
     std::vector<uint32_t> leader_;
     std::vector<uint32_t> part_;
-    std::vector<uint32_t> members_;  // by part
-    std::vector<DVec3> middle_;      // by part: the sum of its points
+    std::vector<uint32_t> members_;       // by part
+    std::vector<DVec3> middle_;           // by part: the sum of its points
+    std::vector<uint32_t> part_of_node_;  // of tree_
     uint32_t largest_ = 0;
 };
 
 }  // namespace
 
-void bridge_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vector<PointEdge>& edges,
+void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, std::vector<PointEdge>& edges,
                   Progress& progress) {
     Bridges(points, tree).add(edges, progress);
 }

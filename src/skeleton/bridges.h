@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/kd_tree.h"
+#include "geometry/point_tree.h"
 #include "progress.h"
 
 namespace treerec {
@@ -16,7 +16,7 @@ using PointEdge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
 // another one, again and again until one part is left (Boruvka's algorithm): not by the shortest edge of all,
 // but by one of the shortest that best continues the wood that it comes from, since a branch goes on beyond a
 // gap as it did before. tree: over points.
-void bridge_parts(const std::vector<Vec3>& points, const KdTree& tree, std::vector<PointEdge>& edges,
+void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, std::vector<PointEdge>& edges,
                   Progress& progress);
 
 }  // namespace treerec

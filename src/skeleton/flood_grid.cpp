@@ -91,7 +91,7 @@ FloodGrid::FloodGrid(const std::vector<Vec3>& points, const CellLayout& layout, 
     });
     const size_t touching = edges.size();
     if (size() > 1) {
-        const KdTree tree(means);
+        const PointTree tree(means);
         bridge_parts(means, tree, edges, progress);
     }
 

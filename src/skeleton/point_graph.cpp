@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/point_tree.h"
 #include "skeleton/bridges.h"
 
 namespace treerec {
@@ -24,21 +24,9 @@ constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer 
 
 PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) {
     progress.check();
-    const KdTree tree(points);
+    const PointTree tree(points, &progress);
     const size_t near = std::min(kNeighbours, points.size() - 1);
-    std::vector<uint32_t> nearest(points.size() * near);
-    parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
-        progress.check();
-        std::array<uint32_t, kNeighbours + 1> index;
-        std::array<float, kNeighbours + 1> distance;
-        for (size_t v = begin; v < end; v++) {
-            const size_t found = tree.nearest(points[v], near + 1, index.data(), distance.data());
-            uint32_t* to = &nearest[v * near];
-            const uint32_t* last = to + near;
-            for (size_t i = 0; i < found && to != last; i++)
-                if (index[i] != v) *to++ = index[i];
-        }
-    });
+    const std::vector<uint32_t> nearest = tree.nearest_of_all(near, progress);
     std::vector<std::vector<PointEdge>> parts((points.size() + kGrain - 1) / kGrain);
     parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
         std::vector<PointEdge>& part = parts[begin / kGrain];
