@@ -9,7 +9,6 @@
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "foliage/foliage_twigs.h"
-#include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 
@@ -86,11 +85,10 @@ void TreeExporter::prepare(const std::vector<std::string>& paths) {
             return format == Format::kGltf || format == Format::kObj;
         }))
         return;
-    parallel_for(3, 1, [&](size_t part, size_t) {
-        if (part == 0) bark();
-        if (part == 1) leaf_cards();
-        if (part == 2) measured();
-    });
+    // One after another: each keeps all cores busy by itself.
+    bark();
+    leaf_cards();
+    measured();
 }
 
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {

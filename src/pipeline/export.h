@@ -31,7 +31,7 @@ class TreeExporter {
   public:
     TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);
 
-    // Makes all that write() needs for the files at these paths, so that the parts are made side by side.
+    // Makes all that write() needs for the files at these paths, but the coarser levels.
     void prepare(const std::vector<std::string>& paths);
 
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
