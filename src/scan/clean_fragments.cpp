@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/kd_tree.h"
+#include "geometry/point_tree.h"
 #include "scan/clean_steps.h"
 #include "scan/samples.h"
 
@@ -63,13 +63,15 @@ Line line_through(const std::vector<DVec3>& points) {
     return line;
 }
 
-// For KdTree::search(): all points within a distance.
+// For PointTree::search(): all points nearer than a distance.
 struct Within {
     float square = 0.0F;
     std::vector<uint32_t> points;
 
     float limit() const { return square; }
-    void add(float, uint32_t i) { points.push_back(i); }
+    void add(float distance, uint32_t i) {
+        if (distance < square) points.push_back(i);
+    }
 };
 
 // The tree found so far, which grows by the parts that belong to it.
@@ -206,7 +208,7 @@ class Main {
   private:
     std::vector<Vec3> points_;
     double extent_;
-    KdTree tree_;
+    PointTree tree_;
     double low_ = 0.0;
     DVec3 foot_{0.0};
     double radius_ = 0.0;

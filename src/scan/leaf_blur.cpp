@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "geometry/kd_tree.h"
+#include "geometry/point_tree.h"
 #include "geometry/quantile.h"
 #include "scan/leaf_cells.h"
 
@@ -40,7 +40,7 @@ double blur_of(const std::vector<Vec3>& points, const Progress& progress) {
         if (h > kFootLow && h < kFootHigh) foot.push_back(p);
     }
     if (foot.size() < kFewest || around.size() <= kPieces.back()) return 0.0;
-    const KdTree tree(around);
+    const PointTree tree(around);
     std::array<size_t, kPieces.size()> thin{};
     size_t looked_at = 0;
     std::vector<double> thickness;

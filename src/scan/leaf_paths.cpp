@@ -7,8 +7,8 @@
 #include <queue>
 #include <utility>
 
-#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
 
 namespace treerec {
@@ -64,7 +64,7 @@ std::vector<Bridge> bridge_parts(const Cells& cells, const Progress& progress) {
         }
     }
     progress.check();
-    const KdTree tree(main);
+    const PointTree tree(main);
     std::vector<std::pair<float, uint32_t>> nearest(others.size());
     parallel_for(others.size(), kGrain, [&](size_t begin, size_t end) {
         progress.check();
