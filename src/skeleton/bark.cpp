@@ -11,8 +11,7 @@ namespace treerec {
 
 namespace {
 
-constexpr int kLookAround = 2;  // stations to each side
-constexpr size_t kLeafSize = 10;
+constexpr int kLookAround = 2;       // stations to each side
 constexpr size_t kNearest = 8;       // stations looked at
 constexpr size_t kNearestThick = 3;  // likewise, of stout wood
 constexpr double kThick = 0.03;      // metres: from stouter wood,
@@ -21,7 +20,8 @@ constexpr float kFar = 0.12f;        // metres: no station of thin wood so far a
 constexpr double kRounding = 1e-3;   // metres, more than that of places to floats
 constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
 
-// For KdTree::search(): the nearest stations of limbs that are not left aside.
+// For PointTree::search(): the nearest stations of limbs that are not left aside, of equally near ones the
+// first.
 struct NearestAllowed {
     const std::vector<std::pair<int32_t, int32_t>>& names;
     const std::vector<uint8_t>* except;
@@ -33,9 +33,13 @@ struct NearestAllowed {
 
     float limit() const { return found == wanted ? distance[found - 1] : most; }
     void add(float squared, uint32_t candidate) {
+        const auto comes_before = [&](size_t at) {
+            return squared < distance[at] || (squared == distance[at] && candidate < index[at]);
+        };
+        if (found == wanted ? !comes_before(found - 1) : squared > most) return;
         if (except != nullptr && (*except)[names[candidate].first] != 0) return;
         size_t at = found == wanted ? found - 1 : found++;
-        for (; at > 0 && distance[at - 1] > squared; at--) {
+        for (; at > 0 && comes_before(at - 1); at--) {
             distance[at] = distance[at - 1];
             index[at] = index[at - 1];
         }
@@ -87,7 +91,7 @@ Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station
             add(all_, fork + t * (axes[l][0].position - fork), limb, 0);
     }
     for (Index* index : {&all_, &thick_})
-        if (!index->positions.empty()) index->tree = std::make_unique<KdTree>(index->positions, kLeafSize);
+        if (!index->positions.empty()) index->tree = std::make_unique<PointTree>(index->positions);
 }
 
 double Bark::reach_of(int32_t limb, int32_t station) const {

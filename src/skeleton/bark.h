@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/kd_tree.h"
+#include "geometry/point_tree.h"
 #include "skeleton/axis.h"
 #include "skeleton/limbs.h"
 
@@ -45,7 +45,7 @@ class Bark {
     struct Index {
         std::vector<Vec3> positions;
         std::vector<std::pair<int32_t, int32_t>> names;  // the limb and station of each position
-        std::unique_ptr<KdTree> tree;
+        std::unique_ptr<PointTree> tree;
     };
     // Metres from the station that the bark which on_limb() looks at there reaches at most.
     double reach_of(int32_t limb, int32_t station) const;
