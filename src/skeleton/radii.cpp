@@ -146,37 +146,39 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
     const double noise = noise_of(axes);
     const double slenderness = slenderness_of(axes);
     parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
-        for (size_t l = begin; l < end; l++)
-            running_median(axes[l]);
+        std::vector<double> values;
+        std::vector<double> weights;
+        for (size_t l = begin; l < end; l++) {
+            std::vector<Station>& stations = axes[l];
+            running_median(stations);
+            double to_tip = 0.0;
+            values.assign(stations.size(), 0.0);
+            weights.assign(stations.size(), 1.0);
+            for (size_t i = stations.size(); i-- > 0;) {
+                const Station& station = stations[i];
+                if (station.measured) {
+                    values[i] = station.radius;
+                } else {
+                    const double most = kTipAllowance + kSlenderness * to_tip;
+                    values[i] = station.radius > 0.0
+                                    ? std::min(most, without_noise(station.radius, noise, to_tip))
+                                    : kTipAllowance + slenderness * to_tip;
+                    weights[i] = kSoftWeight;
+                }
+                if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);
+            }
+            if (limbs[l].parent < 0) span_foot(stations, values);
+            const std::vector<double> fitted = falling_fit(values, weights);
+            for (size_t i = 0; i < stations.size(); i++)
+                stations[i].radius = fitted[i];
+        }
     });
-    std::vector<double> values;
-    std::vector<double> weights;
     for (size_t l = 0; l < axes.size(); l++) {
-        std::vector<Station>& stations = axes[l];
         double limit = std::numeric_limits<double>::max();
         if (limbs[l].parent >= 0) limit = axes[limbs[l].parent][limbs[l].attach].radius;
-
-        double to_tip = 0.0;
-        values.assign(stations.size(), 0.0);
-        weights.assign(stations.size(), 1.0);
-        for (size_t i = stations.size(); i-- > 0;) {
-            const Station& station = stations[i];
-            if (station.measured) {
-                values[i] = station.radius;
-            } else {
-                const double most = kTipAllowance + kSlenderness * to_tip;
-                values[i] = station.radius > 0.0
-                                ? std::min(most, without_noise(station.radius, noise, to_tip))
-                                : kTipAllowance + slenderness * to_tip;
-                weights[i] = kSoftWeight;
-            }
-            if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);
-        }
-        if (limbs[l].parent < 0) span_foot(stations, values);
-        const std::vector<double> fitted = falling_fit(values, weights);
-        for (size_t i = 0; i < stations.size(); i++) {
-            limit = std::max(kThinnest, std::min(limit, fitted[i]));
-            stations[i].radius = limit;
+        for (Station& station : axes[l]) {
+            limit = std::max(kThinnest, std::min(limit, station.radius));
+            station.radius = limit;
         }
     }
 }

@@ -109,6 +109,28 @@ T median_of(std::vector<T>& values) {
     return *middle;
 }
 
+// Indices by the limb that they belong to, ascending.
+struct Members {
+    std::vector<uint32_t> begin;
+    std::vector<int32_t> index;
+
+    // limb: by index, -1 for none.
+    Members(std::span<const int32_t> limb, size_t limbs) : begin(limbs + 1, 0) {
+        for (const int32_t l : limb)
+            if (l >= 0) begin[static_cast<size_t>(l) + 1]++;
+        for (size_t l = 0; l < limbs; l++)
+            begin[l + 1] += begin[l];
+        index.resize(begin.back());
+        std::vector<uint32_t> fill(begin.begin(), begin.end() - 1);
+        for (size_t i = 0; i < limb.size(); i++)
+            if (limb[i] >= 0) index[fill[static_cast<size_t>(limb[i])]++] = static_cast<int32_t>(i);
+    }
+
+    std::span<int32_t> of(size_t limb) {
+        return std::span(index).subspan(begin[limb], begin[limb + 1] - begin[limb]);
+    }
+};
+
 // What limbs refined one after another take turns with.
 struct Scratch {
     std::vector<std::array<DVec3, 2>> frame;
@@ -124,13 +146,13 @@ struct Scratch {
 class LimbRefiner {
   public:
     LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                const std::vector<std::vector<int32_t>>& sides, const PointPlaces& places,
-                std::span<const uint32_t> own_points, const std::vector<Vec3>& points, double noise,
+                std::span<const int32_t> sides, const PointPlaces& places,
+                std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
                 Scratch& scratch)
         : axes_(axes),
           limbs_(limbs),
           limb_(limbs[index]),
-          sides_(sides[index]),
+          sides_(sides),
           places_(places),
           own_points_(own_points),
           points_(points),
@@ -242,8 +264,8 @@ class LimbRefiner {
     void collect() {
         std::vector<std::pair<int, Sample>>& found = scratch_.found;
         found.clear();
-        for (const uint32_t v : own_points_)
-            add_point(v, places_.station[v], found);
+        for (const int32_t v : own_points_)
+            add_point(static_cast<uint32_t>(v), places_.station[v], found);
         begin_.assign(line_.size() + 1, 0);
         for (const auto& [station, sample] : found)
             begin_[station + 1]++;
@@ -353,9 +375,9 @@ class LimbRefiner {
     const std::vector<std::vector<Station>>& axes_;
     const std::vector<Limb>& limbs_;
     const Limb& limb_;
-    const std::vector<int32_t>& sides_;  // by attach
+    std::span<const int32_t> sides_;  // by attach
     const PointPlaces& places_;
-    std::span<const uint32_t> own_points_;
+    std::span<const int32_t> own_points_;
     const std::vector<Vec3>& points_;
     double noise_;
     const std::vector<Station>& line_;
@@ -372,24 +394,11 @@ class LimbRefiner {
 
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
                  const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress) {
-    // The points of each limb, in one array.
-    std::vector<size_t> begin(limbs.size() + 1, 0);
-    for (const int32_t limb : places.limb)
-        if (limb >= 0) begin[static_cast<size_t>(limb) + 1]++;
+    Members own_points(places.limb, limbs.size());
+    std::vector<int32_t> parent(limbs.size());
     for (size_t l = 0; l < limbs.size(); l++)
-        begin[l + 1] += begin[l];
-    std::vector<uint32_t> members(begin.back());
-    std::vector<size_t> fill(begin.begin(), begin.end() - 1);
-    for (size_t v = 0; v < places.limb.size(); v++)
-        if (places.limb[v] >= 0)
-            members[fill[static_cast<size_t>(places.limb[v])]++] = static_cast<uint32_t>(v);
-
-    std::vector<std::vector<int32_t>> sides(limbs.size());
-    for (size_t l = 0; l < limbs.size(); l++)
-        if (limbs[l].parent >= 0) sides[limbs[l].parent].push_back(static_cast<int32_t>(l));
-    for (std::vector<int32_t>& of_limb : sides)
-        std::stable_sort(of_limb.begin(), of_limb.end(),
-                         [&](int32_t a, int32_t b) { return limbs[a].attach < limbs[b].attach; });
+        parent[l] = limbs[l].parent;
+    Members sides(parent, limbs.size());
     for (int round = 0; round < kRounds; round++) {
         const double noise = noise_of(axes);
         std::vector<std::vector<Station>> next(axes.size());
@@ -397,8 +406,14 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
             Scratch scratch;
             for (size_t l = from; l < to; l++) {
                 progress.check();
-                const std::span<const uint32_t> own(members.data() + begin[l], begin[l + 1] - begin[l]);
-                next[l] = LimbRefiner(l, axes, limbs, sides, places, own, points, noise, scratch).run();
+                const std::span<int32_t> own_sides = sides.of(l);
+                if (round == 0)
+                    std::sort(own_sides.begin(), own_sides.end(), [&](int32_t a, int32_t b) {
+                        return std::pair(limbs[a].attach, a) < std::pair(limbs[b].attach, b);
+                    });
+                next[l] =
+                    LimbRefiner(l, axes, limbs, own_sides, places, own_points.of(l), points, noise, scratch)
+                        .run();
             }
         });
         axes.swap(next);

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/parallel.h"
+
 namespace treerec {
 
 namespace {
@@ -12,6 +14,7 @@ namespace {
 constexpr double kGapFactor = 3.0;  // reaches: a longer step is a gap in the scan and not just thin sampling
 constexpr float kBesideReach = 2.0f;  // reaches: slices of one stem that the scan parts are no further apart
 constexpr double kThickness = 2.0;    // slice thickness in local point spacings
+constexpr size_t kSlicesPerTask = 256;
 
 uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
     while (leader[v] != v)
@@ -41,25 +44,34 @@ std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& sc
     return level;
 }
 
-// Fills `beside`: a link is an edge not much longer than the local reach.
+// Fills `beside`: a link is an edge not much longer than the local reach. All else is filled.
 void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scale,
                  const std::vector<uint32_t>& slice_of) {
-    std::vector<std::pair<uint32_t, uint32_t>> pairs;
-    for (uint32_t v = 0; v < graph.size(); v++) {
-        const uint32_t a = slice_of[v];
-        const int32_t parent = slices.parent[a];
-        for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
-            const uint32_t n = graph.neighbour[e];
-            const uint32_t b = slice_of[n];
-            if (a >= b || parent == static_cast<int32_t>(b) || slices.parent[b] == static_cast<int32_t>(a))
-                continue;
-            if (graph.length[e] > kBesideReach * edge_reach(scale, v, n)) continue;
-            if (!pairs.empty() && pairs.back() == std::pair(a, b)) continue;
-            pairs.emplace_back(a, b);
+    using Pair = std::pair<uint32_t, uint32_t>;
+    std::vector<std::vector<Pair>> found((slices.size() + kSlicesPerTask - 1) / kSlicesPerTask);
+    parallel_for(slices.size(), kSlicesPerTask, [&](size_t first, size_t last) {
+        std::vector<uint32_t> others;
+        for (uint32_t a = static_cast<uint32_t>(first); a < last; a++) {
+            others.clear();
+            const int32_t parent = slices.parent[a];
+            for (const uint32_t v : slices.points_of(a))
+                for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
+                    const uint32_t n = graph.neighbour[e];
+                    const uint32_t b = slice_of[n];
+                    if (a >= b || parent == static_cast<int32_t>(b) ||
+                        slices.parent[b] == static_cast<int32_t>(a))
+                        continue;
+                    if (graph.length[e] <= kBesideReach * edge_reach(scale, v, n)) others.push_back(b);
+                }
+            std::sort(others.begin(), others.end());
+            others.erase(std::unique(others.begin(), others.end()), others.end());
+            for (const uint32_t b : others)
+                found[first / kSlicesPerTask].emplace_back(a, b);
         }
-    }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    });
+    std::vector<Pair> pairs;
+    for (const std::vector<Pair>& some : found)
+        pairs.insert(pairs.end(), some.begin(), some.end());
     slices.beside_begin.assign(slices.size() + 1, 0);
     for (const auto& [a, b] : pairs) {
         slices.beside_begin[a + 1]++;
@@ -126,33 +138,35 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
     slices.parent[0] = -1;
     slices.bridged.assign(slice_count, 0);
     slices.centre.assign(slice_count, root);
-    std::vector<uint32_t> votes;
-    for (size_t s = 1; s < slice_count; s++) {
-        DVec3 sum(0.0);
-        votes.clear();
-        bool linked = false;
-        for (const uint32_t v : slices.points_of(s)) {
-            sum += DVec3(points[v]);
-            const int32_t p = paths.parent[v];
-            const uint32_t from = p < 0 ? 0 : slice_of[p];
-            if (from == s) continue;
-            votes.push_back(from);
-            linked = linked || p < 0 ||
-                     paths.step[v] <= kGapFactor * edge_reach(scale, v, static_cast<uint32_t>(p));
-        }
-        slices.centre[s] = sum / static_cast<double>(slices.points_of(s).size());
-        std::sort(votes.begin(), votes.end());
-        size_t best_count = 0;
-        for (size_t i = 0, j = 0; i < votes.size(); i = j) {
-            while (j < votes.size() && votes[j] == votes[i])
-                j++;
-            if (j - i > best_count) {
-                best_count = j - i;
-                slices.parent[s] = static_cast<int32_t>(votes[i]);
+    parallel_for(slice_count, kSlicesPerTask, [&](size_t first, size_t last) {
+        std::vector<uint32_t> votes;
+        for (size_t s = std::max<size_t>(first, 1); s < last; s++) {
+            DVec3 sum(0.0);
+            votes.clear();
+            bool linked = false;
+            for (const uint32_t v : slices.points_of(s)) {
+                sum += DVec3(points[v]);
+                const int32_t p = paths.parent[v];
+                const uint32_t from = p < 0 ? 0 : slice_of[p];
+                if (from == s) continue;
+                votes.push_back(from);
+                linked = linked || p < 0 ||
+                         paths.step[v] <= kGapFactor * edge_reach(scale, v, static_cast<uint32_t>(p));
             }
+            slices.centre[s] = sum / static_cast<double>(slices.points_of(s).size());
+            std::sort(votes.begin(), votes.end());
+            size_t best_count = 0;
+            for (size_t i = 0, j = 0; i < votes.size(); i = j) {
+                while (j < votes.size() && votes[j] == votes[i])
+                    j++;
+                if (j - i > best_count) {
+                    best_count = j - i;
+                    slices.parent[s] = static_cast<int32_t>(votes[i]);
+                }
+            }
+            slices.bridged[s] = !linked;
         }
-        slices.bridged[s] = !linked;
-    }
+    });
     find_beside(slices, graph, scale, slice_of);
     return slices;
 }
