@@ -1,5 +1,6 @@
 #include "skeleton/twigs.h"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -15,6 +16,7 @@ constexpr double kBarkRelief = 0.2;  // of the radius: so far off the bark, a po
 constexpr int kStumpSteps = 12;      // stations back that the end of thick wood is looked for
 constexpr double kStumpEnd = 1.5;    // radii: so long it is
 constexpr double kFoot = 4.0;        // radii of the stem: up there roots and ground lie around it
+constexpr double kMostBlur = 0.02;   // metres off the bark
 
 class TwigFinder {
   public:
@@ -93,6 +95,25 @@ class TwigFinder {
                      std::make_move_iterator(twigs.axes.end()));
     }
 
+    // The scan blurs bark: what is still free, no further out of the bark than the wood is thick, belongs to
+    // the wood that its path comes from. Else thin wood would lie where most of its points are, and be too
+    // thin.
+    void take_blur(Progress& progress) {
+        std::vector<int32_t>& wood = field_.nearest;  // by free point: the first on its path that is not free
+        size_t looked = 0;
+        for (const uint32_t v : paths_.order) {
+            if (++looked % 1024 == 0) progress.check();
+            if (field_.limb[v] >= 0) continue;
+            const int32_t before = paths_.parent[v];
+            wood[v] = field_.limb[before] >= 0 ? before : wood[before];
+            const int32_t limb = field_.limb[wood[v]];
+            const BarkPlace place = place_near(axes_[limb], field_.station[wood[v]], DVec3(points_[v]));
+            if (place.outside() >= std::min(kMostBlur, place.radius)) continue;
+            field_.limb[v] = limb;
+            field_.station[v] = place.station;
+        }
+    }
+
     PointPlaces places() && { return {std::move(field_.limb), std::move(field_.station)}; }
 
   private:
@@ -150,6 +171,7 @@ PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, 
     TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
     finder.take_slices(slices);
     finder.run(progress);
+    finder.take_blur(progress);
     return std::move(finder).places();
 }
 

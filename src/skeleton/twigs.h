@@ -21,7 +21,8 @@ struct TwigOptions {
 // something (the paths are found like TEASAR's, Sato et al. 2000: the farthest point left is followed back
 // along the shortest paths to the wood that is already there, and what lies along the way is done with). A
 // twig has no slices, only stations; its axis keeps to its points. limbs, axes: as from fit_axes(), extended
-// in step. Returns which limb each point lies on.
+// in step. Returns which limb each point lies on, blurred ones
+// beside the bark included.
 PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                       const PathTree& paths, const Slices& slices, const TwigOptions& options,
                       std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress);

@@ -95,6 +95,28 @@ TEST(Twigs, StubsNoiseAndBarkReliefAreNone) {
     EXPECT_EQ(tips(result.tree), 1u);
 }
 
+// What blur puts beside the bark is part of the wood.
+TEST(Twigs, BlurredWoodIsAsThickAsAllItsPointsSay) {
+    double thick = 0.0;
+    int count = 0;
+    constexpr double kRadius = 0.01;
+    for (const uint64_t seed : {11, 12, 13, 14, 15, 16}) {
+        PointCloud cloud = stem(seed, 0.003);
+        Random random(seed + 10);
+        add_cone(cloud, random, {0.095, 1.5, 0.0}, {0.8, 2.2, 0.1}, kRadius, kRadius, 0.01, 0.004);
+        const SkeletonResult result = skeletonize(cloud, {});
+        for (NodeId id = 0; id < result.tree.id_end(); id++) {
+            if (!result.tree.contains(id)) continue;
+            const DVec3 p = in_cloud(result.tree, cloud, id);
+            if (p.x < 0.2 || p.x > 0.7) continue;
+            thick += result.tree.node(id).radius;
+            count++;
+        }
+    }
+    ASSERT_GT(count, 0);
+    EXPECT_NEAR(thick / count, kRadius, 0.07 * kRadius);
+}
+
 TEST(Twigs, NoneGrowFromNoise) {
     for (double noise : {0.01, 0.02}) {
         const SkeletonResult result = skeletonize(stem(6, noise), {});
