@@ -54,24 +54,32 @@ class PointTree::Nearest {
   public:
     // None yet of `count`.
     void reset(size_t count) {
-        last_ = count - 1;
-        std::fill_n(entries_.begin(), count, entry_of(kFarthest, UINT32_MAX));
+        count_ = count;
+        size_ = 0;
+        limit_ = kFarthest;
     }
-    float limit() const { return std::bit_cast<float>(static_cast<uint32_t>(entries_[last_] >> 32)); }
+    size_t size() const { return size_; }
+    float limit() const { return limit_; }
     void add(float squared, uint32_t index) {
         const uint64_t entry = entry_of(squared, index);
-        if (entry >= entries_[last_]) return;
-        size_t at = last_;
+        if (size_ < count_)
+            size_++;
+        else if (entry >= entries_[count_ - 1])
+            return;
+        size_t at = size_ - 1;
         for (; at > 0 && entries_[at - 1] > entry; at--)
             entries_[at] = entries_[at - 1];
         entries_[at] = entry;
+        if (size_ == count_) limit_ = this->squared(count_ - 1);
     }
     uint32_t index(size_t i) const { return static_cast<uint32_t>(entries_[i]); }
     float squared(size_t i) const { return std::bit_cast<float>(static_cast<uint32_t>(entries_[i] >> 32)); }
 
   private:
     std::array<uint64_t, kMostNearest + 1> entries_;
-    size_t last_ = 0;
+    size_t count_ = 0;  // wanted
+    size_t size_ = 0;   // found
+    float limit_ = kFarthest;
 };
 
 class PointTree::Builder {
@@ -166,7 +174,7 @@ class PointTree::Builder {
         if (progress_ && tree_.groups_.size() % kGrain == 0) progress_->check();
         Group& group = tree_.groups_.emplace_back();
         group.count = static_cast<uint32_t>(range.size());
-        Box box;
+        Box& box = group.box;
         for (size_t i = 0; i < kMost; i++) {
             const bool there = i < range.size();
             const Vec3 p = there ? points_[items_[range.begin + i].index] : Vec3(kNowhere);
@@ -197,11 +205,11 @@ size_t PointTree::nearest(const Vec3& p, size_t count, uint32_t* index, float* s
     Nearest nearest;
     nearest.reset(count);
     search(p, nearest);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < nearest.size(); i++) {
         index[i] = nearest.index(i);
         squared[i] = nearest.squared(i);
     }
-    return count;
+    return nearest.size();
 }
 
 std::vector<uint32_t> PointTree::nearest_of_all(size_t count, const Progress& progress) const {
@@ -215,7 +223,7 @@ std::vector<uint32_t> PointTree::nearest_of_all(size_t count, const Progress& pr
             for (size_t i = 0; i < own.size(); i++) {
                 uint32_t* to = &all[own[i] * count];
                 const uint32_t* last = to + count;
-                for (size_t n = 0; to != last; n++)
+                for (size_t n = 0; n < nearest[i].size() && to != last; n++)
                     if (nearest[i].index(n) != own[i]) *to++ = nearest[i].index(n);
             }
         }
@@ -226,31 +234,36 @@ std::vector<uint32_t> PointTree::nearest_of_all(size_t count, const Progress& pr
 // The points of a group have much the same neighbours: one walk through the tree does for all.
 void PointTree::nearest_of_group(size_t group, size_t count, std::vector<Nearest>& nearest) const {
     const Group& own = groups_[group];
-    const size_t members = in_group(group).size();
-    Box box;
-    for (size_t i = 0; i < members; i++) {
-        const Vec3 p(own.x[i], own.y[i], own.z[i]);
-        box.low = glm::min(box.low, p);
-        box.high = glm::max(box.high, p);
+    const size_t members = own.count;
+    for (size_t i = 0; i < members; i++)
         nearest[i].reset(count);
-    }
     const auto look_at = [&](const Group& other) {
+        const Many to_box = own.distances_to(other.box);
         float farthest = 0.0F;
         for (size_t i = 0; i < members; i++) {
-            const Many squared = other.distances({own.x[i], own.y[i], own.z[i]});
             const float limit = nearest[i].limit();
-            for (size_t k = 0; k < kMost; k++)
-                if (squared[k] <= limit) nearest[i].add(squared[k], other.index[k]);
+            if (to_box[i] <= limit) {
+                const Many squared = other.distances({own.x[i], own.y[i], own.z[i]});
+                // Those nearer first, without a branch that is hard to foretell.
+                std::array<uint32_t, kMost> nearer;
+                size_t found = 0;
+                for (uint32_t k = 0; k < kMost; k++) {
+                    nearer[found] = k;
+                    found += squared[k] <= limit ? 1 : 0;
+                }
+                for (size_t k = 0; k < found; k++)
+                    nearest[i].add(squared[nearer[k]], other.index[nearer[k]]);
+            }
             farthest = std::max(farthest, nearest[i].limit());
         }
         return farthest;
     };
     // Those beside it in the order are near, and tell how far to look.
+    float limit = look_at(own);
     const size_t first = group > 0 ? group - 1 : 0;
     const size_t end = std::min(group + 2, groups_.size());
-    float limit = kFarthest;
     for (size_t g = first; g < end; g++)
-        limit = look_at(groups_[g]);
+        if (g != group) limit = look_at(groups_[g]);
     Stack stack;
     size_t depth = 0;
     stack[depth++] = {0.0F, static_cast<uint32_t>(node_count() - 1)};
@@ -259,7 +272,7 @@ void PointTree::nearest_of_group(size_t group, size_t count, std::vector<Nearest
         if (at.nearest > limit) continue;
         if (at.node >= groups_.size()) {
             const Block& block = blocks_[at.node - groups_.size()];
-            push(block, block.distances(box), limit, stack, depth);
+            push(block, block.distances(own.box), limit, stack, depth);
         } else if (at.node < first || at.node >= end) {
             limit = look_at(groups_[at.node]);
         }

@@ -15,10 +15,11 @@
 
 namespace treerec {
 
-// Points in Morton order, cut where their cells end into groups of at most twelve, with boxes around the
+// Points in Morton order, cut where their cells end into groups of at most sixteen, with boxes around the
 // groups, boxes around eight boxes each, and so on (Lauterbach et al. 2009, but eight wide): built by a radix
 // sort, and many distances are found at a time. Distances are squared, as floats; what is found depends on
-// them and the indices of points alone, whatever the tree. Keeps copies of the points.
+// them and the indices of points alone, whatever the tree. Points so far apart that this overflows do not see
+// each other. Keeps copies of the points.
 class PointTree {
   public:
     static constexpr size_t kMostNearest = 64;
@@ -33,7 +34,7 @@ class PointTree {
     size_t nearest(const Vec3& p, size_t count, uint32_t* index, float* squared) const;
 
     // For every point the `count` nearest others (fewer than there are points, at most kMostNearest), in the
-    // same order; the count of point 0 first. Throws Cancelled.
+    // same order; those of point 0 first; 0 where there are fewer in sight. Throws Cancelled.
     std::vector<uint32_t> nearest_of_all(size_t count, const Progress& progress) const;
 
     // Calls found.add(squared, index) for points no farther than found.limit() (squared) was when their group
@@ -61,7 +62,7 @@ class PointTree {
 
   private:
     static constexpr size_t kWide = 8;   // boxes in a block
-    static constexpr size_t kMost = 12;  // points in a group
+    static constexpr size_t kMost = 16;  // points in a group
     static constexpr float kFarthest = std::numeric_limits<float>::max();
     using Eight = std::array<float, kWide>;
     using Many = std::array<float, kMost>;
@@ -71,16 +72,35 @@ class PointTree {
         Vec3 high{-std::numeric_limits<float>::infinity()};
     };
 
-    // Points; where there are fewer than twelve, infinitely far ones.
+    // The one that is above 0; without a branch, which would keep the loop from being vectorised.
+    static float outside(float below, float above) {
+        return 0.5F * ((below + std::abs(below)) + (above + std::abs(above)));
+    }
+
+    // Points; where there are fewer than sixteen, infinitely far ones.
     struct Group {
         Many x, y, z;
         std::array<uint32_t, kMost> index;
         uint32_t count;
+        Box box;
 
         Many distances(const Vec3& p) const {
             Many squared;
             for (size_t i = 0; i < kMost; i++) {
                 const float dx = p.x - x[i], dy = p.y - y[i], dz = p.z - z[i];
+                squared[i] = dx * dx + dy * dy + dz * dz;
+            }
+            return squared;
+        }
+
+        // Of the points to another box. Never more than distances() of the points in it: rounding keeps the
+        // order of differences, squares and sums.
+        Many distances_to(const Box& other) const {
+            Many squared;
+            for (size_t i = 0; i < kMost; i++) {
+                const float dx = outside(other.low.x - x[i], x[i] - other.high.x);
+                const float dy = outside(other.low.y - y[i], y[i] - other.high.y);
+                const float dz = outside(other.low.z - z[i], z[i] - other.high.z);
                 squared[i] = dx * dx + dy * dy + dz * dz;
             }
             return squared;
@@ -93,8 +113,7 @@ class PointTree {
         std::array<uint32_t, kWide> node;
         uint32_t count;
 
-        // To the nearest points of two boxes. Never more than Group::distances() of points in them: rounding
-        // keeps the order of differences, squares and sums.
+        // To the nearest points of the boxes, likewise.
         Eight distances(const Box& box) const {
             Eight squared;
             for (size_t i = 0; i < kWide; i++) {
@@ -104,10 +123,6 @@ class PointTree {
                 squared[i] = x * x + y * y + z * z;
             }
             return squared;
-        }
-        // The one that is above 0; without a branch, which would keep the loop from being vectorised.
-        static float outside(float below, float above) {
-            return 0.5F * ((below + std::abs(below)) + (above + std::abs(above)));
         }
     };
 

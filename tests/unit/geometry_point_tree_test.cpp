@@ -149,6 +149,18 @@ TEST(PointTree, OfNoPointsFindsNone) {
     EXPECT_TRUE(within.found.empty());
 }
 
+TEST(PointTree, PointsTooFarApartForAFloatDoNotSeeEachOther) {
+    const std::vector<Vec3> points{Vec3(0.0F), Vec3(1.0F), Vec3(3e38F), Vec3(-3e38F)};
+    const PointTree tree(points);
+    std::array<uint32_t, 4> index{};
+    std::array<float, 4> squared{};
+    EXPECT_EQ(tree.nearest(points[1], 4, index.data(), squared.data()), 2U);
+    EXPECT_EQ(index[0], 1U);
+    EXPECT_EQ(index[1], 0U);
+    const SubProgress progress(nullptr, 0.0, 1.0);
+    EXPECT_EQ(tree.nearest_of_all(1, progress), (std::vector<uint32_t>{1, 0, 0, 0}));
+}
+
 TEST(PointTree, LimitsThatFallAreKeptTo) {
     Random random(10);
     const std::vector<Vec3> points = cloud_of(0, 5000, random);
