@@ -125,7 +125,12 @@ void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
     NearestAllowed found{index.names, except, count, reach * reach};
     index.tree->search(p, found);
     for (size_t k = 0; k < found.found; k++) {
-        const auto [limb, station] = index.names[found.index[k]];
+        const auto& name = index.names[found.index[k]];
+        // The way from the fork to a first station has that one's name.
+        if (name.second == 0 && std::any_of(&found.index[0], &found.index[k],
+                                            [&](uint32_t other) { return index.names[other] == name; }))
+            continue;
+        const auto [limb, station] = name;
         const BarkPlace place = on_limb(limb, station, DVec3(p));
         if (place.outside() < best.outside()) best = place;
     }
@@ -141,6 +146,21 @@ BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except, float
                           : static_cast<float>(1.00001 * (best.outside() + thick_reach_) + kRounding);
     if (far > 0.0f) look(thick_, kNearestThick, far, p, except, best);
     return best;
+}
+
+std::vector<int32_t> Bark::limbs_by_place() const {
+    std::vector<int32_t> order;
+    if (!all_.tree) return order;
+    order.reserve(limbs_.size());
+    for (size_t group = 0; group < all_.tree->group_count(); group++)
+        for (const uint32_t i : all_.tree->in_group(group)) {
+            const auto [limb, station] = all_.names[i];
+            const bool is_tip = static_cast<size_t>(station) + 1 == axes_[limb].size();
+            // What follows a first station is the way to it, of the same name.
+            const bool is_station = station > 0 || i == 0 || all_.names[i - 1] != all_.names[i];
+            if (is_tip && is_station) order.push_back(limb);
+        }
+    return order;
 }
 
 double required_escape(double least_escape, double radius) {
@@ -163,9 +183,13 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
     // What is clear of all others stays. Of the rest, the last limbs go first, and then hold nothing any
     // more.
     std::vector<uint8_t> doubtful(limbs.size(), 0);
-    parallel_for(limbs.size(), 64, [&](size_t begin, size_t end) {
+    // Limbs side by side are compared with much the same ones, which memory then still has at hand.
+    const std::vector<int32_t> order = bark.limbs_by_place();
+    parallel_for(order.size(), 64, [&](size_t begin, size_t end) {
         std::vector<uint8_t> except(limbs.size(), 0);
-        for (size_t l = std::max<size_t>(begin, 1); l < end; l++) {
+        for (size_t i = begin; i < end; i++) {
+            const int32_t l = order[i];
+            if (l == 0) continue;
             except[l] = 1;
             doubtful[l] = escapes(axes[l], except) ? 0 : 1;
             except[l] = 0;

@@ -38,6 +38,9 @@ class Bark {
     BarkPlace nearest(const Vec3& p, const std::vector<uint8_t>* except = nullptr,
                       float reach = std::numeric_limits<float>::infinity()) const;
 
+    // All limbs, those whose tips are near each other one after another.
+    std::vector<int32_t> limbs_by_place() const;
+
   private:
     const std::vector<Limb>& limbs_;
     const std::vector<std::vector<Station>>& axes_;
