@@ -9,8 +9,8 @@
 #include "error.h"
 #include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
-#include "geometry/kd_tree.h"
 #include "geometry/parallel.h"
+#include "geometry/point_tree.h"
 #include "geometry/quantile.h"
 
 namespace treerec {
@@ -38,12 +38,12 @@ bool before(const Vec3& a, const Vec3& b) {
 // How far apart points that belong together lie: a few times the median distance to the fifth neighbour.
 double found_gap(const std::vector<Vec3>& points) {
     if (points.size() <= static_cast<size_t>(kSpacingNeighbours)) return kMostGap;
-    const KdTree tree(points, 32);
+    const PointTree tree(points);
     const size_t step = std::max<size_t>(1, points.size() / kSpacingSamples);
     std::vector<double> distances;
     for (size_t i = 0; i < points.size(); i += step) {
-        std::array<uint32_t, kSpacingNeighbours + 1> found;
-        std::array<float, kSpacingNeighbours + 1> squares;
+        std::array<uint32_t, kSpacingNeighbours + 1> found{};
+        std::array<float, kSpacingNeighbours + 1> squares{};
         tree.nearest(points[i], found.size(), found.data(), squares.data());
         distances.push_back(std::sqrt(static_cast<double>(squares.back())));
     }
@@ -94,7 +94,7 @@ std::vector<uint32_t> components(const std::vector<Vec3>& points, double gap, co
 }
 
 // Where a branch through the points would begin, and which way it would go.
-void suggest_joint(const Tree& tree, const std::vector<NodeId>& ids, const KdTree& nodes,
+void suggest_joint(const Tree& tree, const std::vector<NodeId>& ids, const PointTree& nodes,
                    const std::vector<Vec3>& points, UnexplainedCluster& cluster) {
     // The node that the cluster comes nearest to, of equals the one with the smaller id.
     double least = std::numeric_limits<double>::max();
@@ -178,7 +178,7 @@ std::vector<UnexplainedCluster> find_unexplained(const Tree& tree, const PointCl
     std::vector<Vec3> node_points;
     for (NodeId id : ids)
         node_points.emplace_back(tree.node(id).position);
-    const KdTree nodes(node_points);
+    const PointTree nodes(node_points);
     parallel_for(clusters.size(), 1, [&](size_t begin, size_t end) {
         for (size_t c = begin; c < end; c++) {
             if (progress) progress->check();

@@ -6,7 +6,7 @@
 #include <queue>
 
 #include "geometry/cell_grid.h"
-#include "geometry/kd_tree.h"
+#include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
 #include "scan/samples.h"
 
@@ -119,7 +119,7 @@ void take_in_the_rest(const Voxels& voxels, const std::vector<float>& low_above,
         reached.push_back(voxels.centre[c]);
         label.push_back(tree[c]);
     }
-    const KdTree nearest(reached);
+    const PointTree nearest(reached);
     std::vector<uint8_t> seen(tree.size());
     const std::vector<uint32_t> grown = tree;
     std::vector<uint32_t> part;
