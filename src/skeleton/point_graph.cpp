@@ -82,17 +82,19 @@ void LocalScale::set_spacing(std::vector<float> values) {
 LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
     const size_t count = graph.size();
     std::vector<float> spacing(count);
-    for (size_t v = 0; v < count; v++) {
-        std::array<float, kScaleNeighbour> shortest;
-        shortest.fill(std::numeric_limits<float>::max());
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
-            float length = graph.length[e];
-            for (float& s : shortest)
-                if (length < s) std::swap(length, s);
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; v++) {
+            std::array<float, kScaleNeighbour> shortest;
+            shortest.fill(std::numeric_limits<float>::max());
+            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+                float length = graph.length[e];
+                for (float& s : shortest)
+                    if (length < s) std::swap(length, s);
+            }
+            const size_t last = std::min<size_t>(kScaleNeighbour, graph.begin[v + 1] - graph.begin[v]);
+            spacing[v] = std::max(static_cast<float>(thinning_spacing), last ? shortest[last - 1] : 0.0f);
         }
-        const size_t last = std::min<size_t>(kScaleNeighbour, graph.begin[v + 1] - graph.begin[v]);
-        spacing[v] = std::max(static_cast<float>(thinning_spacing), last ? shortest[last - 1] : 0.0f);
-    }
+    });
     std::vector<float> sorted = spacing;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(count / 2), sorted.end());
     const float cap = kReachCap / kReachFactor * sorted[count / 2];
@@ -117,13 +119,15 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
         spacing.swap(smooth);
     }
     // A stray point is not as far-reaching as it is far away.
-    for (size_t v = 0; v < count; v++) {
-        float sum = 0.0f;
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
-            sum += spacing[graph.neighbour[e]];
-        smooth[v] = std::min(spacing[v],
-                             kStrayFactor * sum / static_cast<float>(graph.begin[v + 1] - graph.begin[v]));
-    }
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; v++) {
+            float sum = 0.0f;
+            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
+                sum += spacing[graph.neighbour[e]];
+            smooth[v] = std::min(
+                spacing[v], kStrayFactor * sum / static_cast<float>(graph.begin[v + 1] - graph.begin[v]));
+        }
+    });
     LocalScale scale;
     scale.set_spacing(std::move(smooth));
     return scale;
