@@ -299,11 +299,15 @@ class TwigGrower {
 // free points link, are not divided; the largest come first.
 std::vector<int32_t> divide(const TwigField& field, size_t& tasks) {
     const PointGraph& graph = field.graph;
-    std::vector<int32_t> thicket(graph.size(), -1);
+    constexpr int32_t kTaken = -1;
+    constexpr int32_t kOpen = -2;
+    std::vector<int32_t> thicket(graph.size());
+    for (size_t v = 0; v < graph.size(); v++)
+        thicket[v] = field.limb[v] >= 0 ? kTaken : kOpen;
     std::vector<std::pair<size_t, int32_t>> sizes;
     std::vector<uint32_t> open;
     for (uint32_t seed = 0; seed < graph.size(); seed++) {
-        if (field.limb[seed] >= 0 || thicket[seed] >= 0) continue;
+        if (thicket[seed] != kOpen) continue;
         const int32_t own = static_cast<int32_t>(sizes.size());
         size_t size = 0;
         thicket[seed] = own;
@@ -312,7 +316,7 @@ std::vector<int32_t> divide(const TwigField& field, size_t& tasks) {
             open.pop_back();
             for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
                 const uint32_t n = graph.neighbour[e];
-                if (field.limb[n] >= 0 || thicket[n] >= 0) continue;
+                if (thicket[n] != kOpen) continue;
                 thicket[n] = own;
                 open.push_back(n);
             }
