@@ -19,7 +19,7 @@ constexpr double kSharpest = 0.0;    // cosine of the sharpest turn of a twig
 constexpr double kFootEscape = 4.0;  // radii of the stem: what reaches less far out around its foot is a root
 constexpr size_t kLeastPoints = 3;   // of a twig on measured wood: where that is seen, so are its twigs
 constexpr size_t kShootPoints = 4;   // of a short shoot; fewer may be strays
-constexpr double kShortest = 0.7;    // of the shortest branch, where that many points show a shoot
+constexpr double kShortest = 0.8;    // of the shortest branch, where that many points show a shoot
 // Of it, that a shoot has from the parent's axis on: simplification takes some.
 constexpr double kShootLength = 1.07;
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
