@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "fidelity/segment_tree.h"
+#include "geometry/morton.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
@@ -132,11 +133,13 @@ ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Pr
     const std::vector<Vec3>& chosen = whole ? cloud.positions : sample;
     std::vector<double> errors(chosen.size());
     if (progress) progress->update(0.0, "Scoring");
+    // What a point is near to, the next one is near to as well.
+    const std::vector<KeyedIndex> order = morton_order(chosen, progress);
     parallel_for(chosen.size(), kChunk, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         int32_t hint = -1;
         for (size_t i = begin; i < end; i++) {
-            const DVec3 p(chosen[i]);
+            const DVec3 p(chosen[order[i].index]);
             errors[i] =
                 wood.surface_distance(same_frame ? p : tree.frame().to_tree(cloud.frame.to_scan(p)), hint);
         }

@@ -2,47 +2,15 @@
 
 #include <bit>
 
+#include "geometry/morton.h"
 #include "geometry/parallel.h"
-#include "geometry/radix_sort.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr int kAxisBits = 11;  // of a key: 33 bits are three rounds of the radix sort
 constexpr size_t kGrain = 4096;
 constexpr size_t kGroupsPerTask = 64;
-
-// The lowest eleven bits, three apart.
-uint64_t spread(uint64_t bits) {
-    bits = (bits | bits << 32) & 0x1f00000000ffff;
-    bits = (bits | bits << 16) & 0x1f0000ff0000ff;
-    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
-    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
-    return (bits | bits << 2) & 0x1249249249249249;
-}
-
-// Sorts items into the Morton order of their points within the box around them.
-void sort_morton(std::span<const Vec3> points, std::vector<KeyedIndex>& items, const Progress* progress) {
-    Vec3 low = points[items.front().index];
-    Vec3 high = low;
-    for (const KeyedIndex& item : items) {
-        low = glm::min(low, points[item.index]);
-        high = glm::max(high, points[item.index]);
-    }
-    const DVec3 size = DVec3(high) - DVec3(low);
-    const double extent = std::max({size.x, size.y, size.z});
-    const double scale = extent > 0.0 ? ((1 << kAxisBits) - 1) / extent : 0.0;
-    parallel_for(items.size(), kGrain, [&](size_t begin, size_t end) {
-        if (progress) progress->check();
-        for (size_t i = begin; i < end; i++) {
-            const DVec3 at = (DVec3(points[items[i].index]) - DVec3(low)) * scale;
-            items[i].key = spread(static_cast<uint64_t>(at.x)) | spread(static_cast<uint64_t>(at.y)) << 1 |
-                           spread(static_cast<uint64_t>(at.z)) << 2;
-        }
-    });
-    radix_sort(items, progress);
-}
 
 uint64_t entry_of(float squared, uint32_t index) {
     return static_cast<uint64_t>(std::bit_cast<uint32_t>(squared)) << 32 | index;
