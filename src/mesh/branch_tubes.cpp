@@ -20,17 +20,19 @@ constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
 constexpr double kCutRadius = 0.025;       // metres; no branch ends by itself so thick: those are cut flat
 constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
 constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
-constexpr double kAxisSlack = 0.3;         // how far rings may leave out a bend, over the radius,
-constexpr double kHeightSlack = 1e-3;      // and over the tree's height
+constexpr double kHeightSlack = 1e-3;      // how far rings may leave out any bend, over the tree's height
 constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings, at level 0
 constexpr size_t kFewBranches = 256;       // are built sooner than threads start
 
-// Radians between rings at level 0, of branches of such a radius in metres: the eye rests on the stout ones.
+// How much rings leave out at level 0 of branches of such a radius in metres: the eye rests on the stout
+// ones.
 struct BendLimit {
     double least_radius;
-    double bend;
+    double bend;   // radians between two rings
+    double slack;  // how far they may leave out a bend, over the radius
 };
-constexpr BendLimit kBendLimits[] = {{0.02, 0.35}, {0.01, 0.7}, {0.0, 1.2}};
+constexpr BendLimit kBendLimits[] = {
+    {0.08, 0.13, 0.1}, {0.04, 0.2, 0.2}, {0.02, 0.35, 0.3}, {0.01, 0.7, 0.3}, {0.0, 1.2, 0.3}};
 
 }  // namespace
 
@@ -93,15 +95,14 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const int level = std::clamp(options.level, 0, 8);
     // Of the wood itself: what comes out of a parent starts thinner.
     const double stoutness = std::max(points.front().radius, tree.node(list.nodes[branch.begin]).radius);
-    const double bend_per_ring =
-        std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1, [&](const BendLimit& limit) {
-            return stoutness >= limit.least_radius;
-        })->bend;
-    const double bend_limit = portable::cos(std::min(bend_per_ring * (1 + level), 1.2));
+    const BendLimit& limits =
+        *std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1,
+                      [&](const BendLimit& limit) { return stoutness >= limit.least_radius; });
+    const double bend_limit = portable::cos(std::min(limits.bend * (1 + level), 1.2));
     const double change_limit = 0.4 * (1 + level);
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
-    const double slack = kAxisSlack * (1 << level);
+    const double slack = limits.slack * (1 << level);
     const size_t most_left_out = kMostLeftOut << level;
     const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {

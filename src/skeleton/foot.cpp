@@ -23,8 +23,12 @@ constexpr double kClearEnd = 0.15;    // and up to there it is about as thick
 constexpr double kFootRadii = 6.0;    // radii: the foot's length at most
 constexpr double kLeastFoot = 0.75;   // of the stem's radius
 constexpr double kMostFoot = 2.0;
-constexpr int kRounds = 3;       // of the fit, each without what the last one is far off
-constexpr double kFarOff = 2.0;  // root mean squares
+constexpr double kStemShare = 0.33;    // of the stem's radius: what is thinner at the root is a twig
+constexpr double kRootSample = 2.0;    // radii: the stem that tells where it comes from,
+constexpr double kSteep = 0.5;         // height over length of one that stands
+constexpr double kMostRootMove = 2.0;  // radii
+constexpr int kRounds = 3;             // of the fit, each without what the last one is far off
+constexpr double kFarOff = 2.0;        // root mean squares
 
 // x and z as linear functions of the height.
 struct Line {
@@ -128,6 +132,38 @@ void limit_foot(std::vector<Station>& stem) {
         }
         stem[i].radius = std::min(stem[i].radius, kMostFoot * radius);
     }
+}
+
+void seat_root(const std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes) {
+    std::vector<Station>& stem = axes.front();
+    if (stem.size() < 3 || stem[1].bridged || stem[2].bridged) return;
+    const double radius = stem[1].radius;
+    for (size_t l = 1; l < limbs.size(); l++)
+        if (limbs[l].parent == 0 && limbs[l].attach == 0 && !axes[l].empty() &&
+            axes[l].front().radius >= kStemShare * radius)
+            return;
+    // From the first station that lies above it: below, the axis follows a spur.
+    size_t first = 0;
+    double reach = 0.0;
+    DVec3 down(0.0);
+    while (!(reach > 0.0)) {
+        first++;
+        if (first + 1 >= stem.size() || stem[first + 1].bridged) return;
+        const DVec3 from = stem[first].position;
+        size_t above = first + 1;
+        while (above + 1 < stem.size() && !stem[above + 1].bridged &&
+               glm::distance(stem[above].position, from) < kRootSample * radius)
+            above++;
+        down = normalized_or(from - stem[above].position, DVec3(0, -1, 0));
+        const DVec3 offset = stem[0].position - from;
+        if (glm::length(offset) > kMostRootMove * radius && first > 1) return;
+        reach = -down.y >= kSteep ? offset.y / down.y : glm::dot(offset, down);
+    }
+    const DVec3 place = stem[first].position + reach * down;
+    if (glm::distance(place, stem[0].position) > kMostRootMove * radius) return;
+    for (size_t i = 0; i < first; i++)
+        stem[i].position =
+            place + (stem[first].position - place) * (static_cast<double>(i) / static_cast<double>(first));
 }
 
 }  // namespace treerec

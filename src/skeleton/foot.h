@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skeleton/axis.h"
+#include "skeleton/limbs.h"
 
 namespace treerec {
 
@@ -17,5 +18,10 @@ void plant_foot(std::vector<Station>& stem);
 // The sections of a foot are those of spurs, buttresses and litter as much as of the stem. Radii there that
 // are well below the stem's above count as unknown, and none is more than twice that. stem: as above, fitted.
 void limit_foot(std::vector<Station>& stem);
+
+// The root has half a ring of points at most, on a spur as often as not: puts it where the stem above comes
+// from, at its own height, or as far along a stem that lies. Where several stems meet it is none of theirs,
+// and stays. limbs, axes: metres, Y up; the first is the stem. Twigs on the root do not count as stems.
+void seat_root(const std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes);
 
 }  // namespace treerec

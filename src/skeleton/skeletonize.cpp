@@ -177,6 +177,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
     refine_axes(axes, limbs, places, points, progress);
+    seat_root(limbs, axes);
     if (!root.lying) limit_foot(axes.front());
     infer_radii(axes, limbs);
     if (options.one_stem) keep_width(axes.front());

@@ -64,6 +64,37 @@ TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
     }
 }
 
+// A swept trunk shows no corners: what bends by a quarter turn within a metre has rings enough for it.
+TEST(BranchTubes, AStoutTrunkBendsWithoutCorners) {
+    for (const double radius : {0.09, 0.15, 0.3}) {
+        Tree tree;
+        NodeId at = tree.add_root({0, 0, 0}, radius, kTrunkFlag);
+        for (int i = 1; i <= 30; i++) {
+            const double angle = 0.5 * kPi * i / 30.0, reach = 4.0 * radius;
+            at = tree.add_child(at, DVec3(reach - reach * std::cos(angle), reach * std::sin(angle), 0.0),
+                                radius * (1.0 - 0.01 * i), kTrunkFlag);
+        }
+        const Mesh mesh = build_branch_tubes(tree);
+        std::vector<DVec3> centres;
+        for (size_t v = 0; v < mesh.positions.size();) {
+            size_t end = v;
+            DVec3 sum(0.0);
+            while (end < mesh.positions.size() && mesh.uvs[end].y == mesh.uvs[v].y)
+                sum += DVec3(mesh.positions[end++]);
+            // The foot below the ground and the cut at the end are no part of the bend.
+            const DVec3 centre = (sum - DVec3(mesh.positions[end - 1])) / std::max<double>(1.0, end - v - 1);
+            if (end - v > 3 && mesh.positions[v].y > 0.5 * radius) centres.push_back(centre);
+            v = end;
+        }
+        ASSERT_GT(centres.size(), 6u);
+        for (size_t i = 1; i + 2 < centres.size(); i++) {
+            const DVec3 before = glm::normalize(centres[i] - centres[i - 1]);
+            const DVec3 after = glm::normalize(centres[i + 1] - centres[i]);
+            EXPECT_LT(std::acos(std::clamp(glm::dot(before, after), -1.0, 1.0)), 0.2) << radius << " " << i;
+        }
+    }
+}
+
 // Where a trunk widens into its roots, its bark runs on down, and does not wind about it.
 TEST(BranchTubes, TheBarkOfAFootDoesNotSlant) {
     for (const double foot : {0.17, 0.2, 0.25}) {
