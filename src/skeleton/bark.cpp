@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "geometry/parallel.h"
@@ -71,24 +72,28 @@ BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DV
 
 Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes)
     : limbs_(limbs), axes_(axes) {
-    const auto add = [](Index& index, const DVec3& position, int32_t limb, int32_t station) {
+    const auto add = [](Index& index, const DVec3& position, int32_t limb, int32_t station, double reach) {
         index.positions.emplace_back(position);
         index.names.emplace_back(limb, station);
+        index.reach.push_back(static_cast<float>(reach));
     };
     for (size_t l = 0; l < axes.size(); l++) {
         const int32_t limb = static_cast<int32_t>(l);
         for (size_t i = 0; i < axes[l].size(); i++) {
             const Station& station = axes[l][i];
-            add(all_, station.position, limb, static_cast<int32_t>(i));
+            const double reach = reach_of(limb, static_cast<int32_t>(i));
+            add(all_, station.position, limb, static_cast<int32_t>(i), reach);
             if (station.radius <= kThick) continue;
-            add(thick_, station.position, limb, static_cast<int32_t>(i));
-            thick_reach_ = std::max(thick_reach_, reach_of(limb, static_cast<int32_t>(i)));
+            add(thick_, station.position, limb, static_cast<int32_t>(i), reach);
+            thick_reach_ = std::max(thick_reach_, reach);
         }
         if (limbs[l].parent < 0) continue;
         // And along the way from the fork to the limb's first station.
         const DVec3& fork = axes[limbs[l].parent][limbs[l].attach].position;
+        const DVec3 way = axes[l][0].position - fork;
+        const double reach = reach_of(limb, 0);
         for (const double t : {0.25, 0.5, 0.75})
-            add(all_, fork + t * (axes[l][0].position - fork), limb, 0);
+            add(all_, fork + t * way, limb, 0, reach + (1.0 - t) * glm::length(way));
     }
     for (Index* index : {&all_, &thick_})
         if (!index->positions.empty()) index->tree = std::make_unique<PointTree>(index->positions);
@@ -98,14 +103,17 @@ double Bark::reach_of(int32_t limb, int32_t station) const {
     const std::vector<Station>& line = axes_[limb];
     const int32_t last = static_cast<int32_t>(line.size()) - 1;
     double farthest = 0.0, thickest = 0.0;
+    const auto reach_to = [&](const DVec3& position) {
+        const DVec3 off = position - line[station].position;
+        farthest = std::max(farthest, glm::dot(off, off));
+    };
     for (int32_t i = std::max(0, station - kLookAround); i <= std::min(last, station + kLookAround); i++) {
-        farthest = std::max(farthest, glm::distance(line[i].position, line[station].position));
+        reach_to(line[i].position);
         thickest = std::max(thickest, line[i].radius);
     }
     if (station == 0 && limbs_[limb].parent >= 0)
-        farthest = std::max(farthest, glm::distance(axes_[limbs_[limb].parent][limbs_[limb].attach].position,
-                                                    line[0].position));
-    return farthest + thickest;
+        reach_to(axes_[limbs_[limb].parent][limbs_[limb].attach].position);
+    return std::sqrt(farthest) + thickest;
 }
 
 BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
@@ -125,6 +133,9 @@ void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
     NearestAllowed found{index.names, except, count, reach * reach};
     index.tree->search(p, found);
     for (size_t k = 0; k < found.found; k++) {
+        // What is seen from far stations that reach no nearer needs no look.
+        const double away = std::sqrt(found.distance[k]);
+        if (away - index.reach[found.index[k]] - kRounding >= best.outside()) continue;
         const auto& name = index.names[found.index[k]];
         // The way from the fork to a first station has that one's name.
         if (name.second == 0 && std::any_of(&found.index[0], &found.index[k],

@@ -48,6 +48,7 @@ class Bark {
     struct Index {
         std::vector<Vec3> positions;
         std::vector<std::pair<int32_t, int32_t>> names;  // the limb and station of each position
+        std::vector<float> reach;                        // metres from it, reach_of() the station
         std::unique_ptr<PointTree> tree;
     };
     // Metres from the station that the bark which on_limb() looks at there reaches at most.
