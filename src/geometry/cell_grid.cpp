@@ -12,29 +12,24 @@ namespace {
 
 constexpr size_t kBlock = size_t{1} << 17;  // points between two looks at the progress
 
+constexpr size_t kSome = size_t{1} << 13;  // points looked at by one thread
+
 // An open table; keys are never 0. Which slot a key gets does not change how many there are.
 class CellCounter {
   public:
-    explicit CellCounter(size_t most) : most_(most) {}
+    // most: cells, more are not counted.
+    explicit CellCounter(size_t most) : most_(most) { grow(size_t{1} << 12); }
 
-    // Counts the cells whose hash begins with `zeros` zeros.
-    size_t count(std::span<const Vec3> points, const CellLayout& layout, int zeros,
-                 const Progress* progress) {
-        grow(size_t{1} << 12);
-        for (size_t block = 0; block < points.size(); block += kBlock) {
-            if (progress) progress->check();
-            for (const Vec3& p : points.subspan(block, std::min(kBlock, points.size() - block))) {
-                const uint64_t key = layout.key(p);
-                const uint64_t hash = hash_seed(0, key);
-                if (zeros > 0 && hash >> (64 - zeros) != 0) continue;
-                uint64_t& slot = slot_of(key, hash);
-                if (slot == key) continue;
-                if (count_ >= most_ && zeros == 0) return most_ + 1;
-                slot = key;
-                if (++count_ * 2 > table_.size()) grow(4 * table_.size());
-            }
-        }
-        return count_;
+    size_t count() const { return count_; }
+
+    // Whether there are no more than `most` yet.
+    bool add(uint64_t key) {
+        uint64_t& slot = slot_of(key, hash_seed(0, key));
+        if (slot == key) return true;
+        if (count_ >= most_) return false;
+        slot = key;
+        if (++count_ * 2 > table_.size()) grow(4 * table_.size());
+        return true;
     }
 
   private:
@@ -94,13 +89,33 @@ std::pair<size_t, size_t> CellGrid::cells_between(uint64_t low, uint64_t high) c
 
 size_t count_cells(std::span<const Vec3> points, const CellLayout& layout, size_t most,
                    const Progress* progress) {
-    return CellCounter(std::min(most, points.size())).count(points, layout, 0, progress);
+    most = std::min(most, points.size());
+    CellCounter counter(most);
+    for (size_t block = 0; block < points.size(); block += kBlock) {
+        if (progress) progress->check();
+        for (const Vec3& p : points.subspan(block, std::min(kBlock, points.size() - block)))
+            if (!counter.add(layout.key(p))) return most + 1;
+    }
+    return counter.count();
 }
 
 size_t guess_cells(std::span<const Vec3> points, const CellLayout& layout, const Progress* progress) {
     constexpr int kSharedBits = 4;
-    return CellCounter(points.size() >> kSharedBits).count(points, layout, kSharedBits, progress)
-           << kSharedBits;
+    // Cells whose hash begins with so many zeros; most points are in others, which takes all threads to see.
+    std::vector<std::vector<uint64_t>> some((points.size() + kSome - 1) / kSome);
+    parallel_for(points.size(), kSome, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        std::vector<uint64_t>& keys = some[begin / kSome];
+        for (size_t i = begin; i < end; i++) {
+            const uint64_t key = layout.key(points[i]);
+            if (hash_seed(0, key) >> (64 - kSharedBits) == 0) keys.push_back(key);
+        }
+    });
+    CellCounter counter(points.size());
+    for (const std::vector<uint64_t>& keys : some)
+        for (const uint64_t key : keys)
+            counter.add(key);
+    return counter.count() << kSharedBits;
 }
 
 }  // namespace treerec

@@ -88,7 +88,6 @@ void TreeExporter::prepare(const std::vector<std::string>& paths) {
     // One after another: each keeps all cores busy by itself.
     bark();
     leaf_cards();
-    measured();
 }
 
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
