@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace treerec {
@@ -17,9 +18,10 @@ constexpr int kFirstSamples = 8;      // when there is still nothing near a circ
 constexpr float kHopeless = 0.35f;    // median residual over radius: not worth refining
 constexpr float kGoodEnough = 0.02f;  // likewise: no better sample is looked for
 constexpr int kRefinements = 6;
-constexpr float kSettled = 1e-3f;    // step over radius
-constexpr float kOnCircle = 0.3f;    // residual over radius
-constexpr float kWellInside = 0.7f;  // distance over radius
+constexpr float kSettled = 1e-3f;           // step over radius
+constexpr double kLeastDeterminant = 1e-6;  // over the diagonal's: with less, sums of floats are too coarse
+constexpr float kOnCircle = 0.3f;           // residual over radius
+constexpr float kWellInside = 0.7f;         // distance over radius
 constexpr int kRingSteps = 6;
 constexpr float kRingInside = 0.4f;
 constexpr int kSectors = 16;
@@ -27,6 +29,9 @@ constexpr int kLeastFilled = 10;  // sectors: with fewer, a ring is open
 constexpr float kTukey = 4.685f;  // 95 % efficiency for normal noise
 constexpr float kMadToSigma = 1.4826f;
 constexpr float kTanEighth = 0.41421356f;  // of 22.5 degrees
+constexpr size_t kLanes = 4;               // points that go through the processor at a time
+constexpr float kTiny = 1e-9f;             // metres
+constexpr float kNowhere = 1e6f;           // metres: so far from a circle, a point has no weight
 
 // The points, relative to their mean, in single precision: coordinates of a branch's section are a few
 // decimetres, so this resolves a tenth of a micrometre, and four go through the processor at a time.
@@ -48,6 +53,8 @@ struct Section {
             x[n] = static_cast<float>(points[i].x - mean.x);
             y[n] = static_cast<float>(points[i].y - mean.y);
         }
+        for (size_t n = count; n % kLanes != 0; n++)
+            x[n] = y[n] = kNowhere;
     }
 
     // Fills residual[0 .. end) with the distances of the points from the circle.
@@ -155,6 +162,53 @@ bool sample_circles(const Section& section, float max_radius, Random& random, Ci
     return found;
 }
 
+// The sums of Gauss-Newton's normal equations, each in four parts: one for every fourth point.
+struct Normal {
+    using Four = float __attribute__((vector_size(16)));
+    Four xx{}, xy{}, yy{}, x{}, y{}, w{}, rx{}, ry{}, r{};
+
+    Normal(const Section& section, const Circle& circle, float scale) {
+        alignas(16) std::array<float, kMostPoints> nx, ny, weight, residual;
+        const size_t count = (section.count + kLanes - 1) / kLanes * kLanes;
+        for (size_t i = 0; i < count; i++) {
+            const float dx = section.x[i] - circle.x;
+            const float dy = section.y[i] - circle.y;
+            const float distance = std::sqrt(dx * dx + dy * dy);
+            const float inverse = 1.0f / (distance + kTiny);
+            nx[i] = dx * inverse;
+            ny[i] = dy * inverse;
+            residual[i] = distance - circle.radius;
+            const float t = residual[i] * scale;
+            const float near = 1.0f - t * t;
+            const float inside = 0.5f * (near + std::abs(near));  // not below 0
+            weight[i] = inside * inside;
+        }
+        for (size_t i = 0; i < count; i += kLanes) {
+            const Four a = four_of(nx, i), b = four_of(ny, i), c = four_of(weight, i);
+            const Four wa = c * a, wb = c * b, wr = c * four_of(residual, i);
+            xx += wa * a;
+            xy += wa * b;
+            yy += wb * b;
+            x += wa;
+            y += wb;
+            w += c;
+            rx += wr * a;
+            ry += wr * b;
+            r += wr;
+        }
+    }
+
+    static Four four_of(const std::array<float, kMostPoints>& values, size_t at) {
+        Four four;
+        std::memcpy(&four, &values[at], sizeof(four));
+        return four;
+    }
+};
+
+double sum_of(const Normal::Four& four) {
+    return (static_cast<double>(four[0]) + four[1]) + (static_cast<double>(four[2]) + four[3]);
+}
+
 // Gauss-Newton on the geometric residuals with Tukey's weights.
 void refine_circle(Section& section, float max_radius, Circle& circle) {
     const auto noise = [&](float spread) { return kMadToSigma * spread + 1e-6f * circle.radius + 1e-9f; };
@@ -165,33 +219,16 @@ void refine_circle(Section& section, float max_radius, Circle& circle) {
             sigma = noise(section.median(section.count));
         }
         const float scale = 1.0f / (kTukey * sigma);
-        double xx = 0.0, xy = 0.0, yy = 0.0, x = 0.0, y = 0.0, w = 0.0, rx = 0.0, ry = 0.0, r = 0.0;
-        for (size_t i = 0; i < section.count; i++) {
-            const float dx = section.x[i] - circle.x;
-            const float dy = section.y[i] - circle.y;
-            const float distance = std::sqrt(dx * dx + dy * dy);
-            const float residual = distance - circle.radius;
-            const float t = residual * scale;
-            if (std::abs(t) >= 1.0f || distance < 1e-9f) continue;
-            const float weight = (1.0f - t * t) * (1.0f - t * t);
-            const float nx = dx / distance;
-            const float ny = dy / distance;
-            xx += weight * nx * nx;
-            xy += weight * nx * ny;
-            yy += weight * ny * ny;
-            x += weight * nx;
-            y += weight * ny;
-            w += weight;
-            rx += weight * residual * nx;
-            ry += weight * residual * ny;
-            r += weight * residual;
-        }
+        const Normal normal(section, circle, scale);
+        const double xx = sum_of(normal.xx), xy = sum_of(normal.xy), yy = sum_of(normal.yy);
+        const double x = sum_of(normal.x), y = sum_of(normal.y), w = sum_of(normal.w);
+        const double rx = sum_of(normal.rx), ry = sum_of(normal.ry), r = sum_of(normal.r);
         // The symmetric 3x3 system by Cramer's rule.
         const double a = yy * w - y * y;
         const double b = x * y - xy * w;
         const double c = xy * y - yy * x;
         const double det = xx * a + xy * b + x * c;
-        if (!(det > 1e-9 * xx * yy * w)) return;
+        if (!(det > kLeastDeterminant * xx * yy * w)) return;
         circle.error = static_cast<float>(std::sqrt((xx * yy - xy * xy) / det));
         const double sx = (rx * a + ry * b + r * c) / det;
         const double sy = (rx * b + ry * (xx * w - x * x) + r * (x * xy - xx * y)) / det;
@@ -249,6 +286,7 @@ std::optional<CircleFit> fit_ring(std::span<const DVec2> points) {
     std::array<float, kSectors> sum_x;
     std::array<float, kSectors> sum_y;
     std::array<float, kSectors> weight;
+    std::array<int, kMostPoints> sectors;
     float cx = 0.0f;
     float cy = 0.0f;
     int filled = 0;
@@ -256,8 +294,10 @@ std::optional<CircleFit> fit_ring(std::span<const DVec2> points) {
         sum_x.fill(0.0f);
         sum_y.fill(0.0f);
         weight.fill(0.0f);
+        for (size_t i = 0; i < section.count; i++)
+            sectors[i] = sector_of(section.x[i] - cx, section.y[i] - cy);
         for (size_t i = 0; i < section.count; i++) {
-            const int sector = sector_of(section.x[i] - cx, section.y[i] - cy);
+            const int sector = sectors[i];
             sum_x[sector] += section.x[i];
             sum_y[sector] += section.y[i];
             weight[sector] += 1.0f;
