@@ -159,7 +159,7 @@ Completion Completer::complete(Tree& tree, NodeId node, const DVec3& direction, 
     const bool guessed = outside(tree, DVec3(grid.means[start])) > std::max(tolerance, kStartVoxels * voxel);
     infer_radii(made.axes, made.limbs);
     refine_axes(made.axes, made.limbs, made.places, points, progress);
-    infer_radii(made.axes, made.limbs);
+    infer_radii(made.axes, made.limbs, true);
     Completion done;
     for (const int32_t limb : made.places.limb)
         done.points += limb >= 0;

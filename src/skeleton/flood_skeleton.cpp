@@ -125,7 +125,7 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
             infer_radii(made.axes, made.limbs);
         }
         if (!root.lying) limit_foot(made.axes.front());
-        infer_radii(made.axes, made.limbs);
+        infer_radii(made.axes, made.limbs, true);
     }
     const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel,
                                     kNoiseEscape * std::max(noise_of(made.axes), options.noise)});

@@ -21,6 +21,9 @@ constexpr size_t kLeastMeasured = 8;  // stations that the noise and the slender
 constexpr double kTaper = 1.5;        // thin wood tapers so much faster than what can be measured
 constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured limb is a stump
 constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
+constexpr double kCut = 0.03;         // metres: no wood ends by itself so thick
+constexpr double kAlike = 0.25;       // of the radius
+constexpr double kCutScatter = 0.2;   // likewise, of the points on what was cut
 constexpr double kFoot = 6.0;         // radii of the base: how far up its flare may reach
 constexpr int kMedianWindow = 4;      // stations to each side
 constexpr size_t kLimbsPerTask = 64;
@@ -121,6 +124,61 @@ void span_foot(const std::vector<Station>& stations, std::vector<double>& values
     }
 }
 
+// The radius of every station before its neighbours limit it, and how sure that is (its weight). to_tip: to
+// be filled with the metres from each station to the tip.
+void estimate(const std::vector<Station>& stations, double noise, double slenderness, bool last,
+              std::vector<double>& values, std::vector<double>& weights, std::vector<double>& to_tip) {
+    const size_t count = stations.size();
+    values.assign(count, 0.0);
+    weights.assign(count, kSoftWeight);
+    to_tip.assign(count, 0.0);
+    for (size_t i = count; i-- > 1;)
+        to_tip[i - 1] = to_tip[i] + glm::distance(stations[i].position, stations[i - 1].position);
+    const auto guess = [&](size_t i) { return kTipAllowance + slenderness * to_tip[i]; };
+    // Stations that no point tells anything of are as much thicker or thinner than is usual as those are that
+    // the points tell of, on the way between these.
+    size_t told = count;
+    const auto fill_from = [&](size_t next) {
+        for (size_t i = told < count ? told + 1 : 0; i < next; i++) {
+            const double before = told < count ? values[told] / guess(told) : 0.0;
+            const double after = next < count ? values[next] / guess(next) : 0.0;
+            double usual = 1.0;
+            if (told < count && next < count) {
+                const double t = (to_tip[told] - to_tip[i]) / std::max(to_tip[told] - to_tip[next], 1e-12);
+                usual = before + t * (after - before);
+            } else if (told < count || next < count) {
+                usual = std::max(before, after);
+            }
+            values[i] = usual * guess(i);
+        }
+    };
+    size_t measured = count;  // the last one
+    for (size_t i = 0; i < count; i++) {
+        const Station& station = stations[i];
+        if (station.measured) {
+            values[i] = station.radius;
+            weights[i] = 1.0;
+            measured = i;
+        } else if (station.radius > 0.0) {
+            double most = kTipAllowance + kSlenderness * to_tip[i];
+            if (last && measured < count) {
+                // Measured wood narrows evenly to the tip; thick wood that does not was cut.
+                const double known = stations[measured].radius;
+                const bool cut = known >= kCut && station.radius <= (1.0 + kAlike) * known &&
+                                 station.scatter > 0.0 && station.scatter <= kCutScatter * known;
+                const double left = to_tip[i] / std::max(to_tip[measured], 1e-12);
+                most = std::max(most, cut ? known : known * left);
+            }
+            values[i] = std::min(most, without_noise(station.radius, noise, to_tip[i]));
+        } else {
+            continue;
+        }
+        fill_from(i);
+        told = i;
+    }
+    fill_from(count);
+}
+
 }  // namespace
 
 double noise_of(const std::vector<std::vector<Station>>& axes) {
@@ -142,31 +200,17 @@ void keep_width(std::vector<Station>& stem) {
         stem[i].radius = stem[last - 1].radius;
 }
 
-void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs) {
+void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs, bool last) {
     const double noise = noise_of(axes);
     const double slenderness = slenderness_of(axes);
     parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
         std::vector<double> values;
         std::vector<double> weights;
+        std::vector<double> to_tip;
         for (size_t l = begin; l < end; l++) {
             std::vector<Station>& stations = axes[l];
             running_median(stations);
-            double to_tip = 0.0;
-            values.assign(stations.size(), 0.0);
-            weights.assign(stations.size(), 1.0);
-            for (size_t i = stations.size(); i-- > 0;) {
-                const Station& station = stations[i];
-                if (station.measured) {
-                    values[i] = station.radius;
-                } else {
-                    const double most = kTipAllowance + kSlenderness * to_tip;
-                    values[i] = station.radius > 0.0
-                                    ? std::min(most, without_noise(station.radius, noise, to_tip))
-                                    : kTipAllowance + slenderness * to_tip;
-                    weights[i] = kSoftWeight;
-                }
-                if (i > 0) to_tip += glm::distance(station.position, stations[i - 1].position);
-            }
+            estimate(stations, noise, slenderness, last, values, weights, to_tip);
             if (limbs[l].parent < 0) span_foot(stations, values);
             const std::vector<double> fitted = falling_fit(values, weights);
             for (size_t i = 0; i < stations.size(); i++)

@@ -179,7 +179,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     refine_axes(axes, limbs, places, points, progress);
     seat_root(limbs, axes);
     if (!root.lying) limit_foot(axes.front());
-    infer_radii(axes, limbs);
+    infer_radii(axes, limbs, true);
     if (options.one_stem) keep_width(axes.front());
     // Twigs that now lie on the bark of others were none.
     drop_strips(limbs, axes, 0.5 * twig_options.least_escape);

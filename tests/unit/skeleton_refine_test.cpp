@@ -261,6 +261,70 @@ TEST(InferRadii, GuessesAsThickAsTheTreeWasMeasured) {
     EXPECT_NEAR(axes[1][10].radius, 0.0028, 1e-9);
 }
 
+// The greatest fall of the radius, as a ratio, within three radii along a line.
+double steepest(const std::vector<Station>& line) {
+    double most = 1.0;
+    for (size_t i = 0; i < line.size(); i++) {
+        double way = 0.0;
+        for (size_t j = i + 1; j < line.size(); j++) {
+            way += glm::distance(line[j].position, line[j - 1].position);
+            if (way > 3.0 * line[i].radius) break;
+            most = std::max(most, line[i].radius / line[j].radius);
+        }
+    }
+    return most;
+}
+
+TEST(InferRadii, AForkThatNoPointShowsIsNoThickerThanWhatGrowsFromIt) {
+    std::vector<Limb> limbs(2);
+    limbs[1].parent = 0;
+    limbs[1].attach = 20;
+    // Around the fork all points are the parent's; those further out show a twig of 3 mm.
+    std::vector<std::vector<Station>> axes = {upright(151, 0.02, 0.03),
+                                              upright(51, 0.02, 0.003, {0.1, 0.4, 0})};
+    for (size_t i = 0; i < axes[1].size(); i++) {
+        axes[1][i].measured = false;
+        if (i < 10) axes[1][i].radius = 0.0;
+    }
+    infer_radii(axes, limbs, true);
+    EXPECT_LT(axes[1][0].radius, 0.005);
+    EXPECT_GE(axes[1][0].radius, axes[1][10].radius);
+    EXPECT_LT(steepest(axes[1]), 1.3);
+    // And in a gap, it goes from the radius before to the one behind.
+    for (size_t i = 0; i < 8; i++)
+        axes[1][i].radius = 0.006;
+    for (size_t i = 8; i < 40; i++)
+        axes[1][i].radius = 0.0;
+    for (size_t i = 40; i < axes[1].size(); i++)
+        axes[1][i].radius = 0.003;
+    infer_radii(axes, limbs, true);
+    EXPECT_NEAR(axes[1][24].radius, 0.0045, 0.0008);
+}
+
+TEST(InferRadii, MeasuredWoodNarrowsToItsTipEvenly) {
+    std::vector<Limb> limbs(1);
+    std::vector<std::vector<Station>> axes = {upright(61, 0.02, 0.02)};
+    // At the end, too few points for a circle still lie as far from the axis.
+    for (size_t i = 51; i < axes[0].size(); i++)
+        axes[0][i].measured = false;
+    infer_radii(axes, limbs, true);
+    EXPECT_NEAR(axes[0][50].radius, 0.02, 1e-9);
+    EXPECT_NEAR(axes[0][55].radius, 0.01, 0.002);
+    EXPECT_LT(axes[0][60].radius, 0.004);
+    EXPECT_LT(steepest(std::vector<Station>(axes[0].begin(), axes[0].begin() + 54)), 1.5);
+}
+
+TEST(InferRadii, ThickWoodThatWasCutKeepsItsThickness) {
+    std::vector<Limb> limbs(1);
+    std::vector<std::vector<Station>> axes = {upright(61, 0.02, 0.08)};
+    for (size_t i = 0; i < axes[0].size(); i++) {
+        axes[0][i].scatter = 0.003;
+        axes[0][i].measured = i <= 50;
+    }
+    infer_radii(axes, limbs, true);
+    EXPECT_NEAR(axes[0][60].radius, 0.08, 0.002);
+}
+
 TEST(InferRadii, ABaseKeepsItsFlare) {
     std::vector<Limb> limbs(1);
     std::vector<std::vector<Station>> axes = {upright(31, 0.1, 0.1)};
