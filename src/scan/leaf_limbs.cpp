@@ -22,7 +22,7 @@ constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well belo
 
 // A palm. Broad-leaved crowns have 0.17 to 0.25 of the planarity, palms 0.35 and more.
 constexpr double kMostCrownWood = 0.12;  // cells of wood above the hub, per cell of leaf
-constexpr double kHubShare = 0.05;       // of the height: the leaves' paths start as near to one another
+constexpr double kHubShare = 0.06;       // of the height: the leaves' paths start as near to one another
 constexpr double kLeastPlanarity = 0.27;
 constexpr double kRibCells = 3.0;    // wood that far from the stem, above the hub, is a rib of a frond
 constexpr double kSliceCells = 4.0;  // height of the slices in which the stem is walked up

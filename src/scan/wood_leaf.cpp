@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
@@ -11,6 +12,7 @@
 #include "scan/leaf_cells.h"
 #include "scan/leaf_limbs.h"
 #include "scan/leaf_paths.h"
+#include "scan/leaf_rule.h"
 #include "scan/samples.h"
 
 namespace treerec {
@@ -116,6 +118,9 @@ constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 
 constexpr double kMuchHidden = 0.3;
 
+constexpr size_t kPlanarity = 6;          // of CellInputs, on the second scale
+constexpr double kFrondPlanarity = 0.33;  // mean of all points; crowns of broad leaves have 0.16 to 0.25
+
 float value_of(float value, const Term& term) {
     return term.weight * std::clamp((value - term.mean) / term.deviation, -kReach, kReach);
 }
@@ -144,6 +149,27 @@ bool surely_bare(const Cells& cells, const CellShapes& shapes) {
     for (const uint32_t v : cells.of_point)
         sum += sum_of_terms(&shapes[v * kShapeScales], kQuickTerms);
     return sum / static_cast<double>(cells.of_point.size()) + kQuickBias < kSurelyBare;
+}
+
+std::vector<CellInputs> gather_inputs(const CellShapes& shapes, const CellPaths& paths) {
+    std::vector<CellInputs> inputs(paths.paths.size());
+    for (size_t v = 0; v < inputs.size(); v++)
+        inputs[v] = inputs_of(&shapes[v * kShapeScales], paths.paths[v]);
+    return inputs;
+}
+
+CellInputs mean_of(const std::vector<CellInputs>& inputs, const std::vector<uint32_t>& weights) {
+    std::array<double, kCellInputs> sums{};
+    double all = 0.0;
+    for (size_t v = 0; v < inputs.size(); v++) {
+        all += weights[v];
+        for (size_t i = 0; i < kCellInputs; i++)
+            sums[i] += static_cast<double>(weights[v]) * inputs[v][i];
+    }
+    CellInputs means{};
+    for (size_t i = 0; i < kCellInputs; i++)
+        means[i] = static_cast<float>(sums[i] / all);
+    return means;
 }
 
 double logit(double p) {
@@ -259,6 +285,27 @@ void smooth(std::vector<float>& logits, const Cells& cells, const Progress& prog
     }
 }
 
+struct Verdict {
+    std::vector<float> logits;  // by cell, smoothed
+    float threshold = 0.0F;
+    std::vector<uint8_t> leaf;  // by cell
+    Limbs limbs;
+};
+
+Verdict judge(std::vector<float> logits, double share, const Cells& cells, const CellShapes& shapes,
+              const CellPaths& paths, const Progress& progress) {
+    Verdict verdict;
+    smooth(logits, cells, progress);
+    verdict.threshold =
+        static_cast<float>(-kThresholdShare * logit(std::clamp(share, 1.0 - kMostShare, kMostShare)));
+    verdict.leaf.resize(logits.size());
+    for (size_t v = 0; v < logits.size(); v++)
+        verdict.leaf[v] = logits[v] > verdict.threshold;
+    verdict.limbs = follow_limbs(cells, shapes, paths, verdict.leaf, progress);
+    verdict.logits = std::move(logits);
+    return verdict;
+}
+
 double extent_of(const std::vector<Vec3>& points) {
     double extent = 0.0;
     std::vector<float> values(points.size());
@@ -325,15 +372,22 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    if (!result.by_colour && (share < kLeastShare || !told_by_shape)) return result;
-
-    smooth(logits, cells, progress);
-    const auto threshold =
-        static_cast<float>(-kThresholdShare * logit(std::clamp(share, 1.0 - kMostShare, kMostShare)));
-    std::vector<uint8_t> leaf(count);
-    for (size_t v = 0; v < count; v++)
-        leaf[v] = logits[v] > threshold;
-    const Limbs limbs = follow_limbs(cells, shapes, paths, leaf, progress);
+    const bool leafy = result.by_colour || (told_by_shape && share >= kLeastShare);
+    Verdict verdict;
+    if (leafy) verdict = judge(std::move(logits), share, cells, shapes, paths, progress);
+    // Fronds are flat like no other leaves, and their stem may have most of the points.
+    if (!result.by_colour && told_by_shape && !verdict.limbs.fronds) {
+        const std::vector<CellInputs> inputs = gather_inputs(shapes, paths);
+        const CellInputs means = mean_of(inputs, weights);
+        if (means[kPlanarity] > kFrondPlanarity && leafiness(means) > 0.0) {
+            std::vector<float> own = leaf_logits(samples.points, cells, paths, inputs, progress);
+            share = find_share(own, weights, progress);
+            Verdict palm = judge(std::move(own), share, cells, shapes, paths, progress);
+            if (palm.limbs.fronds) verdict = std::move(palm);
+        }
+    }
+    if (!leafy && !verdict.limbs.fronds) return result;
+    const auto& [cell_logits, threshold, leaf, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;
     result.fronds = limbs.fronds;
     result.reach = limbs.reach;
@@ -347,11 +401,11 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         const uint32_t v = cell_of_point[i];
         bool is_leaf = leaf[v] != 0;
         // A frond's brown tip is no wood.
-        if (result.by_colour && !limbs.fronds && leaf[v] == (logits[v] > threshold)) {
+        if (result.by_colour && !limbs.fronds && leaf[v] == (cell_logits[v] > threshold)) {
             const Color8& c = cloud.colors[i];
             const double sum = std::max(1, c[0] + c[1] + c[2]);
             const float own = greenness((2 * c[1] - c[0] - c[2]) / sum, groups);
-            is_leaf = logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
+            is_leaf = cell_logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
         }
         result.leaf[i] = is_leaf;
         result.wood_path[i] = limbs.path[v] || !is_leaf;

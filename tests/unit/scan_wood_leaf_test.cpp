@@ -94,6 +94,23 @@ TEST(WoodLeaf, ShapeAloneTellsThemApart) {
     EXPECT_GT(t.wood_recall, 0.35);  // leaves hang around every twig
 }
 
+TEST(WoodLeaf, FlatStripsOfLeafletsAreFrondsByShapeAlone) {
+    for (const uint64_t seed : {1, 2, 11}) {
+        SCOPED_TRACE(seed);
+        VirtualScan made = scan(Habit::kPalm, 0.0, seed, 60000);
+        made.cloud.colors.clear();
+        const WoodLeaf told = tell_wood_from_leaves(made.cloud);
+        ASSERT_TRUE(told.foliage);
+        EXPECT_TRUE(told.fronds);
+        EXPECT_GT(tally(told.leaf, truth_of(made)).leaf_recall, 0.97);
+        // The skeleton follows hardly anything but the stem.
+        double followed[2] = {0.0, 0.0};
+        for (size_t i = 0; i < told.leaf.size(); i++)
+            if (told.wood_path[i] && made.origin[i] < 2) followed[made.origin[i]]++;
+        EXPECT_LT(followed[kFromLeaf], 0.05 * followed[kFromWood]);
+    }
+}
+
 TEST(WoodLeaf, ColourTellsThemApartBetterEvenWhereLeavesAreFew) {
     for (const double leaves : {0.15, 0.8}) {
         const VirtualScan made = scan(Habit::kBroadleaf, leaves, 8, 40000);

@@ -1,0 +1,30 @@
+// The rules that tell a leafy cloud from a bare one, and leaf points from wood. Internal to scan/.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "progress.h"
+#include "scan/leaf_cells.h"
+#include "scan/leaf_paths.h"
+
+namespace treerec {
+
+// What the rules know of a cell: by scale linearity, planarity, scatter, occupied, crowd (the coarsest
+// without the first two), then the members of CellPath.
+inline constexpr size_t kCellInputs = 28;
+using CellInputs = std::array<float, kCellInputs>;
+// shapes: kShapeScales of them.
+CellInputs inputs_of(const CellShape* shapes, const CellPath& path);
+
+// Above 0 for a tree in leaf. means: of all points' cells.
+double leafiness(const CellInputs& means);
+
+// For each cell the logit of being leaf, at even odds: the mean of its first points', by a perceptron with
+// one hidden layer on what the cell is and on how the 8 and 24 nearest points (itself too) lie. points:
+// metres, distinct, in canonical order, those that the cells were made of. inputs: by cell.
+std::vector<float> leaf_logits(const std::vector<Vec3>& points, const Cells& cells, const CellPaths& paths,
+                               const std::vector<CellInputs>& inputs, const Progress& progress);
+
+}  // namespace treerec
