@@ -15,6 +15,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 : "${GODOT:?GODOT must name the engine: ./dev test editor sets it}"
+. tests/tools/screen.sh
 root=$PWD
 pictures=$root/build/editor
 work=$(mktemp -d)
@@ -42,21 +43,12 @@ cleanup() {
 trap cleanup EXIT
 trap 'exit 1' INT TERM
 
-start_screen() {
-    Xvfb -displayfd 3 -screen 0 1600x900x24 -nolisten tcp 3>"$work/display" 2>"$work/xvfb.log" &
-    screen=$!
-    local tries
-    for tries in $(seq 200); do
-        [ ! -s "$work/display" ] || break
-        sleep 0.05
-    done
-    [ -s "$work/display" ] || {
+open_screen() {
+    start_screen 1600x900 "$work/xvfb.log" || {
         cat "$work/xvfb.log"
         echo "0 passed, 1 failed"
         exit 1
     }
-    DISPLAY=:$(cat "$work/display")
-    export DISPLAY
     # Another program, beyond the screen's edge: focus() says what for.
     xev -name elsewhere -geometry 20x20+1700+1000 >"$work/xev.log" 2>&1 &
     other=$!
@@ -184,7 +176,7 @@ main() {
     local folder scripts script name project=
     rm -rf "$pictures"
     mkdir -p "$pictures"
-    start_screen
+    open_screen
     for folder in tests/editor/scenarios/*/; do
         folder=$(basename "$folder")
         scripts=()

@@ -1,17 +1,39 @@
 #!/usr/bin/env bash
-# Runs the engine's tests without a screen: first those that need no picture, then the renderers that work
-# here. ./dev test godot calls it, with GODOT set and project/ built and imported. The last line is
+# Runs the engine's tests without a screen: those that need no picture, and the renderers that work here, as many at
+# once as there are cores. ./dev test godot calls it, with GODOT set and project/ built and imported. The last line is
 # 'N passed, N failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
+. tests/tools/screen.sh
 passed=0
 failed=0
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+screen=
+override=project/override.cfg
+logs=$(mktemp -d) # what each run says, by its title
+export logs
+cleanup() {
+    [ -z "$screen" ] || kill "$screen" 2>/dev/null
+    rm -rf "$logs" "$override"
+}
+trap cleanup EXIT
 
-# count TITLE: adds up the run in $log and looks for what the engine says when it ends.
+# run TITLE ARGUMENTS…: one run of the engine. Its own log is not the project's, of which there is one.
+run() {
+    local title=$1
+    shift
+    timeout 900 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
+        >"$logs/$title" 2>&1
+}
+# render TITLE DRIVER METHOD: the tests look into viewports of their own; the window costs less the smaller it is.
+render() {
+    run "$1" --rendering-driver "$2" --rendering-method "$3" --resolution 160x120 --audio-driver Dummy -- --rendering
+}
+export -f run render
+
+# count TITLE: adds up that run and looks for what the engine says when it ends.
 count() {
-    local last
+    local log=$logs/$1 last
+    echo "-- $1"
     last=$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$log" | tail -n 1)
     if [ -z "$last" ]; then
         tail -n 40 "$log"
@@ -32,29 +54,28 @@ count() {
     fi
 }
 
-echo "-- headless"
-timeout 900 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" >"$log" 2>&1
-count headless
-
-# What collides, with the engine's other physics. The setting is read when the engine starts.
-echo "-- headless, Jolt"
-override=project/override.cfg
-trap 'rm -f "$log" "$override"' EXIT
+# What collides, with the engine's other physics. The setting is read when the engine starts: no other may start then.
 printf '[physics]\n\n3d/physics_engine="Jolt Physics"\n' >"$override"
-timeout 200 "$GODOT" --headless --path project --script "$PWD/tests/godot/run.gd" -- --only=test_collision >"$log" 2>&1
+run Jolt --headless -- --only=test_collision
 rm -f "$override"
-count Jolt
 
-for renderer in "opengl3 gl_compatibility" "vulkan mobile" "vulkan forward_plus"; do
-    read -r driver method <<<"$renderer"
-    echo "-- $method"
-    timeout 900 xvfb-run -a -s '-screen 0 1280x720x24' "$GODOT" --path project --rendering-driver "$driver" \
-        --rendering-method "$method" --audio-driver Dummy --script "$PWD/tests/godot/run.gd" -- --rendering >"$log" 2>&1
-    if [ "$driver" = vulkan ] && ! grep -q '^Vulkan ' "$log"; then
-        echo "Skipped: no Vulkan driver here."
-        continue
-    fi
-    count "$method"
+start_screen 1280x720 "$logs/screen" || cat "$logs/screen"
+xargs -P "$(nproc)" -I{} bash -c '{} || true' <<'END'
+render forward_plus vulkan forward_plus
+render mobile vulkan mobile
+run headless --headless
+render gl_compatibility opengl3 gl_compatibility
+END
+for title in headless Jolt gl_compatibility mobile forward_plus; do
+    case $title in
+    mobile | forward_plus)
+        grep -q '^Vulkan ' "$logs/$title" || {
+            echo "-- $title: skipped, no Vulkan driver here."
+            continue
+        }
+        ;;
+    esac
+    count "$title"
 done
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
