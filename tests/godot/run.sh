@@ -21,7 +21,7 @@ trap cleanup EXIT
 run() {
     local title=$1
     shift
-    timeout 900 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
+    timeout 1800 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
         >"$logs/$title" 2>&1
 }
 # render TITLE DRIVER METHOD: the tests look into viewports of their own; the window costs less the smaller it is.
