@@ -126,17 +126,24 @@ func choose(text: String) -> bool:
 	if not check(wanted >= 0, "The menu has no '%s'." % text):
 		await user.key("Escape")
 		return false
-	# From a guess, for entries are about as high as each other, down and up.
+	# From a guess, for entries are about as high as each other, down and up. Again and again: a
+	# menu that has just opened takes no notice of a mouse until it has moved for a while.
 	var row: float = float(menu.size.y) / menu.item_count
-	var at: Vector2 = Vector2(menu.position) + Vector2(menu.size.x * 0.4, (wanted + 0.5) * row)
-	for attempt: int in 80:
-		at.y += 7.0 * attempt * (1.0 if attempt % 2 == 0 else -1.0)
-		if not Rect2(menu.position, menu.size).has_point(at):
-			continue
-		await user.move(at)
-		if menu.get_focused_item() == wanted:
-			await user.click(at)
-			return true
+	var guess: float = menu.position.y + (wanted + 0.5) * row
+	for attempt: int in 10:
+		for away: int in range(0, int(maxf(row, 1.0)) * 4, 3):
+			for side: float in [away, -away]:
+				var at: Vector2 = Vector2(menu.position.x + menu.size.x * 0.4, guess + side)
+				if not Rect2(menu.position, menu.size).has_point(at):
+					continue
+				await user.move(at)
+				if not check(menu.visible, "The menu closed before '%s' was taken." % text):
+					return false
+				if menu.get_focused_item() == wanted:
+					await user.click(at)
+					return true
+	await user.picture("FAILED-" + title)
+	await user.key("Escape")
 	return check(false, "The mouse finds no '%s' in the menu." % text)
 
 
