@@ -53,17 +53,28 @@ bool next_text_value(const char*& p, const char* end, char separator, double& va
     return true;
 }
 
-std::vector<double> text_values_of(std::string_view line, char separator, size_t& numeric) {
-    std::vector<double> values;
-    numeric = 0;
+namespace {
+
+// Adds the values of a line; returns how many are numbers.
+size_t append_values(std::string_view line, char separator, std::vector<double>& values) {
+    const size_t most = values.size() + kMostColumns;
+    size_t numeric = 0;
     const char* p = line.data();
     const char* end = p + line.size();
     double value = 0.0;
     bool clean = false;
-    while (values.size() < kMostColumns && next_text_value(p, end, separator, value, clean)) {
+    while (values.size() < most && next_text_value(p, end, separator, value, clean)) {
         values.push_back(value);
         numeric += clean ? 1 : 0;
     }
+    return numeric;
+}
+
+}  // namespace
+
+std::vector<double> text_values_of(std::string_view line, char separator, size_t& numeric) {
+    std::vector<double> values;
+    numeric = append_values(line, separator, values);
     return values;
 }
 
@@ -127,8 +138,14 @@ std::vector<std::string_view> sample_lines(std::string_view bytes, size_t data) 
 
 // Which of ',' and ';' stands between values, and whether ',' is the decimal mark instead.
 char find_separator(const std::vector<std::string_view>& sample, bool& decimal_comma) {
+    const auto has = [&](char c) {
+        return std::any_of(sample.begin(), sample.end(),
+                           [&](std::string_view line) { return line.find(c) != line.npos; });
+    };
+    const bool semicolons = has(';');
+    decimal_comma = false;
+    if (!has(',')) return semicolons ? ';' : ' ';
     size_t commas = 0;
-    size_t semicolons = 0;
     size_t points = 0;
     size_t commas_in_numbers = 0;
     size_t gaps = 0;
@@ -136,7 +153,6 @@ char find_separator(const std::vector<std::string_view>& sample, bool& decimal_c
         for (size_t i = 0; i < line.size(); i++) {
             const char c = line[i];
             points += c == '.';
-            semicolons += c == ';';
             gaps += is_blank(c);
             if (c != ',') continue;
             commas++;
@@ -145,9 +161,9 @@ char find_separator(const std::vector<std::string_view>& sample, bool& decimal_c
             commas_in_numbers += before && after;
         }
     }
-    decimal_comma = commas > 0 && commas == commas_in_numbers && points == 0 && (semicolons > 0 || gaps > 0);
-    if (semicolons > 0) return ';';
-    return commas > 0 && !decimal_comma ? ',' : ' ';
+    decimal_comma = commas == commas_in_numbers && points == 0 && (semicolons || gaps > 0);
+    if (semicolons) return ';';
+    return decimal_comma ? ' ' : ',';
 }
 
 // Values of the sampled rows that have the usual number of columns, column by column.
@@ -180,20 +196,23 @@ struct Sample {
 };
 
 Sample take_sample(const std::vector<std::string_view>& lines, char separator) {
-    std::vector<std::vector<double>> rows;
+    std::vector<double> values;       // of all lines, one after another,
+    std::vector<size_t> row_ends{0};  // and where each line's end
     std::vector<size_t> widths(kMostColumns + 1);
     for (const std::string_view line : lines) {
-        size_t numeric = 0;
-        rows.push_back(text_values_of(line, separator, numeric));
-        widths[rows.back().size()]++;
+        append_values(line, separator, values);
+        widths[values.size() - row_ends.back()]++;
+        row_ends.push_back(values.size());
     }
     const size_t width = static_cast<size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
     Sample sample;
     sample.columns.resize(width);
-    for (const std::vector<double>& row : rows) {
-        if (row.size() != width) continue;
+    for (std::vector<double>& column : sample.columns)
+        column.reserve(widths[width]);
+    for (size_t row = 0; row < lines.size(); row++) {
+        if (row_ends[row + 1] - row_ends[row] != width) continue;
         for (size_t c = 0; c < width; c++)
-            sample.columns[c].push_back(row[c]);
+            sample.columns[c].push_back(values[row_ends[row] + c]);
     }
     return sample;
 }
