@@ -229,6 +229,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
     exporter.prepare(outs);
+    result.measured = exporter.measured();
     if (!outs.empty()) progress.update(0.9, "Writing");
     // Writing waits for the disk, and leaves a core to the score.
     parallel_for(2, 1, [&](size_t part, size_t) {

@@ -41,12 +41,12 @@ class TreeExporter {
 
     size_t triangles();  // of bark and leaves together, of the finest level
     size_t leaves();
+    const Measurements& measured();  // of the tree
 
   private:
     const Mesh& bark();
     const std::vector<LeafPlacement>& placed();
     const Mesh& leaf_cards();
-    const Measurements& measured();
     int card_level();
     struct Coarser {
         Mesh bark, leaves;

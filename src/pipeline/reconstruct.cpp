@@ -212,7 +212,7 @@ void score_reconstruction(Reconstruction& result, const ReconstructOptions& opti
         wood.keep_only(result.wood);
     }
     const PointCloud& judged = wood.empty() ? result.cloud : wood;
-    result.measured = measure(result.tree);
+    if (result.measured.nodes == 0) result.measured = measure(result.tree);
     result.fit = score_scan(result.tree, judged, 0.0, progress, options.score_points);
     const bool unexplained = result.fit.explained_2cm < kLeastExplained;
     const bool guessed = result.measured.measured_volume_share < kLeastMeasured;

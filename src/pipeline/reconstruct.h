@@ -69,7 +69,7 @@ LeafRules suited_leaves(const std::string& preset, const Reconstruction& result)
 
 // The two halves of reconstruct_file(): everything but `measured`, `fit` and the warnings that stand on them;
 // and those. The second one reads nothing but the options and what the first one made, and the first half's
-// tree, cloud and foliage may be read meanwhile.
+// tree, cloud and foliage may be read meanwhile. A tree that was measured since then is not measured again.
 Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& options,
                                 Progress* progress = nullptr, ReconstructCache* cache = nullptr);
 void score_reconstruction(Reconstruction& result, const ReconstructOptions& options,
