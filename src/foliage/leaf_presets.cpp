@@ -61,14 +61,14 @@ LeafRules spruce() {
 
 LeafRules palm() {
     // Fronds at the end of the stem alone: young ones upright, old ones hanging.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.040, 2.8, 118.0, 12.0);
-    made.twig_length = 1.8;
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.020, 2.8, 118.0, 12.0);
+    made.twig_length = 0.84;
     made.maximum_radius = 0.5;
     made.by_order = {1.0f, 0.0f};
     made.closing = 0.85;
     made.size_variation = 0.12;
     made.angle_variation = 10.0;
-    made.phototropism = 0.5;
+    made.phototropism = 0.0;  // they arch away from the stem on all sides, not to the light
     made.curl = 75.0;
     made.leaflets = 41;
     made.blade_width = 0.06;

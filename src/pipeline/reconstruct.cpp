@@ -84,7 +84,13 @@ std::string chosen_leaves(const std::string& asked, const Reconstruction& result
 
 LeafRules suited_leaves(const std::string& preset, const Reconstruction& result) {
     LeafRules rules = leaf_preset(preset);
-    if (result.palm && preset == "palm") rules.leaf_size = kFrondShare * result.foliage.reach;
+    if (result.palm && preset == "palm") {
+        // As many fronds as ever, from as much of the stem as suits their length.
+        const double size = kFrondShare * result.foliage.reach / rules.leaf_size;
+        rules.leaf_size *= size;
+        rules.twig_length *= size;
+        rules.internode *= size;
+    }
     return rules;
 }
 

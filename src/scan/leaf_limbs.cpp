@@ -24,11 +24,18 @@ constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well belo
 constexpr double kMostCrownWood = 0.12;  // cells of wood above the hub, per cell of leaf
 constexpr double kHubShare = 0.06;       // of the height: the leaves' paths start as near to one another
 constexpr double kLeastPlanarity = 0.27;
-constexpr double kRibCells = 3.0;    // wood that far from the stem, above the hub, is a rib of a frond
-constexpr double kSliceCells = 4.0;  // height of the slices in which the stem is walked up
-constexpr double kStemBulge = 1.5;   // times the stem's usual radius: what lies further out is not of it
-constexpr double kReachSlack = 1.1;  // the stem ends a little below or beside the crown's middle
-constexpr double kStemCells = 0.8;   // radius of the stem that is followed through the fronds
+// Where blur has made fronds as thick as other leaves: a tuft that hangs around the end of a tall bare stem.
+// Of real scans, a palm's leaves join their stem within 0.03 to 0.06 of the crown's extent, broad-leaved
+// crowns above a stem as tall within 0.17 and more.
+constexpr double kTuftHub = 0.75;     // of the height: the hub is higher
+constexpr double kTuftSpread = 0.1;   // of the crown's extent
+constexpr double kTuftHanging = 0.1;  // of the leaves: more hang below the hub
+constexpr double kRibCells = 3.0;     // wood that far from the stem, above the hub, is a rib of a frond
+constexpr double kSliceCells = 4.0;   // height of the slices in which the stem is walked up
+constexpr double kStemBulge = 1.5;    // times the stem's usual radius: what lies further out is not of it
+constexpr double kReachSlack = 1.1;   // the stem ends a little below or beside the crown's middle
+constexpr double kStemCells = 0.8;    // radius of the stem that is followed through the fronds
+constexpr double kMostLean = 0.36;    // sideways per metre up: palms grow upright
 
 struct Crown {
     double base = 0.0;    // height
@@ -85,8 +92,38 @@ void clear_foot(const Cells& cells, const Crown& crown, std::vector<uint8_t>& le
     }
 }
 
+// Where the ways of leaves to the ground meet wood.
+struct Hub {
+    DVec3 at{0.0};
+    double height = 0.0, aside = 0.0;  // standard deviations, metres
+    double share = 0.0;                // of the leaves: those that meet wood at all
+};
+
+Hub find_hub(const Cells& cells, const CellPaths& tree, const std::vector<uint8_t>& leaf, size_t leaves) {
+    std::vector<uint32_t> from(cells.count());
+    DVec3 sum(0.0), squares(0.0);
+    double met = 0.0;
+    for (const uint32_t v : tree.order) {
+        const uint32_t p = tree.parent[v];
+        from[v] = leaf[v] && p != v ? from[p] : v;
+        if (!leaf[v] || leaf[from[v]]) continue;
+        const DVec3 at(cells.centres[from[v]]);
+        sum += at;
+        squares += at * at;
+        met += 1.0;
+    }
+    Hub hub;
+    if (met == 0.0) return hub;
+    hub.at = sum / met;
+    const DVec3 variance = glm::max(squares / met - hub.at * hub.at, DVec3(0.0));
+    hub.height = std::sqrt(variance.y);
+    hub.aside = std::sqrt(variance.x + variance.z);
+    hub.share = met / static_cast<double>(leaves);
+    return hub;
+}
+
 bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
-                const std::vector<uint8_t>& leaf, const Crown& crown, DVec3& hub) {
+                const std::vector<uint8_t>& leaf, const Crown& crown, DVec3& where) {
     double planarity = 0.0;
     float low = cells.centres[0].y;
     for (size_t v = 0; v < cells.count(); v++) {
@@ -94,29 +131,23 @@ bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& t
         if (leaf[v]) planarity += shapes[v * kShapeScales + 1].planarity;
     }
     const auto leaves = static_cast<double>(crown.cells);
-    if (planarity < kLeastPlanarity * leaves) return false;
-    // Where the way from each leaf meets wood.
-    std::vector<uint32_t> from(cells.count());
-    DVec3 sum(0.0);
-    double square = 0.0, met = 0.0;
-    for (const uint32_t v : tree.order) {
-        const uint32_t p = tree.parent[v];
-        from[v] = leaf[v] && p != v ? from[p] : v;
-        if (!leaf[v] || leaf[from[v]]) continue;
-        const DVec3 at(cells.centres[from[v]]);
-        sum += at;
-        square += at.y * at.y;
-        met += 1.0;
-    }
-    if (met < 0.5 * leaves) return false;
-    hub = sum / met;
-    const double spread = std::sqrt(std::max(0.0, square / met - hub.y * hub.y));
-    if (spread >= kHubShare * (crown.top.y - low)) return false;
+    const double height = crown.top.y - low;
+    const Hub hub = find_hub(cells, tree, leaf, crown.cells);
+    where = hub.at;
+    if (hub.share < 0.5) return false;
     // Fronds hang down around their stem, but nothing of it stands above them.
-    double wood = 0.0;
-    for (size_t v = 0; v < cells.count(); v++)
-        if (!leaf[v] && cells.centres[v].y > hub.y + spread + kRibCells * cells.size) wood += 1.0;
-    return wood <= kMostCrownWood * leaves;
+    double above = 0.0, hanging = 0.0;
+    for (size_t v = 0; v < cells.count(); v++) {
+        const double y = cells.centres[v].y;
+        if (!leaf[v] && y > hub.at.y + hub.height + kRibCells * cells.size) above += 1.0;
+        if (leaf[v] && y < hub.at.y) hanging += 1.0;
+    }
+    if (above > kMostCrownWood * leaves) return false;
+    const bool sheets = planarity >= kLeastPlanarity * leaves && hub.height < kHubShare * height;
+    const bool tuft = hub.at.y - low > kTuftHub * height &&
+                      std::max(hub.height, hub.aside) < kTuftSpread * crown.extent &&
+                      hanging > kTuftHanging * leaves;
+    return sheets || tuft;
 }
 
 double distance_to(const DVec3& p, const DVec3& from, const DVec3& to) {
@@ -161,19 +192,27 @@ void clear_stem(const Cells& cells, std::vector<uint8_t>& leaf, double low, cons
     }
 }
 
-// The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to the crown's middle,
-// where they spring from.
+// The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to the height of the
+// crown's middle, where they spring from.
 void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub,
                  Limbs& limbs) {
     float low = cells.centres[0].y;
     for (const Vec3& p : cells.centres)
         low = std::min(low, p.y);
     clear_stem(cells, leaf, low, hub);
+    // Fronds that the scan shows on one side only pull the crown's middle there; palms grow upright.
+    DVec3 end = hub;
+    if (crown.middle.y > hub.y) {
+        const DVec3 off = crown.middle - hub;
+        const double most = kMostLean * off.y, aside = std::hypot(off.x, off.z);
+        const double share = aside > most ? most / aside : 1.0;
+        end += DVec3(share * off.x, off.y, share * off.z);
+    }
     const double radius = kStemCells * cells.size;
     std::vector<float> reaches;
     for (size_t v = 0; v < cells.count(); v++) {
         const DVec3 p(cells.centres[v]);
-        const double off = distance_to(p, hub, crown.middle.y > hub.y ? crown.middle : hub);
+        const double off = distance_to(p, hub, end);
         // Wood off the stem is a frond's rib.
         if (!leaf[v] && p.y > hub.y && off > kRibCells * cells.size) leaf[v] = 1;
         limbs.path[v] = !leaf[v] || off < radius;
