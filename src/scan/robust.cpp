@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t kRepresentative = 8192;    // points that tell a quantile well enough
 constexpr size_t kBlock = size_t{1} << 18;  // points between two looks at the progress
+constexpr float kNearEnd = 0.38F;           // of the width: as near an end
+constexpr double kFilledEnd = 0.02;         // of the points: twice what lies beyond a quantile
 
 template <typename Body>
 void in_blocks(std::span<const Vec3> points, const Progress* progress, const Body& body) {
@@ -20,6 +22,23 @@ void in_blocks(std::span<const Vec3> points, const Progress* progress, const Bod
         for (const Vec3& p : points.subspan(block, std::min(kBlock, points.size() - block)))
             body(p);
     }
+}
+
+// Whether so many points lie near either end of the box that it is all within reach of the middle 98 %: the
+// two quantiles are then less than 0.4 of the width from its ends, hence no end lies further beyond them than
+// twice their distance.
+bool both_ends_filled(std::span<const Vec3> points, const Vec3& low, const Vec3& high,
+                      const Progress* progress) {
+    const Vec3 near_low = glm::mix(low, high, kNearEnd), near_high = glm::mix(high, low, kNearEnd);
+    std::array<size_t, 3> lower{}, upper{};
+    in_blocks(points, progress, [&](const Vec3& p) {
+        for (int k = 0; k < 3; k++) {
+            lower[static_cast<size_t>(k)] += p[k] <= near_low[k];
+            upper[static_cast<size_t>(k)] += p[k] >= near_high[k];
+        }
+    });
+    const size_t enough = static_cast<size_t>(kFilledEnd * static_cast<double>(points.size())) + 1;
+    return std::min({lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]}) >= enough;
 }
 
 }  // namespace
@@ -42,6 +61,14 @@ std::vector<Vec3> some_of(std::span<const Vec3> points, size_t wanted, const Pro
 std::array<Range, 3> robust_ranges(std::span<const Vec3> points, const Progress* progress) {
     std::array<Range, 3> ranges;
     if (points.empty()) return ranges;
+    Vec3 low = points[0], high = low;
+    in_blocks(points, progress, [&](const Vec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    });
+    for (int k = 0; k < 3; k++)
+        ranges[static_cast<size_t>(k)] = {low[k], high[k]};
+    if (both_ends_filled(points, low, high, progress)) return ranges;
     const std::vector<Vec3> some = some_of(points, kRepresentative, progress);
     std::array<float, 3> least{};
     std::array<float, 3> most{};
@@ -57,21 +84,19 @@ std::array<Range, 3> robust_ranges(std::span<const Vec3> points, const Progress*
         most[k] = static_cast<float>(std::min<double>(q99 + reach, std::numeric_limits<float>::max()));
         ranges[k] = {q01, q99};
     }
-    std::array<float, 3> low{};
-    std::array<float, 3> high{};
-    for (size_t k = 0; k < 3; k++) {
-        low[k] = static_cast<float>(ranges[k].low);
-        high[k] = static_cast<float>(ranges[k].high);
+    for (int k = 0; k < 3; k++) {
+        low[k] = static_cast<float>(ranges[static_cast<size_t>(k)].low);
+        high[k] = static_cast<float>(ranges[static_cast<size_t>(k)].high);
     }
     in_blocks(points, progress, [&](const Vec3& p) {
-        for (size_t k = 0; k < 3; k++) {
-            const float v = p[static_cast<int>(k)];
-            if (v < low[k] && v >= least[k]) low[k] = v;
-            if (v > high[k] && v <= most[k]) high[k] = v;
+        for (int k = 0; k < 3; k++) {
+            const float v = p[k];
+            if (v < low[k] && v >= least[static_cast<size_t>(k)]) low[k] = v;
+            if (v > high[k] && v <= most[static_cast<size_t>(k)]) high[k] = v;
         }
     });
-    for (size_t k = 0; k < 3; k++)
-        ranges[k] = {low[k], high[k]};
+    for (int k = 0; k < 3; k++)
+        ranges[static_cast<size_t>(k)] = {low[k], high[k]};
     return ranges;
 }
 
