@@ -247,7 +247,12 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
     std::vector<uint8_t> stays(count);
     stays[largest] = 1;
     // What stays may be what another part goes on from: a limb in three pieces.
-    for (size_t round = 0; round < kMostRounds; round++) {
+    const auto any_left = [&] {
+        for (size_t l = 0; l < count; l++)
+            if (!stays[l] && !parts[l].empty()) return true;
+        return false;
+    };
+    for (size_t round = 0; round < kMostRounds && any_left(); round++) {
         const Main main(tree, extent);
         bool grew = false;
         for (size_t l = 0; l < count; l++) {
