@@ -49,6 +49,10 @@ struct Slice {
     double radius = 0.0;  // holds 80 % of the slice's points
 };
 
+double square_of(const DVec2& v) {
+    return glm::dot(v, v);
+}
+
 std::vector<Slice> slice_up(const std::vector<std::vector<Vec2>>& points) {
     size_t total = 0;
     for (const std::vector<Vec2>& slice : points)
@@ -56,6 +60,7 @@ std::vector<Slice> slice_up(const std::vector<std::vector<Vec2>>& points) {
     const size_t fewest = std::max<size_t>(3, total / 20000);
     std::vector<Slice> slices(points.size());
     std::vector<float> values;
+    std::vector<double> squares;
     for (size_t s = 0; s < points.size(); s++) {
         Slice& slice = slices[s];
         slice.occupied = points[s].size() >= fewest;
@@ -66,10 +71,10 @@ std::vector<Slice> slice_up(const std::vector<std::vector<Vec2>>& points) {
                 values.push_back(p[axis]);
             slice.centre[axis] = quantile(values, 0.5);
         }
-        values.clear();
+        squares.clear();
         for (const Vec2& p : points[s])
-            values.push_back(static_cast<float>(glm::length(DVec2(p) - slice.centre)));
-        slice.radius = quantile(values, 0.8);
+            squares.push_back(square_of(DVec2(p) - slice.centre));
+        slice.radius = static_cast<float>(std::sqrt(quantile(squares, 0.8)));
     }
     return slices;
 }
@@ -110,6 +115,8 @@ AxisView view_axis(const std::vector<Vec3>& points, const std::array<Range, 3>& 
     std::vector<std::vector<Vec2>> sliced(kSlices);
     std::vector<float> us;
     std::vector<float> vs;
+    us.reserve(points.size());
+    vs.reserve(points.size());
     auto at = [](const Vec3& p, size_t k) { return p[static_cast<int>(k)]; };
     for (const Vec3& p : points) {
         if (!ranges[0].contains(p.x) || !ranges[1].contains(p.y) || !ranges[2].contains(p.z)) continue;
@@ -121,13 +128,13 @@ AxisView view_axis(const std::vector<Vec3>& points, const std::array<Range, 3>& 
     }
     if (us.size() < 10) return view;
     const DVec2 centre(quantile(us, 0.5), quantile(vs, 0.5));
-    std::vector<double> distances;
-    distances.reserve(us.size());
+    std::vector<double> squares;
+    squares.reserve(us.size());
     for (const std::vector<Vec2>& slice : sliced)
         for (const Vec2& p : slice)
-            distances.push_back(glm::length(DVec2(p) - centre));
-    const double crown_radius = std::max(quantile(distances, 0.9), 1e-9 * height);
-    const double middle_radius = std::max(quantile(distances, 0.5), 1e-3 * height);
+            squares.push_back(square_of(DVec2(p) - centre));
+    const double crown_radius = std::max(std::sqrt(quantile(squares, 0.9)), 1e-9 * height);
+    const double middle_radius = std::max(std::sqrt(quantile(squares, 0.5)), 1e-3 * height);
     view.elongation_score = 2.0 * std::max(0.0, portable::log2(0.15 * height / middle_radius));
 
     std::vector<Slice> slices = slice_up(sliced);
@@ -162,9 +169,10 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
     if (is_on_map(cloud.frame.origin)) return guess;
 
     const std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
-    const AxisView x = view_axis(points, ranges, 0);
-    const AxisView y = view_axis(points, ranges, 1);
-    const AxisView z = view_axis(points, ranges, 2);
+    std::array<AxisView, 3> views;
+    parallel_for(views.size(), 1,
+                 [&](size_t axis, size_t) { views[axis] = view_axis(points, ranges, axis); });
+    const auto& [x, y, z] = views;
     const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
     const double z_score = z.low_end.score + z.elongation_score;
     const double margin = cloud.has_colors() ? 0.2 : 0.4;
