@@ -16,6 +16,7 @@ constexpr double kClusterSteepness = 5.0;     // how fast a fully clustered twig
 constexpr double kBunchSplay = 16.0;          // degrees between neighbours of a bunch
 constexpr double kJitter = 0.0175;            // radians around the twig per degree of angle_variation
 constexpr double kSunk = 0.9;                 // of the wood's radius: where a petiole leaves the axis
+constexpr double kColorHue = 0.7;             // of a leaf's hue, where the scan has colours
 constexpr uint64_t kFallKey = 0x66616c6cULL;  // "fall"
 constexpr uint64_t kThinKey = 0x7468696eULL;  // "thin"
 
@@ -58,8 +59,8 @@ LeafPlacer::LeafPlacer(const Tree& t, const LeafRules& r, uint64_t s)
       size(scaled(r, crown.height)),
       seed(s) {}
 
-LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, double angle, NodeId tip,
-                                  uint64_t number) const {
+LeafPlacement LeafPlacer::leaf_at(const LeafSpot& spot) const {
+    const auto& [at, radial, angle, tip, number, red] = spot;
     const uint64_t branch_key = hash_seed(seed, static_cast<uint64_t>(tip));
     Random random(hash_seed(branch_key, number));
     const DVec3 up(0.0, 1.0, 0.0);
@@ -96,11 +97,15 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     leaf.y = Vec3(y);
     leaf.z = Vec3(z);
     leaf.outward = Vec3(outward);
-    leaf.size = static_cast<float>(size.leaf_size * (1.0 + rules.size_variation * random.uniform(-1.0, 1.0)));
+    leaf.size = random_size(random);
     const double phase = branch_phase(tip) + 0.25 * random.uniform();
     leaf.phase = static_cast<float>(phase - std::floor(phase));
     Random branch_random(branch_key, 1);
     leaf.hue = static_cast<float>(0.55 * branch_random.uniform() + 0.45 * random.uniform());
+    if (red >= 0.0) {
+        const double follow = kColorHue * rules.follow_color;
+        leaf.hue = static_cast<float>(follow * red + (1.0 - follow) * leaf.hue);
+    }
     const double stout = size.maximum_radius > 0.0 ? at.radius / size.maximum_radius : 1.0;
     leaf.stiffness = static_cast<float>(std::clamp(stout, 0.0, 1.0));
     leaf.sway = static_cast<float>(crown.sway(at.position));
@@ -113,8 +118,20 @@ LeafPlacement LeafPlacer::leaf_at(const AxisPoint& at, const DVec3& radial, doub
     return leaf;
 }
 
-LeafPlacement LeafPlacer::tip_leaf(const Branch& branch, const AxisPoint& end) const {
-    return leaf_at(end, end.direction, 0.0, list.nodes[branch.end - 1], 0);
+float LeafPlacer::size_of(const LeafSpot& spot) const {
+    Random random(hash_seed(hash_seed(seed, static_cast<uint64_t>(spot.tip)), spot.number));
+    // What leaf_at() asks for before; a leaf at a tip has no angle.
+    for (int passed = spot.number == 0 ? 4 : 5; passed > 0; passed--)
+        random.next();
+    return random_size(random);
+}
+
+float LeafPlacer::random_size(Random& random) const {
+    return static_cast<float>(size.leaf_size * (1.0 + rules.size_variation * random.uniform(-1.0, 1.0)));
+}
+
+LeafSpot LeafPlacer::tip_spot(const Branch& branch, const AxisPoint& end) const {
+    return {end, end.direction, 0.0, list.nodes[branch.end - 1], 0};
 }
 
 double LeafPlacer::density_at(const Branch& branch, const AxisPoint& at) const {
@@ -133,13 +150,13 @@ DVec3 LeafPlacer::first_side(const DVec3& direction) const {
 }
 
 void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>& axis,
-                      std::vector<LeafPlacement>& leaves) const {
+                      std::vector<LeafSpot>& spots) const {
     if (share <= 0.0) return;
     sample_axis(tree, list, branch, 2e-5 * crown.coordinate, axis);
     if (axis.size() < 2) return;
     const NodeId tip = list.nodes[branch.end - 1];
     const AxisPoint end = axis.back();
-    if (density_at(branch, end) > 0.0) leaves.push_back(tip_leaf(branch, end));
+    if (density_at(branch, end) > 0.0) spots.push_back(tip_spot(branch, end));
     uint64_t number = 1;
     // The tip bears leaves however thick a scan made it.
     const double stoutest = std::max(size.maximum_radius, 1.5 * end.radius);
@@ -182,7 +199,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
             }
             const SineCosine turn = portable_sine_cosine(around);
             const DVec3 radial = side * turn.cosine + other * turn.sine;
-            leaves.push_back(leaf_at(at, radial, out, tip, own));
+            spots.push_back({at, radial, out, tip, own});
         }
         switch (rules.arrangement) {
             case LeafArrangement::kAlternate:

@@ -18,6 +18,7 @@ namespace treerec {
 namespace {
 
 constexpr size_t kBranchesPerChunk = 256;
+constexpr size_t kLeavesPerChunk = 512;
 constexpr double kStoutShare = 2.0;  // of the rules' maximum_radius: wood that a snag can stand on
 
 // Following a scan's foliage.
@@ -25,7 +26,6 @@ constexpr size_t kCellsPerChunk = 512;
 constexpr double kHostReach = 2.0;        // of the spacing of foliage_twigs.h: from a leaf to its wood
 constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
-constexpr double kColorHue = 0.7;                          // of a leaf's hue, where the scan has colours
 
 // Leaves where a scan saw them.
 class Follower {
@@ -49,7 +49,7 @@ class Follower {
     }
 
     // The sprays in one cell.
-    void fill(const FoliageCell& cell, std::vector<LeafPlacement>& leaves) const {
+    void fill(const FoliageCell& cell, std::vector<LeafSpot>& spots) const {
         const uint64_t key = hash_seed(placer_.seed, key_of(cell));
         Random random(key, 3);
         const double density = std::clamp(cell.points / usual_, kLeastDensity, kMostDensity);
@@ -70,20 +70,18 @@ class Follower {
             const NodeId tip = placer_.list.nodes[placer_.list.branches[host->branch].end - 1];
             // Never 0, which is the tip's own leaf.
             const uint64_t number = hash_seed(key, k) | 1;
-            leaves.push_back(placer_.leaf_at(at, radial, placer_.rules.angle, tip, number));
-            tint(cell, leaves.back());
+            spots.push_back({at, radial, placer_.rules.angle, tip, number, redness(cell)});
         }
     }
 
     // A spray at the end of a twig that the scan shows among leaves.
-    void finish(const Branch& branch, std::vector<AxisPoint>& axis,
-                std::vector<LeafPlacement>& leaves) const {
+    void finish(const Branch& branch, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& spots) const {
         sample_axis(placer_.tree, placer_.list, branch, 2e-5 * placer_.crown.coordinate, axis);
         if (axis.size() < 2) return;
         const FoliageCell* cell = cell_near(axis.back().position);
         if (!cell) return;
-        leaves.push_back(placer_.tip_leaf(branch, axis.back()));
-        tint(*cell, leaves.back());
+        spots.push_back(placer_.tip_spot(branch, axis.back()));
+        spots.back().red = redness(*cell);
     }
 
   private:
@@ -95,12 +93,11 @@ class Follower {
                std::max(1, cell.color[0] + cell.color[1] + cell.color[2]);
     }
 
-    void tint(const FoliageCell& cell, LeafPlacement& leaf) const {
-        if (!foliage_.colored) return;
+    // LeafSpot::red
+    double redness(const FoliageCell& cell) const {
+        if (!foliage_.colored) return -1.0;
         const double range = std::max(reddest_ - greenest_, 0.02);
-        const double hue = std::clamp((red_share(cell) - greenest_) / range, 0.0, 1.0);
-        const double follow = kColorHue * placer_.rules.follow_color;
-        leaf.hue = static_cast<float>(follow * hue + (1.0 - follow) * leaf.hue);
+        return std::clamp((red_share(cell) - greenest_) / range, 0.0, 1.0);
     }
 
     // The cell at p, or one of those that touch it; nullptr where there is none.
@@ -135,50 +132,63 @@ class Follower {
     double greenest_ = 0.0, reddest_ = 0.0;
 };
 
+using Spots = std::vector<std::vector<LeafSpot>>;
+
+// Those of the spots that become leaves.
+struct Chosen {
+    std::vector<const LeafSpot*> spots;
+    float growth = 1.0f;  // of their leaves, which stand for all
+};
+
 // Fewer, larger leaves that cover the same area. Those at the twigs' ends stay as long as there is room.
-void limit_count(std::vector<LeafPlacement>& leaves, size_t most) {
-    if (leaves.size() <= most) return;
+Chosen limit_count(const LeafPlacer& placer, const Spots& parts, size_t most) {
+    Chosen all;
     size_t ends = 0;
-    for (const LeafPlacement& leaf : leaves)
-        ends += leaf.terminal > 0.0f;
-    const size_t others = leaves.size() - ends;
+    for (const auto& part : parts)
+        for (const LeafSpot& spot : part) {
+            all.spots.push_back(&spot);
+            ends += spot.number == 0;
+        }
+    const size_t count = all.spots.size();
+    if (count <= most) return all;
+    std::vector<float> sizes(count);
+    parallel_for(count, kLeavesPerChunk, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++)
+            sizes[i] = placer.size_of(*all.spots[i]);
+    });
+    const size_t others = count - ends;
     const double end_share =
         std::min(1.0, static_cast<double>(most) / static_cast<double>(std::max<size_t>(ends, 1)));
     const double share = ends < most ? static_cast<double>(most - ends) / static_cast<double>(others) : 0.0;
-    std::vector<LeafPlacement> kept;
-    kept.reserve(most);
+    Chosen kept;
+    kept.spots.reserve(most);
     double passed = 0.0, ends_passed = 0.0, area = 0.0, kept_area = 0.0;
-    for (const LeafPlacement& leaf : leaves) {
-        area += static_cast<double>(leaf.size) * leaf.size;
+    for (size_t i = 0; i < count; i++) {
+        const bool terminal = all.spots[i]->number == 0;
+        const double own_area = static_cast<double>(sizes[i]) * sizes[i];
+        area += own_area;
         // A leaf stays where the running total passes the next whole number: evenly along every twig.
-        double& total = leaf.terminal > 0.0f ? ends_passed : passed;
+        double& total = terminal ? ends_passed : passed;
         const double before = total;
-        total += leaf.terminal > 0.0f ? end_share : share;
-        if (std::floor(total) == std::floor(before) || kept.size() == most) continue;
-        kept.push_back(leaf);
-        kept_area += static_cast<double>(leaf.size) * leaf.size;
+        total += terminal ? end_share : share;
+        if (std::floor(total) == std::floor(before) || kept.spots.size() == most) continue;
+        kept.spots.push_back(all.spots[i]);
+        kept_area += own_area;
     }
-    const auto growth = static_cast<float>(std::sqrt(area / std::max(kept_area, 1e-300)));
-    for (LeafPlacement& leaf : kept)
-        leaf.size *= growth;
-    leaves = std::move(kept);
+    kept.growth = static_cast<float>(std::sqrt(area / std::max(kept_area, 1e-300)));
+    return kept;
 }
 
-// Calls body(i, leaves) for all i, on several threads, and gathers the leaves in the order of i.
+// Calls body(i, axis, spots) for all i, on several threads, and adds the spots in the order of i.
 template <typename Body>
-void gather(size_t count, size_t grain, std::vector<LeafPlacement>& leaves, const Body& body) {
-    std::vector<std::vector<LeafPlacement>> parts((count + grain - 1) / grain);
+void gather(size_t count, size_t grain, Spots& parts, const Body& body) {
+    const size_t first = parts.size();
+    parts.resize(first + (count + grain - 1) / grain);
     parallel_for(count, grain, [&](size_t begin, size_t end) {
         std::vector<AxisPoint> axis;
         for (size_t i = begin; i < end; i++)
-            body(i, axis, parts[begin / grain]);
+            body(i, axis, parts[first + begin / grain]);
     });
-    size_t total = leaves.size();
-    for (const auto& part : parts)
-        total += part.size();
-    leaves.reserve(total);
-    for (const auto& part : parts)
-        leaves.insert(leaves.end(), part.begin(), part.end());
 }
 
 }  // namespace
@@ -193,26 +203,35 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     const Tree& wood = follow > 0.0 ? grown : tree;
     const LeafPlacer placer(wood, rules, seed);
     const std::vector<Branch>& branches = placer.list.branches;
-    using Leaves = std::vector<LeafPlacement>;
+    Spots spots;
     if (follow < 1.0) {
         const std::vector<uint8_t> snag =
             find_snags(wood, placer.list, kStoutShare * placer.size.maximum_radius);
-        gather(branches.size(), kBranchesPerChunk, leaves,
-               [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
+        gather(branches.size(), kBranchesPerChunk, spots,
+               [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
                    if (!snag[i]) placer.bear(branches[i], 1.0 - follow, axis, out);
                });
     }
     if (follow > 0.0) {
         const Follower follower(placer, foliage);
         if (follow >= 1.0)
-            gather(branches.size(), kBranchesPerChunk, leaves,
-                   [&](size_t i, std::vector<AxisPoint>& axis, Leaves& out) {
+            gather(branches.size(), kBranchesPerChunk, spots,
+                   [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
                        follower.finish(branches[i], axis, out);
                    });
-        gather(foliage.cells.size(), kCellsPerChunk, leaves,
-               [&](size_t i, std::vector<AxisPoint>&, Leaves& out) { follower.fill(foliage.cells[i], out); });
+        gather(foliage.cells.size(), kCellsPerChunk, spots,
+               [&](size_t i, std::vector<AxisPoint>&, std::vector<LeafSpot>& out) {
+                   follower.fill(foliage.cells[i], out);
+               });
     }
-    limit_count(leaves, static_cast<size_t>(rules.maximum_leaves));
+    const Chosen chosen = limit_count(placer, spots, static_cast<size_t>(rules.maximum_leaves));
+    leaves.resize(chosen.spots.size());
+    parallel_for(leaves.size(), kLeavesPerChunk, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            leaves[i] = placer.leaf_at(*chosen.spots[i]);
+            leaves[i].size *= chosen.growth;
+        }
+    });
     // Last, so that the same leaves fall first whatever the limit.
     std::erase_if(leaves, [&](const LeafPlacement& leaf) { return leaf.hold <= 1.0 - rules.standing; });
     return leaves;
