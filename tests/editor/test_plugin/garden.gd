@@ -15,13 +15,19 @@ func real_scan(file: String) -> String:
 
 ## Puts a file into the project's folder from another program, and comes back to the editor.
 func drop_file(from: String, to: String) -> void:
-	# The engine forgets new files that it comes upon while it imports others.
+	# The engine forgets new files that it comes upon while it imports others, and overlooks what
+	# becomes of a folder within a second after it has looked into it: it compares whole seconds.
 	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
 	var quiet: int = 0
-	while quiet < 60:
+	var since: int = Time.get_ticks_msec()
+	while quiet < 12 or Time.get_ticks_msec() < since + 2000:
 		await user.frames(1)
-		quiet = 0 if files.is_scanning() else quiet + 1
+		quiet += 1
+		if files.is_scanning():
+			quiet = 0
+			since = Time.get_ticks_msec()
 	await user.go()
+	DirAccess.make_dir_recursive_absolute(to.get_base_dir())
 	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
 	await user.come()
 
@@ -80,6 +86,23 @@ func open_garden(path: String, of: TreeReconstruction) -> TreeInstance3D:
 	if not await until(func() -> bool: return scene_path() == path, path + " is open"):
 		return null
 	return await take_up(EditorInterface.get_edited_scene_root().get_node(^"Tree"))
+
+
+## Waits until the editor has opened the scenes of its last run, and shows the one that was shown:
+## until then it turns from whatever it is asked to open to the next of them.
+func reopened() -> bool:
+	var layout: ConfigFile = ConfigFile.new()
+	layout.load("res://.godot/editor/editor_layout.cfg")
+	var wanted: PackedStringArray = layout.get_value("EditorNode", "open_scenes", [])
+	var shown: String = layout.get_value("EditorNode", "current_scene", "")
+	return await until(
+		func() -> bool:
+			for path: String in wanted:
+				if not path in EditorInterface.get_open_scenes():
+					return false
+			return scene_path() == shown,
+		"the scenes of the last run are open"
+	)
 
 
 ## Clicks on a tree's node in the Scene dock, and brings it into view.

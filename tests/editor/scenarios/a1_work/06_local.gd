@@ -8,7 +8,6 @@ const LOCAL: String = "res://garden/elm_tree.res"
 
 func run() -> void:
 	await step("an imported tree becomes a file beside the scan with its first edit")
-	DirAccess.make_dir_absolute("res://garden")
 	await drop_file(sample, SCAN)
 	var made: TreeReconstruction = await imported(SCAN)
 	if made == null:

@@ -8,6 +8,8 @@ func run() -> void:
 	if not ResourceLoader.exists("res://edit.tscn"):
 		await user.say("        Skipped: there is nothing saved to look at.")
 		return
+	if not await reopened():
+		return
 	EditorInterface.open_scene_from_path("res://edit.tscn")
 	if not await until(func() -> bool: return scene_path() == "res://edit.tscn", "it is open"):
 		return

@@ -9,7 +9,7 @@ func run() -> void:
 	for i: int in 4:
 		var path: String = ProjectSettings.globalize_path("res://late_%d.ply" % i)
 		await user.ask(["copy", sample, path])
-	if ResourceLoader.exists("res://edit.tscn"):
+	if ResourceLoader.exists("res://edit.tscn") and await reopened():
 		EditorInterface.open_scene_from_path("res://edit.tscn")
 		await until(func() -> bool: return scene_path() == "res://edit.tscn", "it is open")
 		await click_node(EditorInterface.get_edited_scene_root().get_node(^"Tree"))
