@@ -199,6 +199,19 @@ func large_branches(of: TreeReconstruction) -> PackedInt32Array:
 	return PackedInt32Array(ids)
 
 
+## A picture for people, in which the 3D view is as fine as in anybody's project: project.cfg has it
+## drawn coarsely.
+func fine_picture(name: String) -> void:
+	var scale: float = view().scaling_3d_scale
+	var shadows: String = "rendering/lights_and_shadows/directional_shadow/size"
+	view().scaling_3d_scale = 1.0
+	RenderingServer.directional_shadow_atlas_set_size(4096, true)
+	await picture(name)
+	view().scaling_3d_scale = scale
+	var size: int = ProjectSettings.get_setting(shadows)
+	RenderingServer.directional_shadow_atlas_set_size(size, true)
+
+
 ## How many objects the 3D view draws, with those that no node owns.
 func drawn_objects() -> int:
 	return RenderingServer.viewport_get_render_info(

@@ -19,7 +19,7 @@ func run() -> void:
 	await click_file(SCAN, User.RIGHT)
 	await until(func() -> bool: return open_menu() != null, "a menu opens")
 	await _see_last_entry()
-	await picture("tour-menu")
+	await fine_picture("tour-menu")
 	if not await choose("Add Tree to Scene"):
 		return
 	var root: Node = EditorInterface.get_edited_scene_root()
@@ -38,7 +38,7 @@ func run() -> void:
 
 func _look_at_it() -> void:
 	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
-	await picture("tour-tree")
+	await fine_picture("tour-tree")
 
 	await step("the scan is seen on its tree")
 	await user.key("p")
@@ -46,7 +46,7 @@ func _look_at_it() -> void:
 		await user.key("l")
 		await user.key("t")
 		await user.frames(20)
-		await picture("tour-scan")
+		await fine_picture("tour-scan")
 		await user.key("t")
 		await user.key("l")
 	await user.key("p")
@@ -57,7 +57,7 @@ func _work_on_it() -> void:
 	var branch: int = clear_nodes(_node, _branches_of(100))[0]
 	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
 	await until(func() -> bool: return session().selection.size() > 5, "a branch is selected")
-	await picture("tour-branch")
+	await fine_picture("tour-branch")
 	await user.key("Delete")
 	if not await until(func() -> bool: return _node.reconstruction != _of, "it is cut"):
 		return
@@ -76,7 +76,7 @@ func _work_on_it() -> void:
 	var children: int = _of.get_node_children(host).size()
 	await user.move(node_on_screen(_node, host))
 	await until(func() -> bool: return not session().tool.get_ghosts().is_empty(), "it is shown")
-	await picture("tour-graft")
+	await fine_picture("tour-graft")
 	await user.click(node_on_screen(_node, host))
 	await until(
 		func() -> bool: return _of.get_node_children(host).size() > children, "it is grafted"
@@ -99,7 +99,7 @@ func _work_on_it() -> void:
 		)
 	await user.move(middle(view().get_parent() as Control) + Vector2(330.0, -150.0))
 	await until(func() -> bool: return not _node.is_rebuilding(), "the tree is built")
-	await picture("tour-leaves")
+	await fine_picture("tour-leaves")
 
 
 func _new_scene() -> bool:
