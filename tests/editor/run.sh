@@ -8,10 +8,12 @@
 # editor with settings of its own. A scenario is a script in scenarios/FOLDER/: it runs in the editor, in test_plugin/,
 # asserts what it finds there, and asks this script over a socket to press keys and buttons (xdotool), to take
 # pictures and to copy files. Each FOLDER is one run of the editor, in alphabetical order, which ends with Ctrl+Q;
-# those with the same first letter are on the same project, one after another. What the engine reports as an error
-# fails the step in which it appears, unless the step expects it. Nothing waits for a fixed time: scenarios wait for
-# what should be there, at most for TREE_EDITOR_PATIENCE seconds.
-# Pictures: build/editor/NN-name.png; what the editor printed: build/editor/FOLDER.log. Last line: 'N passed, N failed'.
+# those with the same first letter are on the same project, one after another, and as many projects at once as there are
+# cores, each on a screen of its own. What the engine reports as an error fails the step in which it appears, unless the
+# step expects it. Nothing waits for a fixed time: scenarios wait for what should be there, at most for
+# TREE_EDITOR_PATIENCE seconds.
+# Pictures: build/editor/FOLDER-NN-name.png; what the editor printed: build/editor/FOLDER.log. Last line: 'N passed, N
+# failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 : "${GODOT:?GODOT must name the engine: ./dev test editor sets it}"
@@ -19,7 +21,6 @@ cd "$(dirname "$0")/../.."
 root=$PWD
 pictures=$root/build/editor
 work=$(mktemp -d)
-export TREE_EDITOR_TEST=$work
 export TREE_EDITOR_SAMPLE=$root/build/sample/scan.ply
 # Seconds that anything may take on a machine that does something else, too.
 export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-60}
@@ -31,9 +32,11 @@ shots=0
 engine=
 screen=
 other=
+declare -A projects=() # processes by letter
 
 # Ends what this script has started, and nothing else.
 cleanup() {
+    [ ${#projects[@]} = 0 ] || kill "${projects[@]}" 2>/dev/null
     [ -z "$engine" ] || kill -KILL -- "-$engine" 2>/dev/null
     [ -z "$other" ] || kill "$other" 2>/dev/null
     [ -z "$screen" ] || kill "$screen" 2>/dev/null
@@ -46,7 +49,7 @@ trap 'exit 1' INT TERM
 open_screen() {
     start_screen 1600x900 "$work/xvfb.log" || {
         cat "$work/xvfb.log"
-        echo "0 passed, 1 failed"
+        count "FAILED  there is no screen"
         exit 1
     }
     # Another program, beyond the screen's edge: focus() says what for.
@@ -79,7 +82,7 @@ count() {
 
 picture() {
     shots=$((shots + 1))
-    import -window root -define png:compression-level=2 "$pictures/$(printf '%02d' "$shots")-$1.png"
+    import -window root -define png:compression-level=2 "$pictures/$folder-$(printf '%02d' "$shots")-$1.png"
 }
 
 # focus editor, focus elsewhere: where the keyboard goes. There is no window manager that would see to it. Elsewhere is
@@ -137,7 +140,7 @@ run_editor() {
     shift
     echo "-- $folder"
     rm -f "$work/port"
-    TREE_EDITOR_SCENARIOS="$*" XDG_CONFIG_HOME=$work/config XDG_DATA_HOME=$work/data XDG_CACHE_HOME=$work/cache \
+    TREE_EDITOR_TEST=$work TREE_EDITOR_SCENARIOS="$*" XDG_CONFIG_HOME=$work/config XDG_DATA_HOME=$work/data XDG_CACHE_HOME=$work/cache \
         XDG_RUNTIME_DIR=$work/runtime \
         setsid timeout --signal=ABRT --kill-after=10 "$limit" "$GODOT" --rendering-driver opengl3 --audio-driver Dummy --resolution 1600x900 --position 0,0 --verbose \
         --path "$work/project" --editor >"$log" 2>&1 &
@@ -172,12 +175,11 @@ run_editor() {
     fi
 }
 
-main() {
-    local folder scripts script name project=
-    rm -rf "$pictures"
-    mkdir -p "$pictures"
-    open_screen
-    for folder in tests/editor/scenarios/*/; do
+# run_project LETTER NAME…: the runs of the editor whose folders begin with that letter.
+run_project() {
+    local letter=$1 folder scripts script name
+    shift
+    for folder in tests/editor/scenarios/"$letter"*/; do
         folder=$(basename "$folder")
         scripts=()
         for script in tests/editor/scenarios/"$folder"/*.gd; do
@@ -190,9 +192,33 @@ main() {
             done
         done
         [ ${#scripts[@]} -gt 0 ] || continue
-        [ "$project" = "${folder:0:1}" ] || make_project
-        project=${folder:0:1}
+        [ -n "$screen" ] || open_screen
+        [ -d "$work/project" ] || make_project
         run_editor "$folder" "${scripts[@]}"
+    done
+    echo "$passed passed, $failed failed"
+}
+
+# Each project is this script again, with --project LETTER. What they say is printed one after another.
+main() {
+    local letters letter
+    if [ "${1:-}" = --project ]; then
+        run_project "${@:2}"
+        return
+    fi
+    rm -rf "$pictures"
+    mkdir -p "$pictures"
+    letters=$(for folder in tests/editor/scenarios/*/; do basename "$folder" | cut -c 1; done | uniq)
+    for letter in $letters; do
+        [ "$(jobs -rp | wc -l)" -lt "$(nproc)" ] || wait -n
+        tests/editor/run.sh --project "$letter" "$@" >"$work/$letter" 2>&1 &
+        projects[$letter]=$!
+    done
+    for letter in $letters; do
+        wait "${projects[$letter]}" || count "FAILED  $letter: its run did not end"
+        grep -vE '^[0-9]+ passed, [0-9]+ failed$' "$work/$letter"
+        passed=$((passed + $(grep -c '^ok' "$work/$letter")))
+        failed=$((failed + $(grep -c '^FAILED' "$work/$letter")))
     done
     echo "$passed passed, $failed failed"
     [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
