@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/bounds.h"
 #include "geometry/parallel.h"
 #include "skeleton/radii.h"
 
@@ -36,6 +37,7 @@ constexpr double kAboveNoise = 2.5;      // standard deviations
 constexpr double kAlike = 0.25;
 constexpr double kThinTwig = 0.003;  // metres
 constexpr double kThinnest = 0.001;  // metres
+constexpr double kRounding = 1e-6;   // metres, more than that of what is compared with a box
 
 // A point as its limb sees it.
 struct Sample {
@@ -102,6 +104,22 @@ struct Normal {
     }
 };
 
+// A box around the bark of the stations [first, last] of a line, those of them that there are. What lies
+// farther outside of it than `off` lies farther than that from the bark.
+Bounds around_bark(const std::vector<Station>& line, int first, int last) {
+    Bounds box;
+    last = std::min(last, static_cast<int>(line.size()) - 1);
+    for (int i = std::max(first, 0); i <= last; i++)
+        box.add(line[i].position, line[i].radius);
+    return box;
+}
+
+bool is_near(const Bounds& box, const DVec3& p, double off) {
+    off += kRounding;
+    return p.x >= box.min.x - off && p.x <= box.max.x + off && p.y >= box.min.y - off &&
+           p.y <= box.max.y + off && p.z >= box.min.z - off && p.z <= box.max.z + off;
+}
+
 template <typename T>
 T median_of(std::vector<T>& values) {
     const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
@@ -146,13 +164,14 @@ struct Scratch {
 class LimbRefiner {
   public:
     LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                std::span<const int32_t> sides, const PointPlaces& places,
+                std::span<const int32_t> sides, const std::vector<Bounds>& bases, const PointPlaces& places,
                 std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
                 Scratch& scratch)
         : axes_(axes),
           limbs_(limbs),
           limb_(limbs[index]),
           sides_(sides),
+          bases_(bases),
           places_(places),
           own_points_(own_points),
           points_(points),
@@ -164,6 +183,9 @@ class LimbRefiner {
     std::vector<Station> run() {
         if (count_ < 2) return line_;
         lay_frames();
+        if (limb_.parent >= 0)
+            parent_bark_ = around_bark(axes_[limb_.parent], limb_.attach - kNearStations - 1,
+                                       limb_.attach + 1 + kNearStations);
         collect();
         round_.assign(line_.size(), 0);
         std::vector<Station> result = line_;
@@ -228,7 +250,7 @@ class LimbRefiner {
     // Whether a point belongs to the parent or to a side limb rather than to this one.
     bool is_foreign(const DVec3& p, int station, double off) const {
         int ignored = 0;
-        if (limb_.parent >= 0 && station <= kNearStations) {
+        if (limb_.parent >= 0 && station <= kNearStations && is_near(parent_bark_, p, off)) {
             const Hit hit = nearest(p, axes_[limb_.parent], limb_.attach - kNearStations,
                                     limb_.attach + 1 + kNearStations, ignored);
             if (std::abs(hit.off) < off) return true;
@@ -236,6 +258,7 @@ class LimbRefiner {
         for (auto it = std::lower_bound(sides_.begin(), sides_.end(), station - kNearStations,
                                         [&](int32_t side, int from) { return limbs_[side].attach < from; });
              it != sides_.end() && limbs_[*it].attach <= station + kNearStations; ++it) {
+            if (!is_near(bases_[*it], p, off)) continue;
             const std::vector<Station>& side = axes_[*it];
             const Station& fork = line_[limbs_[*it].attach];
             const Hit base = hit_segment(p, fork.position, side[0].radius, side[0].position, side[0].radius);
@@ -376,6 +399,8 @@ class LimbRefiner {
     const std::vector<Limb>& limbs_;
     const Limb& limb_;
     std::span<const int32_t> sides_;  // by attach
+    const std::vector<Bounds>& bases_;
+    Bounds parent_bark_;  // where the limb begins
     const PointPlaces& places_;
     std::span<const int32_t> own_points_;
     const std::vector<Vec3>& points_;
@@ -390,6 +415,18 @@ class LimbRefiner {
     std::vector<uint8_t>& round_ = scratch_.round;  // by station
 };
 
+// By limb: around the bark that may hold points of its parent, from the fork on.
+std::vector<Bounds> bark_of_bases(const std::vector<std::vector<Station>>& axes,
+                                  const std::vector<Limb>& limbs) {
+    std::vector<Bounds> bases(axes.size());
+    for (size_t l = 0; l < axes.size(); l++) {
+        if (limbs[l].parent < 0) continue;
+        bases[l] = around_bark(axes[l], 0, kFirstSegments);
+        bases[l].add(axes[limbs[l].parent][limbs[l].attach].position, axes[l][0].radius);
+    }
+    return bases;
+}
+
 }  // namespace
 
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
@@ -401,6 +438,7 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
     Members sides(parent, limbs.size());
     for (int round = 0; round < kRounds; round++) {
         const double noise = noise_of(axes);
+        const std::vector<Bounds> bases = bark_of_bases(axes, limbs);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
             Scratch scratch;
@@ -411,9 +449,9 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
                     std::sort(own_sides.begin(), own_sides.end(), [&](int32_t a, int32_t b) {
                         return std::pair(limbs[a].attach, a) < std::pair(limbs[b].attach, b);
                     });
-                next[l] =
-                    LimbRefiner(l, axes, limbs, own_sides, places, own_points.of(l), points, noise, scratch)
-                        .run();
+                next[l] = LimbRefiner(l, axes, limbs, own_sides, bases, places, own_points.of(l), points,
+                                      noise, scratch)
+                              .run();
             }
         });
         axes.swap(next);
