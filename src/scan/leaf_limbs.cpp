@@ -22,11 +22,12 @@ constexpr double kLeastClump = 0.02;  // of the leaves: smaller clumps well belo
 
 // A palm. Broad-leaved crowns have 0.17 to 0.25 of the planarity, palms 0.35 and more.
 constexpr double kMostCrownWood = 0.12;  // cells of wood above the hub, per cell of leaf
-constexpr double kHubShare = 0.06;       // of the height: the leaves' paths start as near to one another
+constexpr double kHubQuantile = 0.8;  // of the leaves: some of a blurred stem's points are taken for leaves
+constexpr double kHubShare = 0.1;     // of the height: the ways of leaves meet wood as near to the hub
 constexpr double kLeastPlanarity = 0.27;
 // Where blur has made fronds as thick as other leaves: a tuft that hangs around the end of a tall bare stem.
-// Of real scans, a palm's leaves join their stem within 0.03 to 0.06 of the crown's extent, broad-leaved
-// crowns above a stem as tall within 0.17 and more.
+// Of real scans, a palm's leaves meet their stem within 0.04 of the crown's extent of the hub, broad leaves
+// above a stem as tall within 0.24 and more.
 constexpr double kTuftHub = 0.75;     // of the height: the hub is higher
 constexpr double kTuftSpread = 0.1;   // of the crown's extent
 constexpr double kTuftHanging = 0.1;  // of the leaves: more hang below the hub
@@ -92,33 +93,39 @@ void clear_foot(const Cells& cells, const Crown& crown, std::vector<uint8_t>& le
     }
 }
 
+float middle_of(std::vector<float> values) {
+    return quantile(values, 0.5);
+}
+
 // Where the ways of leaves to the ground meet wood.
 struct Hub {
     DVec3 at{0.0};
-    double height = 0.0, aside = 0.0;  // standard deviations, metres
+    double height = 0.0, aside = 0.0;  // metres: most are as near
     double share = 0.0;                // of the leaves: those that meet wood at all
 };
 
 Hub find_hub(const Cells& cells, const CellPaths& tree, const std::vector<uint8_t>& leaf, size_t leaves) {
     std::vector<uint32_t> from(cells.count());
-    DVec3 sum(0.0), squares(0.0);
-    double met = 0.0;
+    std::array<std::vector<float>, 3> met;
     for (const uint32_t v : tree.order) {
         const uint32_t p = tree.parent[v];
         from[v] = leaf[v] && p != v ? from[p] : v;
         if (!leaf[v] || leaf[from[v]]) continue;
-        const DVec3 at(cells.centres[from[v]]);
-        sum += at;
-        squares += at * at;
-        met += 1.0;
+        for (int axis = 0; axis < 3; axis++)
+            met[static_cast<size_t>(axis)].push_back(cells.centres[from[v]][axis]);
     }
     Hub hub;
-    if (met == 0.0) return hub;
-    hub.at = sum / met;
-    const DVec3 variance = glm::max(squares / met - hub.at * hub.at, DVec3(0.0));
-    hub.height = std::sqrt(variance.y);
-    hub.aside = std::sqrt(variance.x + variance.z);
-    hub.share = met / static_cast<double>(leaves);
+    if (met[0].empty()) return hub;
+    hub.share = static_cast<double>(met[0].size()) / static_cast<double>(leaves);
+    for (int axis = 0; axis < 3; axis++)
+        hub.at[axis] = middle_of(met[static_cast<size_t>(axis)]);
+    std::vector<float> aside(met[0].size());
+    for (size_t i = 0; i < aside.size(); i++) {
+        aside[i] = static_cast<float>(std::hypot(met[0][i] - hub.at.x, met[2][i] - hub.at.z));
+        met[1][i] = std::abs(met[1][i] - static_cast<float>(hub.at.y));
+    }
+    hub.height = quantile(met[1], kHubQuantile);
+    hub.aside = quantile(aside, kHubQuantile);
     return hub;
 }
 

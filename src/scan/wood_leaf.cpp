@@ -118,7 +118,6 @@ constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 
 constexpr double kMuchHidden = 0.3;
 
-constexpr size_t kPlanarity = 6;          // of CellInputs, on the second scale
 constexpr double kFrondPlanarity = 0.33;  // mean of all points; crowns of broad leaves have 0.16 to 0.25
 
 float value_of(float value, const Term& term) {
@@ -306,6 +305,15 @@ Verdict judge(std::vector<float> logits, double share, const Cells& cells, const
     return verdict;
 }
 
+// By leaf_rule.h; empty where it finds no leaves at all.
+std::vector<float> finer_logits(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
+                                const CellPaths& paths, const std::vector<uint32_t>& weights,
+                                const Progress& progress) {
+    const std::vector<CellInputs> inputs = gather_inputs(shapes, paths);
+    if (leafiness(mean_of(inputs, weights)) <= 0.0) return {};
+    return leaf_logits(points, cells, paths, inputs, progress);
+}
+
 double extent_of(const std::vector<Vec3>& points) {
     double extent = 0.0;
     std::vector<float> values(points.size());
@@ -332,21 +340,25 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     if (!colored && surely_bare(cells, shapes)) return result;
     measure_shapes(cells, 0, 0, shapes, progress);
     std::vector<uint32_t> weights(count, 0);
-    double filled = 0.0, scattered = 0.0;
+    double filled = 0.0, scattered = 0.0, flat = 0.0;
     for (const uint32_t v : cells.of_point) {
         weights[v]++;
         filled += shapes[v * kShapeScales].occupied / 26.0;
         scattered += shapes[v * kShapeScales].scatter;
+        flat += shapes[v * kShapeScales + 1].planarity;
     }
     filled /= static_cast<double>(samples.points.size());
     scattered /= static_cast<double>(samples.points.size());
+    flat /= static_cast<double>(samples.points.size());
     const double resolution = extent_of(cells.centres) / cells.size;
     const bool resolved =
         resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
         (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
     if (resolved) result.noise = blur_of(samples.points, progress);
     const bool told_by_shape = resolved && !(result.noise > 0.0);
-    if (!colored && !told_by_shape) return result;
+    // Fronds are flat like no other leaves, even blurred, and their stem may have most of the points.
+    const bool frond_like = flat > kFrondPlanarity;
+    if (!colored && !told_by_shape && !frond_like) return result;
     const CellPaths paths = trace_paths(cells, progress);
 
     std::vector<float> logits(count);
@@ -375,14 +387,11 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     const bool leafy = result.by_colour || (told_by_shape && share >= kLeastShare);
     Verdict verdict;
     if (leafy) verdict = judge(std::move(logits), share, cells, shapes, paths, progress);
-    // Fronds are flat like no other leaves, and their stem may have most of the points.
-    if (!result.by_colour && told_by_shape && !verdict.limbs.fronds) {
-        const std::vector<CellInputs> inputs = gather_inputs(shapes, paths);
-        const CellInputs means = mean_of(inputs, weights);
-        if (means[kPlanarity] > kFrondPlanarity && leafiness(means) > 0.0) {
-            std::vector<float> own = leaf_logits(samples.points, cells, paths, inputs, progress);
-            share = find_share(own, weights, progress);
-            Verdict palm = judge(std::move(own), share, cells, shapes, paths, progress);
+    if (!result.by_colour && frond_like && !verdict.limbs.fronds) {
+        if (told_by_shape) logits = finer_logits(samples.points, cells, shapes, paths, weights, progress);
+        if (!logits.empty()) {
+            share = find_share(logits, weights, progress);
+            Verdict palm = judge(std::move(logits), share, cells, shapes, paths, progress);
             if (palm.limbs.fronds) verdict = std::move(palm);
         }
     }

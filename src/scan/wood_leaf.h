@@ -29,9 +29,9 @@ struct WoodLeaf {
 // ground to the twigs pass it) give a chance of being leaf by a logistic rule, which was fitted to virtual
 // scans and to real ones that have either leaves or wood alone; the tree's own share of leaves is then found
 // by expectation maximisation (Saerens, Latinne and Decaestecker 2002), and neighbours smooth one another.
-// Where all is as flat as fronds, a finer rule (leaf_rule.h) looks for a palm.
-// Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or too
-// sparse or noisy to show them, is left whole. The order of the points and the number of threads change
+// Where all is as flat as fronds, a palm is looked for, by a finer rule (leaf_rule.h) unless the scan is
+// blurred. Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or
+// too sparse or noisy to show them, is left whole. The order of the points and the number of threads change
 // nothing.
 WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress = nullptr);
 

@@ -112,6 +112,24 @@ TEST(WoodLeaf, FlatStripsOfLeafletsAreFrondsByShapeAlone) {
     }
 }
 
+TEST(WoodLeaf, APalmIsAPalmHoweverBlurred) {
+    for (const double noise : {0.01, 0.02, 0.03}) {
+        for (const uint64_t seed : {1, 2, 11}) {
+            SCOPED_TRACE(noise);
+            VirtualScanOptions options = scan_options_for(Habit::kPalm);
+            options.points = 40000;
+            options.noise = noise;
+            options.seed = seed;
+            VirtualScan made = scan_tree(grow_tree({Habit::kPalm, 0.0, seed}), options);
+            made.cloud.colors.clear();
+            const WoodLeaf told = tell_wood_from_leaves(made.cloud);
+            ASSERT_TRUE(told.foliage);
+            EXPECT_TRUE(told.fronds);
+            EXPECT_GT(tally(told.leaf, truth_of(made)).leaf_recall, 0.9);
+        }
+    }
+}
+
 // A tall stem and, from its end, `count` limbs that rise `rise` metres and hang down from there, with leaves
 // around them: neither flat nor green. The limbs join the stem over `along` metres of it.
 PointCloud tuft(int count, double rise, double along, uint64_t seed) {
