@@ -8,6 +8,7 @@
 #include "error.h"
 #include "foliage/branch_axis.h"
 #include "foliage/crown.h"
+#include "foliage/leaf_placer.h"
 #include "geometry/parallel.h"
 #include "mesh/leaf_cards.h"
 #include "random_tree.h"
@@ -360,6 +361,24 @@ TEST(BranchAxis, PassesThroughTheNodesAndNeverStandsStill) {
             size_t hint = 0;
             const double middle = 0.5 * points.back().along;
             EXPECT_NEAR(axis_at(points, middle, hint).along, middle, 1e-9);
+        }
+    }
+}
+
+// Its size decides whether a leaf is made at all.
+TEST(Leaves, TheSizeOfALeafIsKnownBeforeItIsMade) {
+    for (const uint64_t seed : {1, 2, 3}) {
+        const Tree tree = test::random_tree(seed, 120);
+        for (const std::string& name : leaf_preset_names()) {
+            const LeafRules rules = leaf_preset(name);
+            const LeafPlacer placer(tree, rules, seed);
+            std::vector<AxisPoint> axis;
+            std::vector<LeafSpot> spots;
+            for (const Branch& branch : placer.list.branches)
+                placer.bear(branch, 1.0, axis, spots);
+            EXPECT_FALSE(spots.empty());
+            for (const LeafSpot& spot : spots)
+                ASSERT_EQ(placer.size_of(spot), placer.leaf_at(spot).size) << name << " " << spot.number;
         }
     }
 }
