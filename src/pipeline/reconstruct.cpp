@@ -29,7 +29,7 @@ constexpr double kCompletedEnd = 0.98;
 constexpr double kLeastExplained = 0.25;
 constexpr double kLeastMeasured = 0.01;
 
-constexpr double kFrondShare = 0.85;  // of how far fronds reach: they arch
+constexpr double kFrondShare = 0.96;  // of how far fronds reach, slack and all: they arch
 
 // With fewer points of wood the tree is made from the leaves' too.
 constexpr size_t kLeastFollowed = 200;

@@ -28,15 +28,16 @@ constexpr double kLeastPlanarity = 0.27;
 // Where blur has made fronds as thick as other leaves: a tuft that hangs around the end of a tall bare stem.
 // Of real scans, a palm's leaves meet their stem within 0.04 of the crown's extent of the hub, broad leaves
 // above a stem as tall within 0.24 and more.
-constexpr double kTuftHub = 0.75;     // of the height: the hub is higher
-constexpr double kTuftSpread = 0.1;   // of the crown's extent
-constexpr double kTuftHanging = 0.1;  // of the leaves: more hang below the hub
-constexpr double kRibCells = 3.0;     // wood that far from the stem, above the hub, is a rib of a frond
-constexpr double kSliceCells = 4.0;   // height of the slices in which the stem is walked up
-constexpr double kStemBulge = 1.5;    // times the stem's usual radius: what lies further out is not of it
-constexpr double kReachSlack = 1.1;   // the stem ends a little below or beside the crown's middle
-constexpr double kStemCells = 0.8;    // radius of the stem that is followed through the fronds
-constexpr double kMostLean = 0.36;    // sideways per metre up: palms grow upright
+constexpr double kTuftHub = 0.75;        // of the height: the hub is higher
+constexpr double kTuftSpread = 0.1;      // of the crown's extent
+constexpr double kTuftHanging = 0.1;     // of the leaves: more hang below the hub
+constexpr double kRibCells = 3.0;        // wood that far from the stem, above the hub, is a rib of a frond
+constexpr double kSliceCells = 4.0;      // height of the slices in which the stem is walked up
+constexpr double kStemBulge = 1.5;       // times the stem's usual radius: what lies further out is not of it
+constexpr double kReachSlack = 1.1;      // the stem ends a little below or beside the crown's middle
+constexpr double kReachQuantile = 0.98;  // of the leaves: some of the stem's points are taken for leaves
+constexpr double kStemCells = 0.8;       // radius of the stem that is followed through the fronds
+constexpr double kMostLean = 0.36;       // sideways per metre up: palms grow upright
 
 struct Crown {
     double base = 0.0;    // height
@@ -225,7 +226,7 @@ void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& cr
         limbs.path[v] = !leaf[v] || off < radius;
         if (leaf[v]) reaches.push_back(static_cast<float>(off));
     }
-    limbs.reach = kReachSlack * quantile(reaches, 1.0);
+    limbs.reach = kReachSlack * quantile(reaches, kReachQuantile);
 }
 
 }  // namespace
