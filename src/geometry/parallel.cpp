@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -14,6 +15,18 @@ namespace treerec {
 namespace {
 
 std::atomic<int> requested_threads{0};
+
+// A thread that sleeps takes some 50 us to wake, and a small scan's run has hundreds of loops. So those who
+// wait for the next loop, or for its last helper, look for this long before they sleep.
+constexpr std::chrono::microseconds kWatch{100};
+
+// Until `happened()`, but not for long.
+template <typename Happened>
+void watch_for(Happened happened) {
+    const auto end = std::chrono::steady_clock::now() + kWatch;
+    while (!happened() && std::chrono::steady_clock::now() < end)
+        std::this_thread::yield();
+}
 
 // One loop. It lies on the stack of the thread that asked for it.
 class Loop {
@@ -40,9 +53,9 @@ class Loop {
         if (failure_) std::rethrow_exception(failure_);
     }
 
-    // Both are the pool's, and looked at only under its mutex.
-    size_t wanted = 0;   // helpers who may still come
-    size_t helpers = 0;  // who are at work
+    // Both are the pool's, and changed only under its mutex.
+    size_t wanted = 0;                // helpers who may still come
+    std::atomic<size_t> helpers = 0;  // who are at work
 
   private:
     size_t count_, grain_, chunks_;
@@ -72,6 +85,11 @@ class Pool {
         loop.work();
         std::unique_lock lock(mutex_);
         if (loop.wanted > 0) close(loop);  // who has not come by now is not needed
+        if (loop.helpers > 0) {
+            lock.unlock();
+            watch_for([&] { return loop.helpers == 0; });
+            lock.lock();
+        }
         left_.wait(lock, [&] { return loop.helpers == 0; });
     }
 
@@ -105,6 +123,11 @@ class Pool {
         starting_--;
         while (true) {
             idle_++;
+            if (open_places_ == 0 && ending_ == 0) {
+                lock.unlock();
+                watch_for([&] { return open_places_ > 0 || ending_ > 0; });
+                lock.lock();
+            }
             called_.wait(lock, [&] { return ending_ > 0 || !open_.empty(); });
             idle_--;
             if (open_.empty()) return;
@@ -129,9 +152,9 @@ class Pool {
     std::condition_variable called_, left_;
     std::vector<std::thread> threads_;
     std::vector<Loop*> open_;  // that want helpers
-    size_t open_places_ = 0;   // how many
+    std::atomic<size_t> open_places_ = 0;  // how many
     size_t idle_ = 0, starting_ = 0;
-    int ending_ = 0;
+    std::atomic<int> ending_ = 0;
 };
 
 Pool& pool() {
