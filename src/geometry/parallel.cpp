@@ -20,12 +20,12 @@ std::atomic<int> requested_threads{0};
 // wait for the next loop, or for its last helper, look for this long before they sleep.
 constexpr std::chrono::microseconds kWatch{100};
 
-// Until `happened()`, but not for long.
+// Until `happened()`, but not for long. It does not yield: a busy system would take the core for longer.
 template <typename Happened>
 void watch_for(Happened happened) {
     const auto end = std::chrono::steady_clock::now() + kWatch;
-    while (!happened() && std::chrono::steady_clock::now() < end)
-        std::this_thread::yield();
+    while (!happened() && std::chrono::steady_clock::now() < end) {
+    }
 }
 
 // One loop. It lies on the stack of the thread that asked for it.
