@@ -19,7 +19,7 @@ constexpr double kPointsPerCell = 3.0;
 constexpr uint64_t kStepX = uint64_t{1} << 42;
 constexpr uint64_t kStepY = uint64_t{1} << 21;
 constexpr uint64_t kAxisMask = kStepY - 1;
-constexpr size_t kGrain = 4096;
+constexpr size_t kGrain = 512;
 constexpr int kMostTries = 12;
 
 uint64_t coarse_key(uint64_t key, int shift) {

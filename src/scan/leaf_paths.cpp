@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr double kFootShare = 0.005;  // of the height: cells as low as this are the ground's
-constexpr size_t kGrain = 4096;
+constexpr size_t kGrain = 512;
 
 struct Bridge {
     uint32_t from;

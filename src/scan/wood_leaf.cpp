@@ -21,7 +21,7 @@ namespace {
 
 constexpr size_t kMostSamples = 400000;
 constexpr size_t kLeastPoints = 300;
-constexpr size_t kGrain = 4096;
+constexpr size_t kGrain = 512;
 
 // A tree with a smaller share of leaves counts as bare: leafless trees of dense twigs reach 0.3 by chance.
 constexpr double kLeastShare = 0.4;

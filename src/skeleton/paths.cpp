@@ -4,9 +4,32 @@
 #include <bit>
 #include <limits>
 
+#include "geometry/parallel.h"
 #include "skeleton/heap.h"
 
 namespace treerec {
+
+namespace {
+
+constexpr size_t kGrain = 1024;
+
+// What each edge of the graph costs: its length, and more where it is a gap.
+std::vector<float> edge_costs(const PointGraph& graph, const LocalScale& scale, const Progress& progress) {
+    std::vector<float> costs(graph.length.size());
+    parallel_for(graph.size(), kGrain, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t v = begin; v < end; v++)
+            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+                const float length = graph.length[e];
+                const float reach = edge_reach(scale, static_cast<uint32_t>(v), graph.neighbour[e]);
+                const float stretch = std::max(1.0f, length / reach);
+                costs[e] = length * stretch * stretch;
+            }
+    });
+    return costs;
+}
+
+}  // namespace
 
 PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
                         Progress& progress) {
@@ -17,7 +40,6 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
     tree.along.assign(count, 0.0f);
     tree.order.reserve(count);
     std::vector<float> cost(count, std::numeric_limits<float>::max());
-    std::vector<uint8_t> done(count, 0);
     // The bits of positive floats are in the order of their values, so that one integer holds an entry.
     LeastFirst queue;
     const auto entry = [](float value, uint32_t vertex) {
@@ -30,27 +52,27 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
         tree.along[seed.vertex] = distance;
         queue.push(entry(distance, seed.vertex));
     }
+    const std::vector<float> edge_cost = edge_costs(graph, scale, progress);
     while (!queue.empty()) {
-        const uint32_t v = static_cast<uint32_t>(queue.pop());
-        if (done[v]) continue;
-        done[v] = 1;
+        const uint64_t least = queue.pop();
+        const uint32_t v = static_cast<uint32_t>(least);
+        const float own = cost[v];
+        if (static_cast<uint32_t>(least >> 32) != std::bit_cast<uint32_t>(own)) continue;  // since reached for less
         if (tree.order.size() % 8192 == 0) progress.check();
         tree.order.push_back(v);
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+        for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
+            const float through = own + edge_cost[e];
             const uint32_t n = graph.neighbour[e];
-            if (done[n]) continue;
-            const float length = graph.length[e];
-            const float stretch = std::max(1.0f, length / edge_reach(scale, v, n));
-            const float through = cost[v] + length * stretch * stretch;
             if (through < cost[n]) {
                 cost[n] = through;
                 tree.parent[n] = static_cast<int32_t>(v);
                 tree.step[n] = graph.length[e];
-                tree.along[n] = tree.along[v] + graph.length[e];
                 queue.push(entry(through, n));
             }
         }
     }
+    for (const uint32_t v : tree.order)
+        if (tree.parent[v] >= 0) tree.along[v] = tree.along[tree.parent[v]] + tree.step[v];
     return tree;
 }
 
