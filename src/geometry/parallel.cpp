@@ -65,8 +65,8 @@ class Loop {
     std::mutex failure_mutex_;
 };
 
-// Threads that wait for loops to help with. There are as many as were ever wanted at once: a loop inside of
-// a loop gets its own.
+// Threads that wait for loops to help with: one less than loops may use, however many loops there are at once.
+// Who asks for a loop works on it too, so that each of them goes on even where nobody is free to help.
 class Pool {
   public:
     ~Pool() { end(); }
@@ -77,7 +77,8 @@ class Pool {
             loop.wanted = helpers;
             open_.push_back(&loop);
             open_places_ += helpers;
-            while (idle_ + starting_ < open_places_ && start_thread())
+            const size_t most = static_cast<size_t>(thread_count()) - 1;
+            while (idle_ + starting_ < open_places_ && threads_.size() < most && start_thread())
                 starting_++;
         }
         for (size_t i = 0; i < helpers; i++)

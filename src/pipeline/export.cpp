@@ -9,6 +9,7 @@
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "foliage/foliage_twigs.h"
+#include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 
@@ -85,9 +86,7 @@ void TreeExporter::prepare(const std::vector<std::string>& paths) {
             return format == Format::kGltf || format == Format::kObj;
         }))
         return;
-    // One after another: each keeps all cores busy by itself.
-    bark();
-    leaf_cards();
+    parallel_for(2, 1, [&](size_t part, size_t) { part == 0 ? leaf_cards() : bark(); });
 }
 
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {

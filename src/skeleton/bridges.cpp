@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
+#include <utility>
 
 #include "geometry/parallel.h"
 
@@ -97,28 +97,12 @@ struct Straightest {
     }
 };
 
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
-
-void join(std::vector<uint32_t>& leader, uint32_t a, uint32_t b) {
-    a = find(leader, a);
-    b = find(leader, b);
-    leader[std::max(a, b)] = std::min(a, b);
-}
-
 class Bridges {
   public:
-    Bridges(const std::vector<Vec3>& points, const PointTree& tree)
-        : points_(points), tree_(tree), leader_(points.size()), part_(points.size()) {
-        std::iota(leader_.begin(), leader_.end(), 0u);
-    }
+    Bridges(const std::vector<Vec3>& points, const PointTree& tree, Groups groups)
+        : points_(points), tree_(tree), groups_(std::move(groups)), part_(points.size()) {}
 
     void add(std::vector<PointEdge>& edges, Progress& progress) {
-        for (const auto& [a, b] : edges)
-            join(leader_, a, b);
         while (number_parts()) {
             std::vector<uint32_t> outside;
             for (uint32_t v = 0; v < points_.size(); v++)
@@ -171,8 +155,7 @@ class Bridges {
             });
             for (const PartLinks& part : parts) {
                 const Link& best = part.best;
-                if (find(leader_, best.from) == find(leader_, best.to)) continue;
-                join(leader_, best.from, best.to);
+                if (!groups_.join(best.from, best.to)) continue;
                 edges.emplace_back(std::min(best.from, best.to), std::max(best.from, best.to));
             }
         }
@@ -218,7 +201,7 @@ class Bridges {
         members_.assign(points_.size(), 0u);
         middle_.assign(points_.size(), DVec3(0.0));
         for (uint32_t v = 0; v < points_.size(); v++) {
-            members_[part_[v] = find(leader_, v)]++;
+            members_[part_[v] = groups_.find(v)]++;
             middle_[part_[v]] += DVec3(points_[v]);
         }
         largest_ =
@@ -285,7 +268,7 @@ class Bridges {
 
     const std::vector<Vec3>& points_;
     const PointTree& tree_;
-    std::vector<uint32_t> leader_;
+    Groups groups_;
     std::vector<uint32_t> part_;
     std::vector<uint32_t> members_;       // by part
     std::vector<DVec3> middle_;           // by part: the sum of its points
@@ -295,9 +278,9 @@ class Bridges {
 
 }  // namespace
 
-void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, std::vector<PointEdge>& edges,
-                  Progress& progress) {
-    Bridges(points, tree).add(edges, progress);
+void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, Groups groups,
+                  std::vector<PointEdge>& edges, Progress& progress) {
+    Bridges(points, tree, std::move(groups)).add(edges, progress);
 }
 
 }  // namespace treerec

@@ -7,6 +7,7 @@
 
 #include "geometry/point_tree.h"
 #include "progress.h"
+#include "skeleton/groups.h"
 
 namespace treerec {
 
@@ -15,8 +16,8 @@ using PointEdge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
 // Adds edges until all points are connected. Every part that the edges leave, but the largest, is linked to
 // another one, again and again until one part is left (Boruvka's algorithm): not by the shortest edge of all,
 // but by one of the shortest that best continues the wood that it comes from, since a branch goes on beyond a
-// gap as it did before. tree: over points.
-void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, std::vector<PointEdge>& edges,
-                  Progress& progress);
+// gap as it did before. tree: over points. groups: who is connected by the edges that there are.
+void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, Groups groups,
+                  std::vector<PointEdge>& edges, Progress& progress);
 
 }  // namespace treerec

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "skeleton/flood_fit.h"
+#include "skeleton/groups.h"
 
 namespace treerec {
 
@@ -31,12 +31,6 @@ constexpr double kHollowShare = 0.02;
 constexpr double kSolidShare = 0.045;
 constexpr double kSolidReach = 1.75;  // mean distances: 1.5, and what the piece is slanted
 constexpr double kSolidRadius = 1.5;  // mean distances
-
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
 
 // A node whose neighbourhood is growing.
 struct Growing {
@@ -163,18 +157,15 @@ class Flood {
         const uint32_t n = static_cast<uint32_t>(growing.voxels.size());
         const size_t shells = growing.shell.size();
         const uint32_t front = growing.shell[shells > kFrontShells ? shells - kFrontShells : 0];
-        std::vector<uint32_t> leader(n);
-        std::iota(leader.begin(), leader.end(), 0u);
+        Groups groups(n);
         const auto join_within = [&](auto joins) {
             for (uint32_t i = 0; i < n; i++) {
                 if (!joins(i)) continue;
                 const uint32_t v = growing.voxels[i];
                 for (uint32_t e = grid_.graph.begin[v]; e < grid_.graph.begin[v + 1]; e++) {
                     const uint32_t u = grid_.graph.neighbour[e];
-                    if (grid_.bridge[e] != 0 || !holds(growing, u) || !joins(local_[u])) continue;
-                    const uint32_t a = find(leader, i);
-                    const uint32_t b = find(leader, local_[u]);
-                    leader[std::max(a, b)] = std::min(a, b);
+                    if (grid_.bridge[e] == 0 && holds(growing, u) && joins(local_[u]))
+                        groups.join(i, local_[u]);
                 }
             }
         };
@@ -184,7 +175,7 @@ class Flood {
         std::vector<uint32_t> behind(n, 0);
         std::vector<uint32_t> most(n, 0);
         for (uint32_t i = n; i-- > 0;) {
-            if (i >= front) label[i] = static_cast<int32_t>(find(leader, i));
+            if (i >= front) label[i] = static_cast<int32_t>(groups.find(i));
             if (label[i] < 0) continue;
             behind[i]++;
             const int32_t from = growing.from[i];
@@ -213,7 +204,7 @@ class Flood {
             if (label[i] >= 0) put(i, static_cast<uint32_t>(label[i]));
         lead = parts.size();
         for (uint32_t i = 0; i < front; i++)
-            if (label[i] < 0) put(i, find(leader, i));
+            if (label[i] < 0) put(i, groups.find(i));
         return parts;
     }
 

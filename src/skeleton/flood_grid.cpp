@@ -23,12 +23,6 @@ constexpr double kTogether = 0.6;  // of the points must lie in larger ones; gap
 constexpr double kFewestVoxels = 8.0;  // along the tree
 constexpr size_t kGrain = 4096;        // voxels between two looks at the cancel flag
 
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
-
 std::string in_metres(double value) {
     std::array<char, 32> text;
     std::snprintf(text.data(), text.size(), "%.4g m", value);
@@ -83,16 +77,19 @@ FloodGrid::FloodGrid(const std::vector<Vec3>& points, const CellLayout& layout, 
         means[c] = Vec3(sum / static_cast<double>(cells.in_cell(c).size()));
     }
     std::vector<PointEdge> edges;
+    Groups groups(size());
     size_t checks = 0;
     cells.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
         if (++checks % kGrain == 0) progress.check();
-        for (size_t n = std::max(first, c + 1); n < last; n++)
+        for (size_t n = std::max(first, c + 1); n < last; n++) {
             edges.emplace_back(static_cast<uint32_t>(c), static_cast<uint32_t>(n));
+            groups.join(edges.back().first, edges.back().second);
+        }
     });
     const size_t touching = edges.size();
     if (size() > 1) {
         const PointTree tree(means);
-        bridge_parts(means, tree, edges, progress);
+        bridge_parts(means, tree, std::move(groups), edges, progress);
     }
 
     // Rows, each in ascending order; a link over a gap is told by its place among the edges.
@@ -139,18 +136,14 @@ double automatic_voxel(const std::vector<Vec3>& points, double spacing, bool one
     double voxel = kFirstVoxel * spacing;
     for (; voxel * kNextVoxel <= largest; voxel *= kNextVoxel) {
         const CellGrid cells(points, {bounds.min, voxel}, &progress);
-        std::vector<uint32_t> leader(cells.size());
-        std::iota(leader.begin(), leader.end(), 0u);
+        Groups groups(cells.size());
         cells.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
-            for (size_t n = std::max(first, c + 1); n < last; n++) {
-                const uint32_t a = find(leader, static_cast<uint32_t>(c));
-                const uint32_t b = find(leader, static_cast<uint32_t>(n));
-                leader[std::max(a, b)] = std::min(a, b);
-            }
+            for (size_t n = std::max(first, c + 1); n < last; n++)
+                groups.join(static_cast<uint32_t>(c), static_cast<uint32_t>(n));
         });
         std::vector<size_t> held(cells.size(), 0);
         for (uint32_t c = 0; c < cells.size(); c++)
-            held[find(leader, c)] += cells.in_cell(c).size();
+            held[groups.find(c)] += cells.in_cell(c).size();
         size_t together = 0;
         for (const size_t count : held)
             if (count >= kSpeck) together += count;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 #include "geometry/segment.h"
 
@@ -24,6 +25,7 @@ constexpr double kLoopLength = 2.0;     // times its width that a loop of bark m
 constexpr double kThinWood = 2.0;       // fine point spacings: thinner wood is all alike
 constexpr int kSameFork = 5;            // stations
 constexpr int kSmoothWindow = 2;        // stations to each side
+constexpr size_t kSlicesPerTask = 512;
 
 // First figures for each slice, before any fit.
 struct SliceShape {
@@ -55,20 +57,24 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     const auto fine = spacings.begin() + static_cast<ptrdiff_t>(spacings.size() / 10);
     std::nth_element(spacings.begin(), fine, spacings.end());
     shape.thin = kThinWood * *fine;
-    for (size_t s = count; s-- > 1;) {
-        double sum = 0.0;
-        double spacing = 0.0;
-        for (const uint32_t v : slices.points_of(s)) {
-            sum += glm::distance(DVec3(points[v]), slices.centre[s]);
-            spacing += scale.spacing[v];
-            if (!scale.radius.empty()) shape.known[s] += scale.radius[v];
+    std::vector<double> steps(count, 0.0);  // metres to the parent
+    parallel_for(count, kSlicesPerTask, [&](size_t first, size_t last) {
+        for (size_t s = std::max<size_t>(first, 1); s < last; s++) {
+            for (const uint32_t v : slices.points_of(s)) {
+                shape.radius[s] += glm::distance(DVec3(points[v]), slices.centre[s]);
+                shape.spacing[s] += scale.spacing[v];
+                if (!scale.radius.empty()) shape.known[s] += scale.radius[v];
+            }
+            const double members = static_cast<double>(slices.points_of(s).size());
+            shape.radius[s] /= members;
+            shape.spacing[s] /= members;
+            shape.known[s] /= members;
+            steps[s] = glm::distance(slices.centre[s], slices.centre[slices.parent[s]]);
         }
-        const double members = static_cast<double>(slices.points_of(s).size());
-        shape.radius[s] = sum / members;
-        shape.spacing[s] = spacing / members;
-        shape.known[s] /= members;
+    });
+    for (size_t s = count; s-- > 1;) {
         const size_t p = static_cast<size_t>(slices.parent[s]);
-        const double step = glm::distance(slices.centre[s], slices.centre[p]);
+        const double step = steps[s];
         if (slices.bridged[s] && wood[s] < kStrayWood * step) continue;  // stray points
         wood[p] += wood[s] + step;
         shape.longest[p] = std::max(shape.longest[p], shape.longest[s] + step);
@@ -180,11 +186,10 @@ struct Candidate {
     }
 };
 
-// A chain laid along a limb's axis.
+// A chain laid along a limb's axis, to where it is clearly off the limb's surface.
 struct Fit {
     std::vector<int32_t> stations;  // of the limb, nearest to each slice of the chain
     size_t inside = 0;              // so many slices from the chain's base lie on the limb's own surface
-    bool starts_on = false;         // the first slice lies on the limb's surface
     int32_t attach = 0;
 };
 
@@ -319,6 +324,15 @@ class LimbFinder {
         return distance_to_segment(p, fork, first);
     }
 
+    // How far a slice's centre lies above the limb's surface at the station.
+    double escape(int32_t slice, int32_t limb, int32_t station) const {
+        const LimbAxis& axis = axes_[limb];
+        const DVec3& centre = slices_.centre[slice];
+        const double aside =
+            station == 0 ? distance_from_base(limb, centre) : glm::distance(centre, axis.position[station]);
+        return aside - axis.surface[station];
+    }
+
     Fit lay_along(std::span<const int32_t> chain, int32_t limb, int32_t station) const {
         const LimbAxis& axis = axes_[limb];
         double spacing = 0.0;
@@ -329,20 +343,14 @@ class LimbFinder {
         Fit fit;
         fit.attach = station;
         std::vector<double> escapes;
-        size_t out = chain.size();  // the first slice that is clearly off the surface
-        for (size_t i = 0; i < chain.size(); i++) {
-            const DVec3& centre = slices_.centre[chain[i]];
-            station = nearest_station(axis, station, centre);
+        for (const int32_t slice : chain) {
+            station = nearest_station(axis, station, slices_.centre[slice]);
             fit.stations.push_back(station);
-            const double aside = station == 0 ? distance_from_base(limb, centre)
-                                              : glm::distance(centre, axis.position[station]);
-            escapes.push_back(aside - axis.surface[station]);
-            if (out == chain.size() && escapes[i] >= std::max(least_escape, kStub * axis.surface[station]))
-                out = i;
+            escapes.push_back(escape(slice, limb, station));
+            if (escapes.back() >= std::max(least_escape, kStub * axis.surface[station])) break;
+            fit.inside++;
         }
-        fit.starts_on = escapes.front() <= 0.0;
-        fit.inside = out;
-        if (out == chain.size()) return fit;
+        if (fit.inside == chain.size()) return fit;
         while (fit.inside > 0 && escapes[fit.inside - 1] > 0.0)
             fit.inside--;
         if (fit.inside > 0) fit.attach = fit.stations[fit.inside - 1];
@@ -376,9 +384,13 @@ class LimbFinder {
         const double length = glm::distance(slices_.centre[chain[0]], axes_[limb].position[fit.attach]) +
                               shape_.longest[chain[0]];
         if (length < options_.minimum_branch) {
-            fit.stations.erase(fit.stations.begin(),
-                               fit.stations.begin() + static_cast<ptrdiff_t>(fit.inside));
-            absorb(chain, chain.size(), limb, fit.stations);
+            // Also where it is off the surface.
+            std::vector<int32_t> stations(fit.stations.begin() + static_cast<ptrdiff_t>(fit.inside),
+                                          fit.stations.end());
+            while (stations.size() < chain.size())
+                stations.push_back(nearest_station(axes_[limb], stations.back(),
+                                                   slices_.centre[chain[stations.size()]]));
+            absorb(chain, chain.size(), limb, stations);
             return;
         }
         Limb next;
@@ -390,9 +402,11 @@ class LimbFinder {
 
     // The side limb of `limb`, near station `attach`, on whose surface the chain starts; -1 for none.
     int32_t side_under(std::span<const int32_t> chain, int32_t limb, int32_t attach) const {
-        for (const int32_t side : sides_[limb])
-            if (std::abs(limbs_[side].attach - attach) <= kSameFork && lay_along(chain, side, 0).starts_on)
-                return side;
+        for (const int32_t side : sides_[limb]) {
+            if (std::abs(limbs_[side].attach - attach) > kSameFork) continue;
+            const int32_t station = nearest_station(axes_[side], 0, slices_.centre[chain.front()]);
+            if (escape(chain.front(), side, station) <= 0.0) return side;
+        }
         return -1;
     }
 

@@ -57,7 +57,8 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
         const uint64_t least = queue.pop();
         const uint32_t v = static_cast<uint32_t>(least);
         const float own = cost[v];
-        if (static_cast<uint32_t>(least >> 32) != std::bit_cast<uint32_t>(own)) continue;  // since reached for less
+        if (static_cast<uint32_t>(least >> 32) != std::bit_cast<uint32_t>(own))
+            continue;  // since reached for less
         if (tree.order.size() % 8192 == 0) progress.check();
         tree.order.push_back(v);
         for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {

@@ -45,7 +45,12 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
     edges.reserve(points.size() * kNeighbours * 2 / 3);
     for (const std::vector<PointEdge>& part : parts)
         edges.insert(edges.end(), part.begin(), part.end());
-    bridge_parts(points, tree, edges, progress);
+    Groups groups(points.size());
+    groups.join_all([&](uint32_t v, const auto& link) {
+        for (size_t i = 0; i < near; i++)
+            link(nearest[v * near + i]);
+    });
+    bridge_parts(points, tree, std::move(groups), edges, progress);
 
     PointGraph graph;
     graph.begin.assign(points.size() + 1, 0);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "geometry/bounds.h"
 #include "geometry/portable_math.h"
+#include "skeleton/groups.h"
 
 namespace treerec {
 
@@ -17,28 +17,20 @@ constexpr size_t kGroupLeast = 6;       // points
 constexpr double kSlabShare = 0.006;    // of the height: the slice that counts as the base
 constexpr double kStemGapShare = 0.12;  // of the height: stems further from the base are other trees
 
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
-
 // The group of linked points of each vertex: the smallest vertex in it.
 std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& scale) {
-    std::vector<uint32_t> leader(graph.size());
-    std::iota(leader.begin(), leader.end(), 0u);
-    for (uint32_t v = 0; v < graph.size(); v++) {
+    Groups groups(graph.size());
+    groups.join_all([&](uint32_t v, const auto& link) {
         for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
             const uint32_t n = graph.neighbour[e];
-            if (n > v || graph.length[e] > edge_reach(scale, v, n)) continue;
-            const uint32_t a = find(leader, v);
-            const uint32_t b = find(leader, n);
-            leader[std::max(a, b)] = std::min(a, b);
+            if (n > v) break;  // they ascend
+            if (graph.length[e] <= edge_reach(scale, v, n)) link(n);
         }
-    }
+    });
+    std::vector<uint32_t> group(graph.size());
     for (uint32_t v = 0; v < graph.size(); v++)
-        leader[v] = find(leader, v);
-    return leader;
+        group[v] = groups.find(v);
+    return group;
 }
 
 uint32_t farthest(const PathTree& paths, const std::vector<uint8_t>& wood) {

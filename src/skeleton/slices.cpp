@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "skeleton/groups.h"
 
 namespace treerec {
 
@@ -15,12 +15,6 @@ constexpr double kGapFactor = 3.0;  // reaches: a longer step is a gap in the sc
 constexpr float kBesideReach = 2.0f;  // reaches: slices of one stem that the scan parts are no further apart
 constexpr double kThickness = 2.0;    // slice thickness in local point spacings
 constexpr size_t kSlicesPerTask = 256;
-
-uint32_t find(std::vector<uint32_t>& leader, uint32_t v) {
-    while (leader[v] != v)
-        v = leader[v] = leader[leader[v]];
-    return v;
-}
 
 // The level of each vertex: the path length from the root in units of the local slice thickness. An edge
 // across a gap always ends on a new level.
@@ -93,34 +87,27 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
                   const PathTree& paths, const DVec3& root) {
     const size_t count = graph.size();
     const std::vector<int32_t> level = vertex_levels(graph, scale, paths);
-    std::vector<uint32_t> leader(count);
-    std::iota(leader.begin(), leader.end(), 0u);
-    auto join = [&](uint32_t v, uint32_t n) {
-        const uint32_t a = find(leader, v);
-        const uint32_t b = find(leader, n);
-        leader[std::max(a, b)] = std::min(a, b);
-    };
-    for (uint32_t v = 0; v < count; v++) {
-        const int32_t own = level[v];
+    Groups groups(count);
+    groups.join_all([&](uint32_t v, const auto& link) {
         for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
             const uint32_t n = graph.neighbour[e];
             if (n > v) break;  // they ascend
-            if (level[n] == own && graph.length[e] <= edge_reach(scale, v, n)) join(v, n);
+            if (level[n] == level[v] && graph.length[e] <= edge_reach(scale, v, n)) link(n);
         }
-    }
+    });
 
     // Number the groups by level, then by their smallest vertex. Slice 0 is the root itself and has no
     // points.
     std::vector<uint32_t> leaders;
     for (uint32_t v = 0; v < count; v++)
-        if (find(leader, v) == v) leaders.push_back(v);
+        if (groups.find(v) == v) leaders.push_back(v);
     std::stable_sort(leaders.begin(), leaders.end(),
                      [&](uint32_t a, uint32_t b) { return level[a] < level[b]; });
     std::vector<uint32_t> slice_of(count);
     for (uint32_t s = 0; s < leaders.size(); s++)
         slice_of[leaders[s]] = s + 1;
     for (uint32_t v = 0; v < count; v++)
-        slice_of[v] = slice_of[find(leader, v)];
+        slice_of[v] = slice_of[groups.find(v)];
 
     Slices slices;
     const size_t slice_count = leaders.size() + 1;
