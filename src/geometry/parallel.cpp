@@ -65,8 +65,8 @@ class Loop {
     std::mutex failure_mutex_;
 };
 
-// Threads that wait for loops to help with: one less than loops may use, however many loops there are at once.
-// Who asks for a loop works on it too, so that each of them goes on even where nobody is free to help.
+// Threads that wait for loops to help with: one less than loops may use, however many loops there are at
+// once. Who asks for a loop works on it too, so that each of them goes on even where nobody is free to help.
 class Pool {
   public:
     ~Pool() { end(); }
@@ -152,7 +152,7 @@ class Pool {
     std::mutex mutex_;
     std::condition_variable called_, left_;
     std::vector<std::thread> threads_;
-    std::vector<Loop*> open_;  // that want helpers
+    std::vector<Loop*> open_;              // that want helpers
     std::atomic<size_t> open_places_ = 0;  // how many
     size_t idle_ = 0, starting_ = 0;
     std::atomic<int> ending_ = 0;

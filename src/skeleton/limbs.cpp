@@ -388,8 +388,8 @@ class LimbFinder {
             std::vector<int32_t> stations(fit.stations.begin() + static_cast<ptrdiff_t>(fit.inside),
                                           fit.stations.end());
             while (stations.size() < chain.size())
-                stations.push_back(nearest_station(axes_[limb], stations.back(),
-                                                   slices_.centre[chain[stations.size()]]));
+                stations.push_back(
+                    nearest_station(axes_[limb], stations.back(), slices_.centre[chain[stations.size()]]));
             absorb(chain, chain.size(), limb, stations);
             return;
         }
