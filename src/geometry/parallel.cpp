@@ -18,7 +18,7 @@ std::atomic<int> requested_threads{0};
 
 // A thread that sleeps takes some 50 us to wake, and a small scan's run has hundreds of loops. So those who
 // wait for the next loop, or for its last helper, look for this long before they sleep.
-constexpr std::chrono::microseconds kWatch{100};
+constexpr std::chrono::microseconds kWatch{25};
 
 // Until `happened()`, but not for long. It does not yield: a busy system would take the core for longer.
 template <typename Happened>
