@@ -44,7 +44,8 @@ class PointTree {
         search(p, found, [](uint32_t) { return true; });
     }
 
-    // The same but for the groups and blocks, by node, of which enters(node) is false.
+    // The same but for the groups and blocks, by node, of which enters(node) is false. found.limit() is asked
+    // after it.
     template <typename Found, typename Enters>
     void search(const Vec3& p, Found& found, const Enters& enters) const;
 
@@ -166,8 +167,9 @@ void PointTree::search(const Vec3& p, Found& found, const Enters& enters) const 
     stack[depth++] = {0.0F, static_cast<uint32_t>(node_count() - 1)};
     while (depth > 0) {
         const Waiting at = stack[--depth];
+        if (!enters(at.node)) continue;
         const float limit = std::min(found.limit(), kFarthest);
-        if (at.nearest > limit || !enters(at.node)) continue;
+        if (at.nearest > limit) continue;
         if (at.node >= groups_.size()) {
             const Block& block = blocks_[at.node - groups_.size()];
             push(block, block.distances({p, p}), limit, stack, depth);

@@ -1,7 +1,6 @@
 #include "skeleton/bark.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,42 +11,16 @@ namespace treerec {
 
 namespace {
 
-constexpr int kLookAround = 2;       // stations to each side
-constexpr size_t kNearest = 8;       // stations looked at
-constexpr size_t kNearestThick = 3;  // likewise, of stout wood
-constexpr double kThick = 0.03;      // metres: from stouter wood,
-constexpr double kWhisker = 0.6;     // so many times what it is stouter, besides
-constexpr float kFar = 0.12f;        // metres: no station of thin wood so far away explains a place
-constexpr double kRounding = 1e-3;   // metres, more than that of places to floats
-constexpr double kStub = 0.6;        // radii that a branch must reach out of thick wood
+constexpr int kLookAround = 2;      // stations to each side
+constexpr double kThick = 0.03;     // metres: from stouter wood,
+constexpr double kWhisker = 0.6;    // so many times what it is stouter, besides
+constexpr double kRounding = 1e-3;  // metres, more than that of places to floats
+constexpr double kStub = 0.6;       // radii that a branch must reach out of thick wood
 
-// For PointTree::search(): the nearest stations of limbs that are not left aside, of equally near ones the
-// first.
-struct NearestAllowed {
-    const std::vector<std::pair<int32_t, int32_t>>& names;
-    const std::vector<uint8_t>* except;
-    size_t wanted;
-    float most;  // squared metres
-    size_t found = 0;
-    std::array<float, kNearest> distance{};
-    std::array<uint32_t, kNearest> index{};
-
-    float limit() const { return found == wanted ? distance[found - 1] : most; }
-    void add(float squared, uint32_t candidate) {
-        const auto comes_before = [&](size_t at) {
-            return squared < distance[at] || (squared == distance[at] && candidate < index[at]);
-        };
-        if (found == wanted ? !comes_before(found - 1) : squared > most) return;
-        if (except != nullptr && (*except)[names[candidate].first] != 0) return;
-        size_t at = found == wanted ? found - 1 : found++;
-        for (; at > 0 && comes_before(at - 1); at--) {
-            distance[at] = distance[at - 1];
-            index[at] = index[at - 1];
-        }
-        distance[at] = squared;
-        index[at] = candidate;
-    }
-};
+// The square of what is above 0, a little more for the rounding; below, what no square is.
+float square_above(double metres) {
+    return metres > 0.0 ? static_cast<float>(1.00001 * metres * metres) : -1.0f;
+}
 
 }  // namespace
 
@@ -70,50 +43,68 @@ BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DV
     return best;
 }
 
+// For PointTree::search(): the piece whose surface is nearest.
+struct Bark::Nearest {
+    const Bark& bark;
+    const DVec3 p;
+    const std::vector<uint8_t>* except;
+    BarkPlace best;
+    uint32_t index = 0;
+    float reach = 0.0f;  // of the node that is looked into
+
+    // Pieces that reach so far come no nearer when their middles are farther than this.
+    float most(float piece_reach) const { return square_above(best.outside() + piece_reach + kRounding); }
+
+    float limit() const { return most(reach); }
+    void add(float squared, uint32_t candidate) {
+        if (squared <= most(bark.reach_[candidate])) look_at(candidate);
+    }
+    void look_at(uint32_t candidate) {
+        const Piece& piece = bark.pieces_[candidate];
+        if (except != nullptr && (*except)[piece.limb] != 0) return;
+        double t;
+        const double distance = std::sqrt(square_to_segment(p, piece.from, piece.to, t));
+        const double radius = piece.from_radius + t * (piece.to_radius - piece.from_radius);
+        const double outside = distance - radius;
+        if (outside > best.outside() || (outside == best.outside() && candidate > index)) return;
+        best = {piece.limb, t < 0.5 ? piece.from_station : piece.to_station, distance, radius};
+        index = candidate;
+    }
+};
+
 Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes)
     : limbs_(limbs), axes_(axes) {
-    const auto add = [](Index& index, const DVec3& position, int32_t limb, int32_t station, double reach) {
-        index.positions.emplace_back(position);
-        index.names.emplace_back(limb, station);
-        index.reach.push_back(static_cast<float>(reach));
-    };
     for (size_t l = 0; l < axes.size(); l++) {
+        const std::vector<Station>& line = axes[l];
         const int32_t limb = static_cast<int32_t>(l);
-        for (size_t i = 0; i < axes[l].size(); i++) {
-            const Station& station = axes[l][i];
-            const double reach = reach_of(limb, static_cast<int32_t>(i));
-            add(all_, station.position, limb, static_cast<int32_t>(i), reach);
-            if (station.radius <= kThick) continue;
-            add(thick_, station.position, limb, static_cast<int32_t>(i), reach);
-            thick_reach_ = std::max(thick_reach_, reach);
+        const Station& first = line.front();
+        const bool forks = limbs[l].parent >= 0;
+        if (forks || line.size() == 1) {
+            const DVec3& from = forks ? axes[limbs[l].parent][limbs[l].attach].position : first.position;
+            add({from, first.position, first.radius, first.radius, limb, 0, 0});
         }
-        if (limbs[l].parent < 0) continue;
-        // And along the way from the fork to the limb's first station.
-        const DVec3& fork = axes[limbs[l].parent][limbs[l].attach].position;
-        const DVec3 way = axes[l][0].position - fork;
-        const double reach = reach_of(limb, 0);
-        for (const double t : {0.25, 0.5, 0.75})
-            add(all_, fork + t * way, limb, 0, reach + (1.0 - t) * glm::length(way));
+        for (int32_t i = 1; i < static_cast<int32_t>(line.size()); i++)
+            add({line[i - 1].position, line[i].position, line[i - 1].radius, line[i].radius, limb, i - 1, i});
     }
-    for (Index* index : {&all_, &thick_})
-        if (!index->positions.empty()) index->tree = std::make_unique<PointTree>(index->positions);
+    if (pieces_.empty()) return;
+    std::vector<Vec3> middles;
+    middles.reserve(pieces_.size());
+    for (const Piece& piece : pieces_)
+        middles.emplace_back(0.5 * (piece.from + piece.to));
+    tree_ = std::make_unique<PointTree>(middles);
+    node_reach_.assign(tree_->node_count(), 0.0f);
+    for (size_t node = 0; node < node_reach_.size(); node++) {
+        const bool group = node < tree_->group_count();
+        for (const uint32_t i : group ? tree_->in_group(node) : tree_->in_block(node))
+            node_reach_[node] = std::max(node_reach_[node], group ? reach_[i] : node_reach_[i]);
+    }
 }
 
-double Bark::reach_of(int32_t limb, int32_t station) const {
-    const std::vector<Station>& line = axes_[limb];
-    const int32_t last = static_cast<int32_t>(line.size()) - 1;
-    double farthest = 0.0, thickest = 0.0;
-    const auto reach_to = [&](const DVec3& position) {
-        const DVec3 off = position - line[station].position;
-        farthest = std::max(farthest, glm::dot(off, off));
-    };
-    for (int32_t i = std::max(0, station - kLookAround); i <= std::min(last, station + kLookAround); i++) {
-        reach_to(line[i].position);
-        thickest = std::max(thickest, line[i].radius);
-    }
-    if (station == 0 && limbs_[limb].parent >= 0)
-        reach_to(axes_[limbs_[limb].parent][limbs_[limb].attach].position);
-    return std::sqrt(farthest) + thickest;
+void Bark::add(const Piece& piece) {
+    const double reach =
+        0.5 * glm::distance(piece.from, piece.to) + std::max(piece.from_radius, piece.to_radius);
+    pieces_.push_back(piece);
+    reach_.push_back(static_cast<float>(reach));
 }
 
 BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
@@ -127,49 +118,28 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
     return place;
 }
 
-void Bark::look(const Index& index, size_t count, float reach, const Vec3& p,
-                const std::vector<uint8_t>* except, BarkPlace& best) const {
-    if (!index.tree) return;
-    NearestAllowed found{index.names, except, count, reach * reach};
-    index.tree->search(p, found);
-    for (size_t k = 0; k < found.found; k++) {
-        // What is seen from far stations that reach no nearer needs no look.
-        const double away = std::sqrt(found.distance[k]);
-        if (away - index.reach[found.index[k]] - kRounding >= best.outside()) continue;
-        const auto& name = index.names[found.index[k]];
-        // The way from the fork to a first station has that one's name.
-        if (name.second == 0 && std::any_of(&found.index[0], &found.index[k],
-                                            [&](uint32_t other) { return index.names[other] == name; }))
-            continue;
-        const auto [limb, station] = name;
-        const BarkPlace place = on_limb(limb, station, DVec3(p));
-        if (place.outside() < best.outside()) best = place;
-    }
-}
-
-BarkPlace Bark::nearest(const Vec3& p, const std::vector<uint8_t>* except, float reach) const {
-    BarkPlace best;
-    best.distance = std::numeric_limits<double>::max();
-    look(all_, kNearest, reach, p, except, best);
-    // From farther away, no stout wood comes nearer than what is found.
-    const float far = best.limb < 0
-                          ? std::numeric_limits<float>::infinity()
-                          : static_cast<float>(1.00001 * (best.outside() + thick_reach_) + kRounding);
-    if (far > 0.0f) look(thick_, kNearestThick, far, p, except, best);
-    return best;
+BarkPlace Bark::nearest(const Vec3& p, uint32_t& hint, const std::vector<uint8_t>* except) const {
+    Nearest nearest{*this, DVec3(p), except, {}};
+    nearest.best.distance = std::numeric_limits<double>::max();
+    if (!tree_) return nearest.best;
+    nearest.look_at(hint);
+    tree_->search(p, nearest, [&](uint32_t node) {
+        nearest.reach = node_reach_[node];
+        return true;
+    });
+    hint = nearest.index;
+    return nearest.best;
 }
 
 std::vector<int32_t> Bark::limbs_by_place() const {
     std::vector<int32_t> order;
-    if (!all_.tree) return order;
+    if (!tree_) return order;
     order.reserve(limbs_.size());
-    for (size_t group = 0; group < all_.tree->group_count(); group++)
-        for (const uint32_t i : all_.tree->in_group(group)) {
-            const auto [limb, station] = all_.names[i];
-            const bool is_tip = static_cast<size_t>(station) + 1 == axes_[limb].size();
-            // What follows a first station is the way to it, of the same name.
-            const bool is_station = station > 0 || i == 0 || all_.names[i - 1] != all_.names[i];
-            if (is_tip && is_station) order.push_back(limb);
+    for (size_t group = 0; group < tree_->group_count(); group++)
+        for (const uint32_t i : tree_->in_group(group)) {
+            const Piece& piece = pieces_[i];
+            if (static_cast<size_t>(piece.to_station) + 1 == axes_[piece.limb].size())
+                order.push_back(piece.limb);
         }
     return order;
 }
@@ -186,8 +156,9 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
         if (limb.parent >= 0) bears[limb.parent]++;
     // A place that no limb but `except` explains.
     const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
+        uint32_t hint = 0;
         return std::any_of(line.rbegin(), line.rend(), [&](const Station& station) {
-            const BarkPlace place = bark.nearest(Vec3(station.position), &except, kFar);
+            const BarkPlace place = bark.nearest(Vec3(station.position), hint, &except);
             return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
         });
     };

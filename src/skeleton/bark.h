@@ -1,9 +1,7 @@
 // The surface of the limbs found so far: which of them a point lies on.
 #pragma once
 
-#include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "geometry/point_tree.h"
@@ -33,32 +31,34 @@ class Bark {
     // The nearest place around a limb's station, or on the way to it from its parent's axis.
     BarkPlace on_limb(int32_t limb, int32_t station, const DVec3& p) const;
 
-    // The limb whose surface is nearest to p, those marked in `except` left aside; limb -1 for none near.
-    // reach: metres, how far axes of thin wood are looked for.
-    BarkPlace nearest(const Vec3& p, const std::vector<uint8_t>* except = nullptr,
-                      float reach = std::numeric_limits<float>::infinity()) const;
+    // The place of all limbs whose surface is nearest to p, those marked in `except` left aside; limb -1
+    // where none is left. Of equally near ones, that of the first limb. hint: 0, or what an earlier call left
+    // there, best for a place nearby: that makes the search faster and changes nothing else.
+    BarkPlace nearest(const Vec3& p, uint32_t& hint, const std::vector<uint8_t>* except = nullptr) const;
 
     // All limbs, those whose tips are near each other one after another.
     std::vector<int32_t> limbs_by_place() const;
 
   private:
+    // What lies between two stations, or on the way to a first one from its parent's axis.
+    struct Piece {
+        DVec3 from;
+        DVec3 to;
+        double from_radius;  // metres
+        double to_radius;
+        int32_t limb;
+        int32_t from_station;
+        int32_t to_station;
+    };
+    struct Nearest;
+    void add(const Piece& piece);
+
     const std::vector<Limb>& limbs_;
     const std::vector<std::vector<Station>>& axes_;
-    // Stations, to be searched by place.
-    struct Index {
-        std::vector<Vec3> positions;
-        std::vector<std::pair<int32_t, int32_t>> names;  // the limb and station of each position
-        std::vector<float> reach;                        // metres from it, reach_of() the station
-        std::unique_ptr<PointTree> tree;
-    };
-    // Metres from the station that the bark which on_limb() looks at there reaches at most.
-    double reach_of(int32_t limb, int32_t station) const;
-    void look(const Index& index, size_t count, float reach, const Vec3& p,
-              const std::vector<uint8_t>* except, BarkPlace& best) const;
-
-    Index all_;
-    Index thick_;               // of stout limbs alone, which many twigs would hide
-    double thick_reach_ = 0.0;  // the largest reach_of() of these
+    std::vector<Piece> pieces_;
+    std::unique_ptr<PointTree> tree_;  // of the pieces' middles
+    std::vector<float> reach_;         // by piece: metres that its bark reaches at most from its middle
+    std::vector<float> node_reach_;    // by node of tree_: the largest of its pieces
 };
 
 // What leaves the bark must reach at least so far out of it: less is relief, or a strip of the bark itself.

@@ -18,9 +18,6 @@ constexpr int kStumpSteps = 12;      // stations back that the end of thick wood
 constexpr double kStumpEnd = 1.5;    // radii: so long it is
 constexpr double kFoot = 4.0;        // radii of the stem: up there roots and ground lie around it
 constexpr double kMostBlur = 0.02;   // metres off the bark
-// Metres beyond what a twig must reach out: a point that no station of thin wood is so near to escapes that.
-constexpr double kFar = 0.2;
-constexpr double kFarthest = 10.0;  // metres, where nothing escapes
 
 class TwigFinder {
   public:
@@ -67,11 +64,11 @@ class TwigFinder {
 
     // Around a fork, a slice of one limb has points on the bark of another.
     void find_others() {
-        const float reach = static_cast<float>(std::min(kFar + field_.options.least_escape, kFarthest));
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
+            uint32_t hint = 0;
             for (size_t v = begin; v < end; v++) {
                 if (field_.limb[v] >= 0) continue;
-                const BarkPlace place = bark_.nearest(points_[v], nullptr, reach);
+                const BarkPlace place = bark_.nearest(points_[v], hint);
                 field_.outside[v] = std::numeric_limits<float>::infinity();
                 if (place.limb < 0) continue;
                 claim(static_cast<uint32_t>(v), place);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/random.h"
+#include "geometry/segment.h"
 
 namespace treerec {
 namespace {
@@ -54,43 +55,53 @@ TEST(Bark, EveryLimbHasOnePlaceInTheOrder) {
     }
 }
 
-// Of thin wood, the nearest eight stations are looked at; those passed over would not have changed anything.
-TEST(Bark, NearestIsThatOfEightStations) {
+TEST(Bark, NearestIsThatOfAllPieces) {
     Random random(4);
     for (int trial = 0; trial < 20; trial++) {
         Limbs grown = random_limbs(random);
-        std::vector<Vec3> positions;
-        std::vector<std::pair<int32_t, int32_t>> names;
-        for (size_t l = 0; l < grown.axes.size(); l++) {
-            const int32_t limb = static_cast<int32_t>(l);
-            std::vector<Station>& line = grown.axes[l];
-            for (size_t i = 0; i < line.size(); i++) {
-                line[i].radius = random.uniform(0.001, 0.02);
-                positions.emplace_back(line[i].position);
-                names.emplace_back(limb, static_cast<int32_t>(i));
-            }
-            if (grown.limbs[l].parent < 0) continue;
-            const DVec3& fork = grown.axes[grown.limbs[l].parent][grown.limbs[l].attach].position;
-            for (const double t : {0.25, 0.5, 0.75}) {
-                positions.emplace_back(fork + t * (line[0].position - fork));
-                names.emplace_back(limb, 0);
-            }
-        }
+        for (std::vector<Station>& line : grown.axes)
+            for (Station& station : line)
+                station.radius = random.uniform(0.001, trial % 2 == 0 ? 0.02 : 0.2);
         const Bark bark(grown.limbs, grown.axes);
+        uint32_t hint = 0;
         for (int query = 0; query < 200; query++) {
-            const Vec3 p(positions[random.below(static_cast<uint32_t>(positions.size()))] +
-                         Vec3(0.05 * DVec3(random.normal(), random.normal(), random.normal())));
-            std::vector<size_t> order(positions.size());
-            std::iota(order.begin(), order.end(), size_t{0});
-            const auto squared = [&](size_t i) { return glm::dot(p - positions[i], p - positions[i]); };
-            std::stable_sort(order.begin(), order.end(),
-                             [&](size_t a, size_t b) { return squared(a) < squared(b); });
+            const size_t beside = random.below(static_cast<uint32_t>(grown.axes.size()));
+            const Vec3 p(grown.axes[beside][0].position +
+                         0.05 * DVec3(random.normal(), random.normal(), random.normal()));
+            std::vector<uint8_t> except(grown.limbs.size(), 0);
+            for (uint8_t& left_aside : except)
+                left_aside = query % 3 == 0 && random.uniform() < 0.7 ? 1 : 0;
             double least = std::numeric_limits<double>::max();
-            for (size_t k = 0; k < std::min<size_t>(8, order.size()); k++) {
-                const auto [limb, station] = names[order[k]];
-                least = std::min(least, bark.on_limb(limb, station, DVec3(p)).outside());
+            const auto look = [&](const DVec3& a, const DVec3& b, double a_radius, double b_radius) {
+                double t = 0.0;
+                const double distance = distance_to_segment(DVec3(p), a, b, &t);
+                least = std::min(least, distance - (a_radius + t * (b_radius - a_radius)));
+            };
+            for (size_t l = 0; l < grown.axes.size(); l++) {
+                if (except[l] != 0) continue;
+                const std::vector<Station>& line = grown.axes[l];
+                const Limb& limb = grown.limbs[l];
+                if (limb.parent >= 0)
+                    look(grown.axes[limb.parent][limb.attach].position, line[0].position, line[0].radius,
+                         line[0].radius);
+                else if (line.size() == 1)
+                    look(line[0].position, line[0].position, line[0].radius, line[0].radius);
+                for (size_t i = 1; i < line.size(); i++)
+                    look(line[i - 1].position, line[i].position, line[i - 1].radius, line[i].radius);
             }
-            EXPECT_EQ(bark.nearest(p).outside(), least);
+            const BarkPlace place = bark.nearest(p, hint, &except);
+            if (std::find(except.begin(), except.end(), 0) == except.end()) {
+                EXPECT_EQ(place.limb, -1);
+                continue;
+            }
+            ASSERT_GE(place.limb, 0);
+            EXPECT_EQ(except[place.limb], 0);
+            EXPECT_EQ(place.outside(), least);
+            EXPECT_LT(static_cast<size_t>(place.station), grown.axes[place.limb].size());
+            // Whatever the hint.
+            uint32_t other = 0;
+            const BarkPlace again = bark.nearest(p, other, &except);
+            EXPECT_EQ(std::pair(again.limb, again.station), std::pair(place.limb, place.station));
         }
     }
 }
