@@ -126,7 +126,8 @@ void find_paths(const Cells& cells, const std::vector<Bridge>& bridges, CellPath
         queue.push({0.0, v});
     }
     while (!queue.empty()) {
-        const auto [c, v] = queue.top();
+        const double c = queue.top().first;
+        const uint32_t v = queue.top().second;
         queue.pop();
         if (done[v]) continue;
         done[v] = 1;
