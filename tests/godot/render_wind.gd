@@ -1,6 +1,7 @@
 extends "./picture_suite.gd"
 ## The wind in the renderer that this run uses: what moves, what stays, and by what.
 
+const WindRest: GDScript = preload("res://addons/tree_reconstruction/editor/viewport/wind_rest.gd")
 const SIZE: Vector2i = Vector2i(240, 240)
 
 var _instance: TreeInstance3D
@@ -64,6 +65,46 @@ func test_without_a_node_the_project_says_how_it_blows() -> void:
 	await _wait(0.4)
 	check(_change(first, await _picture()) > 20.0, "The wind did not come back.")
 	_viewport.free()
+
+
+# Whether something is drawn of itself, by an engine that draws only what has changed.
+# What still changes may come to its end.
+func _draws() -> bool:
+	OS.low_processor_usage_mode = true
+	var still: int = 0
+	var frames: int = 0
+	while still < 8 and frames < 30:
+		var drawn: int = Engine.get_frames_drawn()
+		await tree.process_frame
+		still = still + 1 if Engine.get_frames_drawn() == drawn else 0
+		frames += 1
+	OS.low_processor_usage_mode = false
+	return still < 8
+
+
+func test_trees_at_rest_give_nothing_to_draw() -> void:
+	await _stage(grown_tree(2), false)
+	check(await _draws(), "The wind is not drawn.")
+	var rest: WindRest = WindRest.new()
+	rest.update(false)
+	check(not await _draws(), "Trees at rest are drawn again and again.")
+	var upright: Image = await _picture()
+	rest.update(true)
+	check(await _draws(), "The wind that is to be seen is not drawn.")
+	check(_change(upright, await _picture()) > 20.0, "Trees at rest are bent.")
+	# A node that does not blow lets them rest, and they are as they were.
+	_wind = TreeWind.new()
+	_wind.strength = 0.0
+	_viewport.add_child(_wind)
+	check_equal(_change(upright, await _picture()), 0.0, "what differs from still air")
+	rest.update(false)
+	check(not await _draws(), "Trees in still air are drawn again and again.")
+	_wind.strength = 0.4
+	rest.update(false)
+	check(await _draws(), "The node's wind is not drawn.")
+	_viewport.free()
+	rest.update(false)
+	rest.leave()
 
 
 func test_the_shadow_moves_with_the_tree() -> void:
@@ -151,6 +192,9 @@ func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 	var made: TreeReconstruction = grown_tree(2)
 	await _stage(made)
 	_instance.visible = false
+	# That trees rest in the editor is nothing that is baked.
+	var rest: WindRest = WindRest.new()
+	rest.update(false)
 	for global: bool in [false, true]:
 		var baker: TreeBaker = TreeBaker.new()
 		baker.levels = 1
@@ -166,6 +210,7 @@ func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 		var moved: float = _change(first, await _picture())
 		check((moved == 0.0) == global, "With global_wind = %s, it moved %.1f." % [global, moved])
 		baked.free()
+	rest.leave()
 	_viewport.free()
 
 

@@ -4,6 +4,8 @@ extends RefCounted
 
 const _ADDON: String = "res://addons/tree_reconstruction/"
 const _QUALITY: float = 0.9
+# What baked trees do without: it is the editor's.
+const _REST: String = "tree_wind_rest.gdshaderinc"
 const _PICTURES: Array[StringName] = [&"albedo_texture", &"normal_texture", &"roughness_texture"]
 
 
@@ -74,11 +76,8 @@ static func _code_of(shader: Shader, joined: bool, global_wind: bool) -> String:
 		var path: String = found.get_string(1)
 		if not path.begins_with("res://"):
 			path = shader.resource_path.get_base_dir().path_join(path)
-		code = (
-			code.left(found.get_start())
-			+ (load(path) as ShaderInclude).code
-			+ code.substr(found.get_end())
-		)
+		var included: String = "" if path.ends_with(_REST) else (load(path) as ShaderInclude).code
+		code = code.left(found.get_start()) + included + code.substr(found.get_end())
 		found = include.search(code)
 	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
 	var end: int = type.search(code).get_end()

@@ -41,8 +41,11 @@ static func restore(part: GeometryInstance3D) -> void:
 static func tell(part: GeometryInstance3D, name: StringName, value: Variant) -> void:
 	if is_needed():
 		_copy_of(part).tell(name, value)
-	else:
-		RenderingServer.instance_geometry_set_shader_parameter(part.get_instance(), name, value)
+		return
+	# Telling the server again would make the editor draw.
+	var instance: RID = part.get_instance()
+	if RenderingServer.instance_geometry_get_shader_parameter(instance, name) != value:
+		RenderingServer.instance_geometry_set_shader_parameter(instance, name, value)
 
 
 ## Whether this renderer needs copies.

@@ -11,6 +11,8 @@ const _LEAST: float = 0.002
 static var _pushers: Array[TreePusher3D] = []
 static var _slots: Array[Slot] = []
 static var _running: bool = false
+# What the shaders were given: telling the server again would make the editor draw.
+static var _written: Dictionary[int, Vector4] = {}
 
 
 # One of the shaders' spheres.
@@ -115,4 +117,6 @@ static func _seat(pusher: TreePusher3D) -> void:
 
 
 static func _write(slot: int, sphere: Vector4) -> void:
-	RenderingServer.global_shader_parameter_set(StringName("tree_push_%d" % slot), sphere)
+	if _written.get(slot) != sphere:
+		_written[slot] = sphere
+		RenderingServer.global_shader_parameter_set(StringName("tree_push_%d" % slot), sphere)

@@ -119,6 +119,11 @@ static func get_project_value(global: StringName) -> Variant:
 	return TreeReconstruction.get_wind_globals().get(String(global))
 
 
+## Whether a [TreeWind] blows now: one is in the tree, and it is not calm.
+static func is_blowing() -> bool:
+	return not _winds.is_empty() and _winds.back()._written.get(&"tree_wind_strength", 0.0) > 0.0
+
+
 func _enter_tree() -> void:
 	_winds.append(self)
 	_written.clear()

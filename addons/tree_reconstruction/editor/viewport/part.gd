@@ -9,6 +9,7 @@ const SkeletonView: GDScript = preload("skeleton_view.gd")
 const PointView: GDScript = preload("point_view.gd")
 const AxesGrid: GDScript = preload("axes_grid.gd")
 const Visibility: GDScript = preload("visibility.gd")
+const WindRest: GDScript = preload("wind_rest.gd")
 const Picker: GDScript = preload("picker.gd")
 const Shortcuts: GDScript = preload("shortcuts.gd")
 const InputRouter: GDScript = preload("input_router.gd")
@@ -28,6 +29,7 @@ var _skeleton: SkeletonView
 var _points: PointView
 var _axes: AxesGrid
 var _visibility: Visibility
+var _wind_rest: WindRest
 var _picker: Picker
 var _shortcuts: Shortcuts
 var _router: InputRouter
@@ -126,6 +128,7 @@ func _make_views() -> void:
 	_points = PointView.new(_session)
 	_axes = AxesGrid.new(_session)
 	_visibility = Visibility.new(_session)
+	_wind_rest = WindRest.new()
 	_overlay = Overlay.new(_session)
 	_gizmo = Gizmo.new()
 	_gizmo.set_session(_session)
@@ -138,6 +141,7 @@ func _make_views() -> void:
 
 func _remove_views() -> void:
 	_visibility.take(null)
+	_wind_rest.leave()
 	_gizmo.take(null)
 	_plugin.remove_node_3d_gizmo_plugin(_gizmo)
 	_gizmo.set_session(null)
@@ -198,6 +202,7 @@ func _update() -> void:
 	_router.update()
 	_let_hovered_go()
 	_visibility.update()
+	_wind_rest.update(is_instance_valid(_session.node) and _session.view.wind)
 	_actions.turntable.update(delta)
 	_actions.views.update(delta)
 	_strip.update(delta)

@@ -9,6 +9,9 @@ const OwnMaterials: GDScript = preload("../../nodes/own_materials.gd")
 var _session: Session
 var _node: TreeInstance3D
 var _channel: int = 0
+# Which instances the server was told to show, or to hide: telling it again would make the editor
+# draw.
+var _told: Dictionary[RID, bool] = {}
 
 
 func _init(session: Session) -> void:
@@ -17,10 +20,17 @@ func _init(session: Session) -> void:
 
 ## Another node is edited, or none: the one before is shown as its scene says again.
 func take(node: TreeInstance3D) -> void:
-	if is_instance_valid(_node) and _node != node:
-		_apply(true, true, _node.wind)
-		_show_channel(0)
-	_node = node
+	if node != _node:
+		if is_instance_valid(_node):
+			_apply(true, true, _node.wind)
+			_show_channel(0)
+			_node.visibility_changed.disconnect(_forget)
+			_node.tree_entered.disconnect(_forget)
+		_forget()
+		_node = node
+		if node != null:
+			node.visibility_changed.connect(_forget)
+			node.tree_entered.connect(_forget)
 	update()
 
 
@@ -38,6 +48,11 @@ func _show_channel(channel: int) -> void:
 	_channel = channel
 
 
+# The engine has told the server itself.
+func _forget() -> void:
+	_told.clear()
+
+
 func _apply(bark: bool, leaves: bool, wind: bool) -> void:
 	if not _node.is_inside_tree():
 		return
@@ -49,5 +64,7 @@ func _apply(bark: bool, leaves: bool, wind: bool) -> void:
 
 
 func _set_up(instance: GeometryInstance3D, seen: bool, wind: bool) -> void:
-	RenderingServer.instance_set_visible(instance.get_instance(), seen)
+	if _told.get(instance.get_instance()) != seen:
+		_told[instance.get_instance()] = seen
+		RenderingServer.instance_set_visible(instance.get_instance(), seen)
 	OwnMaterials.tell(instance, &"tree_wind", 1.0 if wind else 0.0)
