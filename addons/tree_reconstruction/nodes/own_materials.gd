@@ -42,10 +42,12 @@ static func tell(part: GeometryInstance3D, name: StringName, value: Variant) -> 
 	if is_needed():
 		_copy_of(part).tell(name, value)
 		return
-	# Telling the server again would make the editor draw.
 	var instance: RID = part.get_instance()
-	if RenderingServer.instance_geometry_get_shader_parameter(instance, name) != value:
-		RenderingServer.instance_geometry_set_shader_parameter(instance, name, value)
+	# Telling the server again would make the editor draw; asking it would make a game wait.
+	if Engine.is_editor_hint():
+		if RenderingServer.instance_geometry_get_shader_parameter(instance, name) == value:
+			return
+	RenderingServer.instance_geometry_set_shader_parameter(instance, name, value)
 
 
 ## Whether this renderer needs copies.
