@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "error.h"
 #include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
+#include "geometry/groups.h"
 #include "geometry/parallel.h"
 #include "geometry/point_tree.h"
 #include "geometry/quantile.h"
@@ -24,12 +24,6 @@ constexpr double kLeastGap = 0.01;  // metres
 constexpr double kMostGap = 0.3;
 // Within so many tolerances, a point is the fringe of wood that is there.
 constexpr double kFringe = 2.0;
-
-uint32_t root_of(std::vector<uint32_t>& up, uint32_t i) {
-    while (up[i] != i)
-        i = up[i] = up[up[i]];
-    return i;
-}
 
 bool before(const Vec3& a, const Vec3& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -58,11 +52,10 @@ std::vector<uint32_t> components(const std::vector<Vec3>& points, double gap, co
     // Cells so small that all points of one belong together.
     const double cell = std::max(gap / std::sqrt(3.0), box.diagonal() / CellLayout::kMostCells * 2.0);
     const CellGrid grid(points, {box.min, cell}, progress);
-    std::vector<uint32_t> up(points.size());
-    std::iota(up.begin(), up.end(), 0U);
+    Groups groups(points.size());
     for (size_t c = 0; c < grid.size(); c++)
         for (uint32_t i : grid.in_cell(c))
-            up[i] = grid.in_cell(c)[0];
+            groups.join(grid.in_cell(c)[0], i);
     const double square = gap * gap;
     const auto near = [&](size_t a, size_t b) {
         for (uint32_t i : grid.in_cell(a))
@@ -82,15 +75,12 @@ std::vector<uint32_t> components(const std::vector<Vec3>& points, double gap, co
                 const auto [first, last] = grid.cells_between(middle - 2, middle + 2);
                 for (size_t other = first; other < last; other++) {
                     if (other <= c) continue;
-                    const uint32_t a = root_of(up, grid.in_cell(c)[0]);
-                    const uint32_t b = root_of(up, grid.in_cell(other)[0]);
-                    if (a != b && near(c, other)) up[std::max(a, b)] = std::min(a, b);
+                    const uint32_t a = grid.in_cell(c)[0], b = grid.in_cell(other)[0];
+                    if (groups.find(a) != groups.find(b) && near(c, other)) groups.join(a, b);
                 }
             }
     }
-    for (uint32_t i = 0; i < up.size(); i++)
-        up[i] = root_of(up, i);
-    return up;
+    return groups.names();
 }
 
 // Where a branch through the points would begin, and which way it would go.

@@ -140,6 +140,45 @@ CellShape shape_of(const std::vector<Gathered>& cells, size_t own, Rows& rows, f
     return shape;
 }
 
+void measure_scale(const Cells& cells, int scale, CellShapes& shapes, const Progress& progress) {
+    const size_t count = cells.count();
+    const float coarseness = static_cast<float>(1 << scale);
+    // Keys of the finest grid are in order; those of a coarser one are not.
+    std::vector<KeyedIndex> sorted(count);
+    for (size_t i = 0; i < count; i++)
+        sorted[i] = {coarse_key(cells.keys[i], scale), static_cast<uint32_t>(i)};
+    if (scale > 0) radix_sort(sorted, &progress);
+    std::vector<uint64_t> keys;
+    std::vector<uint32_t> of_cell(count);
+    std::vector<Gathered> gathered;
+    for (size_t begin = 0, end = 0; begin < count; begin = end) {
+        Gathered cell;
+        const Vec3 start = cells.centres[sorted[begin].index];
+        Vec3 sum(0.0F);
+        for (end = begin; end < count && sorted[end].key == sorted[begin].key; end++) {
+            const Vec3 d = cells.centres[sorted[end].index] - start;
+            sum += d;
+            add_product(cell.scatter, d, 1.0F);
+            of_cell[sorted[end].index] = static_cast<uint32_t>(keys.size());
+        }
+        cell.number = static_cast<float>(end - begin);
+        sum /= cell.number;
+        add_product(cell.scatter, sum, -cell.number);
+        cell.mean = start + sum;
+        keys.push_back(sorted[begin].key);
+        gathered.push_back(cell);
+    }
+    std::vector<CellShape> coarse(keys.size());
+    parallel_for(keys.size(), kGrain, [&](size_t begin, size_t end) {
+        progress.check();
+        Rows rows(keys, begin);
+        for (size_t i = begin; i < end; i++)
+            coarse[i] = shape_of(gathered, i, rows, coarseness);
+    });
+    for (size_t i = 0; i < count; i++)
+        shapes[i * kShapeScales + static_cast<size_t>(scale)] = coarse[of_cell[i]];
+}
+
 }  // namespace
 
 void add_product(std::array<float, 6>& sum, const Vec3& d, float weight) {
@@ -188,49 +227,6 @@ Cells make_cells(const std::vector<Vec3>& points, const Progress& progress) {
     find_near(cells, progress);
     return cells;
 }
-
-namespace {
-
-void measure_scale(const Cells& cells, int scale, CellShapes& shapes, const Progress& progress) {
-    const size_t count = cells.count();
-    const float coarseness = static_cast<float>(1 << scale);
-    // Keys of the finest grid are in order; those of a coarser one are not.
-    std::vector<KeyedIndex> sorted(count);
-    for (size_t i = 0; i < count; i++)
-        sorted[i] = {coarse_key(cells.keys[i], scale), static_cast<uint32_t>(i)};
-    if (scale > 0) radix_sort(sorted, &progress);
-    std::vector<uint64_t> keys;
-    std::vector<uint32_t> of_cell(count);
-    std::vector<Gathered> gathered;
-    for (size_t begin = 0, end = 0; begin < count; begin = end) {
-        Gathered cell;
-        const Vec3 start = cells.centres[sorted[begin].index];
-        Vec3 sum(0.0F);
-        for (end = begin; end < count && sorted[end].key == sorted[begin].key; end++) {
-            const Vec3 d = cells.centres[sorted[end].index] - start;
-            sum += d;
-            add_product(cell.scatter, d, 1.0F);
-            of_cell[sorted[end].index] = static_cast<uint32_t>(keys.size());
-        }
-        cell.number = static_cast<float>(end - begin);
-        sum /= cell.number;
-        add_product(cell.scatter, sum, -cell.number);
-        cell.mean = start + sum;
-        keys.push_back(sorted[begin].key);
-        gathered.push_back(cell);
-    }
-    std::vector<CellShape> coarse(keys.size());
-    parallel_for(keys.size(), kGrain, [&](size_t begin, size_t end) {
-        progress.check();
-        Rows rows(keys, begin);
-        for (size_t i = begin; i < end; i++)
-            coarse[i] = shape_of(gathered, i, rows, coarseness);
-    });
-    for (size_t i = 0; i < count; i++)
-        shapes[i * kShapeScales + static_cast<size_t>(scale)] = coarse[of_cell[i]];
-}
-
-}  // namespace
 
 void measure_shapes(const Cells& cells, int first, int last, CellShapes& shapes, const Progress& progress) {
     shapes.resize(cells.count() * kShapeScales);

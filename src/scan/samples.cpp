@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "geometry/cell_grid.h"
+#include "geometry/groups.h"
 #include "geometry/parallel.h"
 
 namespace treerec {
@@ -22,14 +22,6 @@ bool comes_before(const Vec3& a, const Vec3& b) {
     if (a.x != b.x) return a.x < b.x;
     if (a.y != b.y) return a.y < b.y;
     return a.z < b.z;
-}
-
-uint32_t find_root(std::vector<uint32_t>& parents, uint32_t i) {
-    while (parents[i] != i) {
-        parents[i] = parents[parents[i]];
-        i = parents[i];
-    }
-    return i;
 }
 
 Samples distinct_points(const std::vector<Vec3>& positions, CellGrid& grid) {
@@ -94,26 +86,22 @@ std::vector<uint32_t> connected_components(const std::vector<Vec3>& points,
                                            const std::array<Range, 3>& ranges, double cell,
                                            const Progress* progress) {
     const CellGrid grid(points, {low_corner(ranges), cell}, progress);
-    std::vector<uint32_t> parents(grid.size());
-    std::iota(parents.begin(), parents.end(), 0U);
+    Groups groups(grid.size());
     grid.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
-        for (size_t other = first; other < last && other < c; other++) {
-            const uint32_t a = find_root(parents, static_cast<uint32_t>(c));
-            const uint32_t b = find_root(parents, static_cast<uint32_t>(other));
-            if (a != b) parents[std::max(a, b)] = std::min(a, b);
-        }
+        for (size_t other = first; other < last && other < c; other++)
+            groups.join(static_cast<uint32_t>(c), static_cast<uint32_t>(other));
     });
     std::vector<uint32_t> component(points.size());
     for (size_t c = 0; c < grid.size(); c++) {
-        const uint32_t root = find_root(parents, static_cast<uint32_t>(c));
+        const uint32_t group = groups.find(static_cast<uint32_t>(c));
         for (const uint32_t i : grid.in_cell(c))
-            component[i] = root;
+            component[i] = group;
     }
     constexpr uint32_t kUnlabelled = std::numeric_limits<uint32_t>::max();
-    std::vector<uint32_t> label_of_root(grid.size(), kUnlabelled);
+    std::vector<uint32_t> label_of_group(grid.size(), kUnlabelled);
     uint32_t next = 0;
     for (uint32_t& c : component) {
-        uint32_t& label = label_of_root[c];
+        uint32_t& label = label_of_group[c];
         if (label == kUnlabelled) label = next++;
         c = label;
     }

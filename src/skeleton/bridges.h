@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/groups.h"
 #include "geometry/point_tree.h"
 #include "progress.h"
-#include "skeleton/groups.h"
 
 namespace treerec {
 

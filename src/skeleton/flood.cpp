@@ -4,8 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "geometry/groups.h"
 #include "skeleton/flood_fit.h"
-#include "skeleton/groups.h"
 
 namespace treerec {
 

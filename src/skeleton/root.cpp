@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geometry/bounds.h"
+#include "geometry/groups.h"
 #include "geometry/portable_math.h"
-#include "skeleton/groups.h"
 
 namespace treerec {
 
@@ -27,10 +27,7 @@ std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& s
             if (graph.length[e] <= edge_reach(scale, v, n)) link(n);
         }
     });
-    std::vector<uint32_t> group(graph.size());
-    for (uint32_t v = 0; v < graph.size(); v++)
-        group[v] = groups.find(v);
-    return group;
+    return groups.names();
 }
 
 uint32_t farthest(const PathTree& paths, const std::vector<uint8_t>& wood) {

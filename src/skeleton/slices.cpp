@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/groups.h"
 #include "geometry/parallel.h"
-#include "skeleton/groups.h"
 
 namespace treerec {
 

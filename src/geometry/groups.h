@@ -27,6 +27,14 @@ class Groups {
         return v;
     }
 
+    // By member: the smallest of its group.
+    std::vector<uint32_t> names() {
+        std::vector<uint32_t> names(size());
+        for (uint32_t v = 0; v < size(); v++)
+            names[v] = find(v);
+        return names;
+    }
+
     // Whether they were apart.
     bool join(uint32_t a, uint32_t b) {
         a = find(a);
