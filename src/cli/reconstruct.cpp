@@ -228,12 +228,12 @@ void run_reconstruct(const std::vector<std::string>& words) {
     exports.textures = details.leaves;
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
-    result.measured = exporter.measured();
     if (!outs.empty()) progress.update(0.9, "Writing");
-    // Both have stretches that keep one core busy alone.
+    exporter.prepare(outs);
+    result.measured = exporter.measured();
+    // The file system takes what one core writes; the score keeps all others busy.
     parallel_for(2, 1, [&](size_t part, size_t) {
         if (part == 1) return score_reconstruction(result, options, &scoring);
-        exporter.prepare(outs);
         for (const std::string& out : outs) {
             progress.check();
             exporter.write(out);

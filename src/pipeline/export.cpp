@@ -86,7 +86,12 @@ void TreeExporter::prepare(const std::vector<std::string>& paths) {
             return format == Format::kGltf || format == Format::kObj;
         }))
         return;
-    parallel_for(2, 1, [&](size_t part, size_t) { part == 0 ? leaf_cards() : bark(); });
+    // Each has stretches that keep one core busy alone.
+    parallel_for(3, 1, [&](size_t part, size_t) {
+        if (part == 0) bark();
+        if (part == 1) leaf_cards();
+        if (part == 2) measured();
+    });
 }
 
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
