@@ -13,7 +13,8 @@ namespace {
 
 // A limb that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
 // as large as that many cells.
-constexpr double kHiddenShare = 0.15;  // of the crown's extent
+constexpr double kHiddenShare = 0.15;  // of the crown's extent,
+constexpr double kHiddenWidth = 0.5;   // and no more than that of its half width: spruces have short limbs
 constexpr float kHiddenCells = 8.0F;
 constexpr uint32_t kLeastPiece = 8;
 constexpr double kCrownBase = 0.1;    // of the leaves are lower
@@ -43,6 +44,7 @@ struct Crown {
     double base = 0.0;    // height
     double foot = 0.0;    // height: well below the crown
     double extent = 0.0;  // the longest side
+    double width = 0.0;   // the shorter level one
     DVec3 middle{0.0};
     DVec3 top{0.0};  // the highest leaf
     size_t cells = 0;
@@ -64,7 +66,9 @@ Crown measure_crown(const Cells& cells, const std::vector<uint8_t>& leaf) {
     crown.foot = crown.base - kFootGap * (crown.top.y - crown.base);
     for (int axis = 0; axis < 3; axis++) {
         std::vector<float>& v = values[static_cast<size_t>(axis)];
-        crown.extent = std::max<double>(crown.extent, quantile(v, 0.99) - quantile(v, 0.01));
+        const double side = quantile(v, 0.99) - quantile(v, 0.01);
+        crown.extent = std::max(crown.extent, side);
+        if (axis != 1) crown.width = axis == 0 ? side : std::min(crown.width, side);
         crown.middle[axis] = quantile(v, 0.5);
     }
     return crown;
@@ -250,7 +254,8 @@ Limbs follow_limbs(const Cells& cells, const CellShapes& shapes, const CellPaths
         return limbs;
     }
     const auto scale = static_cast<float>(1.0 / cells.size);
-    const float least = std::max(kHiddenCells, static_cast<float>(kHiddenShare * crown.extent) * scale);
+    const double hidden_length = std::min(kHiddenShare * crown.extent, kHiddenWidth * 0.5 * crown.width);
+    const float least = std::max(kHiddenCells, static_cast<float>(hidden_length) * scale);
     std::vector<uint32_t> wood(count, 0);     // wood cells from here on
     std::vector<float> through(count, 0.0F);  // the longest way onward through leaves alone
     for (auto v = tree.order.rbegin(); v != tree.order.rend(); ++v) {

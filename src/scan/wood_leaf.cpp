@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geometry/parallel.h"
@@ -13,6 +14,7 @@
 #include "scan/leaf_limbs.h"
 #include "scan/leaf_paths.h"
 #include "scan/leaf_rule.h"
+#include "scan/round_stems.h"
 #include "scan/samples.h"
 
 namespace treerec {
@@ -115,6 +117,9 @@ constexpr double kLeastGreen = 0.08;      // mean excess green of the green grou
 constexpr double kLeastGreenGap = 0.1;    // between the groups' means
 constexpr double kLeastGreenShare = 0.05;
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
+
+// Half of the points of bark that noise blurs lie further than 0.67 of its standard deviation off.
+constexpr double kSharp = 0.35;
 
 constexpr double kMuchHidden = 0.3;
 
@@ -305,6 +310,30 @@ Verdict judge(std::vector<float> logits, double share, const Cells& cells, const
     return verdict;
 }
 
+// Bark that is seen between leaves is wood, however bushy it looks.
+void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& points, const Cells& cells,
+                const CellShapes& shapes, const CellPaths& paths, Verdict& verdict,
+                const Progress& progress) {
+    const std::vector<uint8_t> on = points_on_stems(points, stems);
+    std::vector<int32_t> surplus(cells.count(), 0);  // of points on a stem
+    for (size_t i = 0; i < points.size(); i++)
+        surplus[cells.of_point[i]] += on[i] ? 1 : -1;
+    bool changes = false;
+    for (size_t v = 0; v < surplus.size(); v++)
+        changes = changes || (surplus[v] >= 0 && verdict.leaf[v]);
+    if (!changes) return;
+    for (size_t v = 0; v < surplus.size(); v++)
+        verdict.leaf[v] = verdict.logits[v] > verdict.threshold && surplus[v] < 0;
+    verdict.limbs = follow_limbs(cells, shapes, paths, verdict.leaf, progress);
+    // What lies around the foot grows by itself.
+    const std::vector<uint8_t> around = points_around_feet(cells.centres, stems);
+    for (size_t v = 0; v < surplus.size(); v++) {
+        if (!around[v] || surplus[v] >= 0) continue;
+        verdict.leaf[v] = 1;
+        verdict.limbs.path[v] = 0;
+    }
+}
+
 // By leaf_rule.h; empty where it finds no leaves at all.
 std::vector<float> finer_logits(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
                                 const CellPaths& paths, const std::vector<uint32_t>& weights,
@@ -355,6 +384,14 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
         (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
     if (resolved) result.noise = blur_of(samples.points, progress);
+    std::optional<std::vector<RoundStem>> stems;
+    if (result.noise > 0.0) {
+        // Dense leaves look like blur, but not where bark shows between them.
+        stems = find_round_stems(samples.points, progress);
+        const double most = 2.0 * result.noise;
+        if (!stems->empty() && spread_on_stems(samples.points, *stems, most) < kSharp * result.noise)
+            result.noise = 0.0;
+    }
     const bool told_by_shape = resolved && !(result.noise > 0.0);
     // Fronds are flat like no other leaves, even blurred, and their stem may have most of the points.
     const bool frond_like = flat > kFrondPlanarity;
@@ -396,6 +433,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         }
     }
     if (!leafy && !verdict.limbs.fronds) return result;
+    if (!stems) stems = find_round_stems(samples.points, progress);
+    if (!verdict.limbs.fronds) keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
     const auto& [cell_logits, threshold, leaf, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;
     result.fronds = limbs.fronds;

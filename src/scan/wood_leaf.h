@@ -31,8 +31,9 @@ struct WoodLeaf {
 // by expectation maximisation (Saerens, Latinne and Decaestecker 2002), and neighbours smooth one another.
 // Where all is as flat as fronds, a palm is looked for, by a finer rule (leaf_rule.h) unless the scan is
 // blurred. Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or
-// too sparse or noisy to show them, is left whole. The order of the points and the number of threads change
-// nothing.
+// too sparse or noisy to show them, is left whole. Round bark that shows between the leaves is a stem
+// (round_stems.h), and what grows around its foot is not followed. The order of the points and the number of
+// threads change nothing.
 WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -1,0 +1,394 @@
+#include "scan/round_stems.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "geometry/parallel.h"
+#include "geometry/portable_math.h"
+#include "geometry/quantile.h"
+#include "geometry/random.h"
+
+namespace treerec {
+
+namespace {
+
+// As shares of the tree's height.
+constexpr double kSlice = 0.0125;       // thickness of a slice,
+constexpr double kLeastSlice = 0.05;    // in metres at least
+constexpr double kMostSlice = 0.25;     // and at most
+constexpr double kWidest = 1.0 / 30.0;  // radius: trees are 25 to 100 times as high as thick
+constexpr double kThinnest = 1.0 / 500.0;
+constexpr double kLatestStart = 0.4;
+constexpr double kShortest = 0.12;
+// The search for circles.
+constexpr size_t kFewest = 12;       // points of a slice
+constexpr size_t kMostPoints = 800;  // that are looked at
+constexpr int kSeeds = 200;          // points of a slice that circles are tried through
+constexpr int kTrials = 8;           // circles per such point
+constexpr size_t kKept = 8;          // circles of a slice
+constexpr int kSectors = 24;
+constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
+constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
+constexpr double kLeastContrast = 1.0;  // points on the bark, over those as far again outside
+constexpr double kRough = 0.006;        // metres: how far points lie off the circle,
+constexpr double kRoughShare = 0.06;    // and of its radius
+// The chains.
+constexpr size_t kMissing = 4;        // slices in a row that may show no circle
+constexpr double kMissed = 0.12;      // what each of them costs; a slice's circle brings its coverage
+constexpr double kDrift = 0.25;       // sideways per metre up,
+constexpr double kDriftShare = 0.25;  // and of the radius
+constexpr double kThinner = 0.75, kThicker = 1.15;  // from ring to ring upwards
+constexpr double kThickerAgain = 1.3;  // than it was below: from there on, circles go through leaves
+constexpr size_t kFewestRings = 8;
+constexpr double kLeastFilled = 0.5;  // of a stem's slices
+constexpr size_t kMostStems = 4;
+// What grows around their feet: as shares of the height,
+constexpr double kLowFoot = 0.05;    // where the lowest ring is of a stem that is seen from the ground up,
+constexpr double kLowGrowth = 0.03;  // and how far it reaches up
+constexpr double kFlare = 3.0;       // times the radius: as wide a stem's own foot is at most
+constexpr double kBark = 0.015;      // metres: what lies so far outside is of the stem,
+constexpr double kBarkShare = 0.12;  // and of its radius
+
+struct Circle {
+    DVec2 centre{0.0};
+    double radius = 0.0;
+    double coverage = 0.0;  // share of the sectors with bark
+};
+
+struct Slice {
+    double y = 0.0;
+    std::vector<Circle> circles;
+};
+
+double tolerance(double radius) {
+    return kRough + kRoughShare * radius;
+}
+
+bool circle_through(const DVec2& a, const DVec2& b, const DVec2& c, Circle& circle) {
+    const DVec2 p = b - a, q = c - a;
+    const double turn = 2.0 * (p.x * q.y - p.y * q.x);
+    const double pp = glm::dot(p, p), qq = glm::dot(q, q);
+    if (std::abs(turn) < 1e-3 * std::max(pp, qq)) return false;
+    const DVec2 offset((q.y * pp - p.y * qq) / turn, (p.x * qq - q.x * pp) / turn);
+    circle.centre = a + offset;
+    circle.radius = glm::length(offset);
+    return true;
+}
+
+// Whether bark is on the circle and nothing within; sets its coverage.
+bool is_bark(std::span<const DVec2> points, Circle& circle) {
+    const double off = tolerance(circle.radius);
+    const double inner = circle.radius - 2.0 * off, outer = circle.radius + 3.0 * off;
+    std::array<uint32_t, kSectors> sectors{};
+    size_t on = 0, inside = 0, outside = 0;
+    for (const DVec2& p : points) {
+        const DVec2 d = p - circle.centre;
+        const double square = glm::dot(d, d);
+        if (square > outer * outer) continue;
+        const double distance = std::sqrt(square);
+        if (std::abs(distance - circle.radius) <= off) {
+            on++;
+            // Around a square instead of the circle: no sine is needed to count sectors.
+            const double share = d.y / (std::abs(d.x) + std::abs(d.y));
+            const double turn = (d.x >= 0.0 ? 1.0 + share : 3.0 - share) * 0.25 * kSectors;
+            sectors[static_cast<size_t>(turn) % kSectors]++;
+        } else if (distance < inner) {
+            inside++;
+        } else if (distance > circle.radius) {
+            outside++;
+        }
+    }
+    if (on < kFewest || static_cast<double>(inside) > kMostInside * static_cast<double>(on)) return false;
+    if (static_cast<double>(on) < kLeastContrast * static_cast<double>(outside)) return false;
+    // A sector counts where it holds a fair part of what one would, were the points spread evenly.
+    const double fair = 0.25 * static_cast<double>(on) / kSectors;
+    const auto covered = std::count_if(sectors.begin(), sectors.end(), [&](uint32_t n) { return n > fair; });
+    circle.coverage = static_cast<double>(covered) / kSectors;
+    return covered >= kLeastSectors;
+}
+
+// Least squares through the points on it (Kasa 1976).
+void refine(std::span<const DVec2> points, Circle& circle) {
+    for (int round = 0; round < 3; round++) {
+        const double off = 1.5 * tolerance(circle.radius);
+        double n = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, xs = 0.0, ys = 0.0, s = 0.0, x = 0.0, y = 0.0;
+        for (const DVec2& p : points) {
+            const DVec2 d = p - circle.centre;
+            const double square = glm::dot(d, d);
+            if (std::abs(std::sqrt(square) - circle.radius) > off) continue;
+            n += 1.0, x += d.x, y += d.y, s += square;
+            xx += d.x * d.x, xy += d.x * d.y, yy += d.y * d.y, xs += d.x * square, ys += d.y * square;
+        }
+        if (n < static_cast<double>(kFewest)) return;
+        x /= n, y /= n, s /= n;
+        xx = xx / n - x * x, xy = xy / n - x * y, yy = yy / n - y * y, xs = xs / n - x * s,
+        ys = ys / n - y * s;
+        const double area = xx * yy - xy * xy;
+        if (!(area > 1e-12 * (xx + yy) * (xx + yy))) return;
+        const DVec2 centre(0.5 * (xs * yy - ys * xy) / area, 0.5 * (ys * xx - xs * xy) / area);
+        const double square = s - 2.0 * (centre.x * x + centre.y * y) + glm::dot(centre, centre);
+        if (!(square > 0.0) || !(glm::length(centre) < circle.radius)) return;
+        circle.centre += centre;
+        circle.radius = std::sqrt(square);
+    }
+}
+
+// points: of a slice, by rising x.
+std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinnest, double widest,
+                                 Random random) {
+    std::vector<Circle> found;
+    if (points.size() < kFewest) return found;
+    const double range = portable::log(widest / thinnest);
+    std::vector<DVec2> near, close;
+    for (int seed = 0; seed < kSeeds; seed++) {
+        const DVec2 a = points[random.below(static_cast<uint32_t>(points.size()))];
+        const double size = thinnest * portable::exp(random.uniform() * range);
+        near.clear();
+        close.clear();
+        auto p = std::lower_bound(points.begin(), points.end(), a.x - 3.0 * size,
+                                  [](const DVec2& b, double x) { return b.x < x; });
+        for (; p != points.end() && p->x < a.x + 3.0 * size; ++p) {
+            const DVec2 d = *p - a;
+            const double square = glm::dot(d, d);
+            if (square < 9.0 * size * size) near.push_back(*p);
+            if (square < 2.25 * size * size) close.push_back(*p);
+        }
+        if (close.size() < kFewest) continue;
+        for (int trial = 0; trial < kTrials; trial++) {
+            const auto count = static_cast<uint32_t>(close.size());
+            const DVec2 b = close[random.below(count)], c = close[random.below(count)];
+            Circle circle;
+            if (!circle_through(a, b, c, circle) || circle.radius < thinnest ||
+                circle.radius > std::min(widest, 1.2 * size))
+                continue;
+            if (is_bark(near, circle)) found.push_back(circle);
+        }
+    }
+    for (Circle& circle : found) {
+        refine(points, circle);
+        if (circle.radius < thinnest || circle.radius > widest || !is_bark(points, circle))
+            circle.coverage = 0.0;
+    }
+    std::erase_if(found, [](const Circle& c) { return c.coverage == 0.0; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Circle& a, const Circle& b) { return a.coverage > b.coverage; });
+    std::vector<Circle> kept;
+    for (const Circle& circle : found) {
+        const bool same = std::any_of(kept.begin(), kept.end(), [&](const Circle& other) {
+            return glm::distance(circle.centre, other.centre) + std::abs(circle.radius - other.radius) <
+                   0.3 * other.radius;
+        });
+        if (!same) kept.push_back(circle);
+        if (kept.size() == kKept) break;
+    }
+    return kept;
+}
+
+// What it costs to go from one circle to another further up; nothing where no stem does.
+std::optional<double> step_cost(const Circle& low, const Circle& high, double rise) {
+    const double drift = glm::distance(low.centre, high.centre) / (kDrift * rise + kDriftShare * low.radius);
+    const double growth = high.radius / low.radius;
+    if (drift > 1.0 || growth < kThinner || growth > kThicker) return std::nullopt;
+    return 0.1 * drift;
+}
+
+struct Chain {
+    std::vector<std::pair<size_t, size_t>> rings;  // slice and circle, from below
+    double score = 0.0;
+};
+
+// The chain of the largest score that begins low.
+Chain best_chain(const std::vector<Slice>& slices, size_t latest) {
+    struct State {
+        double score = 0.0;
+        ptrdiff_t slice = -1;  // that it comes from
+        size_t circle = 0;
+    };
+    std::vector<std::vector<State>> states(slices.size());
+    Chain best;
+    std::pair<size_t, size_t> end;
+    for (size_t i = 0; i < slices.size(); i++) {
+        states[i].resize(slices[i].circles.size());
+        for (size_t k = 0; k < slices[i].circles.size(); k++) {
+            const Circle& circle = slices[i].circles[k];
+            State& state = states[i][k];
+            state.score = i <= latest ? 0.0 : -std::numeric_limits<double>::infinity();
+            for (size_t j = i > kMissing + 1 ? i - kMissing - 1 : 0; j < i; j++)
+                for (size_t l = 0; l < slices[j].circles.size(); l++) {
+                    const auto cost = step_cost(slices[j].circles[l], circle, slices[i].y - slices[j].y);
+                    if (!cost) continue;
+                    const double score =
+                        states[j][l].score - *cost - kMissed * static_cast<double>(i - j - 1);
+                    if (score > state.score) state = {score, static_cast<ptrdiff_t>(j), l};
+                }
+            state.score += circle.coverage;
+            if (state.score > best.score) {
+                best.score = state.score;
+                end = {i, k};
+            }
+        }
+    }
+    if (best.score <= 0.0) return best;
+    for (auto at = end;;) {
+        best.rings.push_back(at);
+        const State& state = states[at.first][at.second];
+        if (state.slice < 0) break;
+        at = {static_cast<size_t>(state.slice), state.circle};
+    }
+    std::reverse(best.rings.begin(), best.rings.end());
+    return best;
+}
+
+// The middle of its own and its neighbours' rings.
+RoundStem smoothed(const RoundStem& stem) {
+    RoundStem smooth = stem;
+    for (size_t i = 1; i + 1 < stem.size(); i++) {
+        const auto middle = [&](auto value) {
+            std::array<double, 3> values{value(stem[i - 1]), value(stem[i]), value(stem[i + 1])};
+            std::sort(values.begin(), values.end());
+            return values[1];
+        };
+        smooth[i].centre = {middle([](const StemRing& r) { return r.centre.x; }),
+                            middle([](const StemRing& r) { return r.centre.y; })};
+        smooth[i].radius = middle([](const StemRing& r) { return r.radius; });
+    }
+    return smooth;
+}
+
+// Calls body(point, distance from the axis, radius there) for all points as high as a stem is seen.
+template <typename Body>
+void for_points_beside(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems,
+                       const Body& body) {
+    for (const RoundStem& stem : stems) {
+        const double end = 0.5 * (stem[1].y - stem[0].y);
+        for (size_t i = 0; i < points.size(); i++) {
+            const double y = points[i].y;
+            if (y < stem.front().y - end || y > stem.back().y + end) continue;
+            const auto above = std::lower_bound(stem.begin() + 1, stem.end() - 1, y,
+                                                [](const StemRing& ring, double at) { return ring.y < at; });
+            const StemRing &b = *above, &a = above[-1];
+            const double t = std::clamp((y - a.y) / (b.y - a.y), 0.0, 1.0);
+            const DVec2 centre = a.centre + (b.centre - a.centre) * t;
+            body(i, glm::distance(DVec2(points[i].x, points[i].z), centre),
+                 a.radius + (b.radius - a.radius) * t);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress& progress) {
+    std::vector<RoundStem> stems;
+    std::vector<float> heights;
+    heights.reserve(points.size());
+    for (const Vec3& p : points)
+        heights.push_back(p.y);
+    if (heights.empty()) return stems;
+    const double low = quantile(heights, 0.001), high = quantile(heights, 0.999);
+    const double height = high - low;
+    if (!(height > 0.0)) return stems;
+    const double thickness = std::clamp(kSlice * height, kLeastSlice, kMostSlice);
+    const auto count = static_cast<size_t>(height / thickness) + 1;
+    if (count > 4096) return stems;
+    std::vector<std::vector<DVec2>> members(count);
+    for (const Vec3& p : points) {
+        const double slice = (p.y - low) / thickness;
+        if (slice >= 0.0 && slice < static_cast<double>(count))
+            members[static_cast<size_t>(slice)].emplace_back(p.x, p.z);
+    }
+    std::vector<Slice> slices(count);
+    parallel_for(count, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            progress.check();
+            slices[i].y = low + (static_cast<double>(i) + 0.5) * thickness;
+            std::vector<DVec2>& own = members[i];
+            // Evenly from all sides: the points are in the order of cells.
+            const size_t every = own.size() / kMostPoints + 1;
+            for (size_t k = 0; k * every < own.size(); k++)
+                own[k] = own[k * every];
+            own.resize((own.size() + every - 1) / every);
+            std::sort(own.begin(), own.end(),
+                      [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, Random(1, i));
+        }
+    });
+    const auto latest = static_cast<size_t>(kLatestStart * static_cast<double>(count));
+    const size_t least =
+        std::max(kFewestRings, static_cast<size_t>(kLeastFilled * kShortest * height / thickness));
+    while (stems.size() < kMostStems) {
+        const Chain chain = best_chain(slices, latest);
+        if (chain.rings.size() < least) break;
+        RoundStem stem;
+        for (const auto& [slice, circle] : chain.rings) {
+            const Circle& ring = slices[slice].circles[circle];
+            stem.push_back({slices[slice].y, ring.centre, ring.radius});
+        }
+        // None of what lies on it is another one's.
+        for (const StemRing& ring : stem) {
+            Slice& slice = slices[static_cast<size_t>((ring.y - low) / thickness)];
+            std::erase_if(slice.circles, [&](const Circle& c) {
+                return glm::distance(c.centre, ring.centre) < c.radius + ring.radius;
+            });
+        }
+        const double span = (stem.back().y - stem.front().y) / thickness + 1.0;
+        if (span * thickness < kShortest * height || static_cast<double>(stem.size()) < kLeastFilled * span)
+            continue;
+        stem = smoothed(stem);
+        double least_radius = stem.front().radius;
+        const auto end = std::find_if(stem.begin(), stem.end(), [&](const StemRing& ring) {
+            least_radius = std::min(least_radius, ring.radius);
+            return ring.radius > kThickerAgain * least_radius;
+        });
+        stem.erase(end, stem.end());
+        if (stem.size() >= least) stems.push_back(std::move(stem));
+    }
+    std::stable_sort(stems.begin(), stems.end(), [](const RoundStem& a, const RoundStem& b) {
+        return a.front().radius > b.front().radius;
+    });
+    return stems;
+}
+
+std::vector<uint8_t> points_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems) {
+    std::vector<uint8_t> on(points.size(), 0);
+    for_points_beside(points, stems, [&](size_t i, double distance, double radius) {
+        if (distance < radius * (1.0 + kBarkShare) + kBark) on[i] = 1;
+    });
+    return on;
+}
+
+double spread_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems, double most) {
+    std::vector<float> off;
+    for_points_beside(points, stems, [&](size_t, double distance, double radius) {
+        const double away = std::abs(distance - radius);
+        if (away <= most) off.push_back(static_cast<float>(away));
+    });
+    return off.empty() ? 0.0 : quantile(off, 0.5);
+}
+
+std::vector<uint8_t> points_around_feet(const std::vector<Vec3>& points,
+                                        const std::vector<RoundStem>& stems) {
+    std::vector<uint8_t> around(points.size(), 0);
+    if (points.empty() || stems.empty()) return around;
+    std::vector<float> heights;
+    for (const Vec3& p : points)
+        heights.push_back(p.y);
+    const double low = quantile(heights, 0.001), height = quantile(heights, 0.999) - low;
+    double ground = std::numeric_limits<double>::max();
+    for (const RoundStem& stem : stems)
+        ground = std::min(ground, stem.front().y);
+    if (ground > low + kLowFoot * height) return around;
+    for (size_t i = 0; i < points.size(); i++) {
+        if (points[i].y > ground + kLowGrowth * height) continue;
+        const DVec2 at(points[i].x, points[i].z);
+        around[i] = std::none_of(stems.begin(), stems.end(), [&](const RoundStem& stem) {
+            return glm::distance(at, stem.front().centre) < kFlare * stem.front().radius;
+        });
+    }
+    return around;
+}
+
+}  // namespace treerec

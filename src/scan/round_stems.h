@@ -1,0 +1,39 @@
+// Stems that stand among leaves, told by their round bark. Internal to scan/.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "progress.h"
+
+namespace treerec {
+
+// A stem's axis and width at one height.
+struct StemRing {
+    double y = 0.0;     // metres
+    DVec2 centre{0.0};  // x, z
+    double radius = 0.0;
+};
+
+// From below; slices of the tree in which no bark shows have no ring.
+using RoundStem = std::vector<StemRing>;
+
+// Circles through the arcs of bark that a scanner sees between the leaves, one slice after another
+// (as Olofsson et al. 2014, "Tree stem and height measurements using terrestrial laser scanning and the
+// RANSAC algorithm"), and the chains of them that go up with little change (Viterbi). A chain is a stem where
+// it begins in the lower part of the tree and is long enough: among leaves alone circles follow no line.
+// Thickest first; none where no bark shows. points: metres, Y up, distinct, in canonical order.
+std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress& progress);
+
+// By point: 1 for what lies on or in one of the stems.
+std::vector<uint8_t> points_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems);
+
+// Metres: how far the points lie off the stems' surfaces, the median of those no further off than `most`.
+// Bark that is seen sharply has a small part of what blur or leaves give. 0 without points there.
+double spread_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems, double most);
+
+// By point: 1 for what lies beside the feet of the stems that are seen from the ground up: grass, shrubs.
+std::vector<uint8_t> points_around_feet(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems);
+
+}  // namespace treerec
