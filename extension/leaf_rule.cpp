@@ -139,6 +139,7 @@ const LeafRule::Value LeafRule::kValues[] = {
     {"angle_variation", &treerec::LeafRules::angle_variation, 0.0, 180.0, "0,90,1,suffix:°"},
     {"phototropism", &treerec::LeafRules::phototropism, 0.0, 1.0, "0,1,0.01"},
     {"curl", &treerec::LeafRules::curl, -180.0, 180.0, "-90,90,1,suffix:°"},
+    {"fold", &treerec::LeafRules::fold, -80.0, 80.0, "-60,60,1,suffix:°"},
     {"follow_density", &treerec::LeafRules::follow_density, 0.0, 1.0, "0,1,0.01"},
     {"follow_color", &treerec::LeafRules::follow_color, 0.0, 1.0, "0,1,0.01"},
 };
@@ -349,6 +350,7 @@ void LeafRule::_validate_property(PropertyInfo& p_property) const {
                                   arrangement == treerec::LeafArrangement::kFascicled);
     hide_unless("leaflets", form == treerec::LeafForm::kPinnate || form == treerec::LeafForm::kPalmate ||
                                 form == treerec::LeafForm::kNeedles);
+    hide_unless("fold", form != treerec::LeafForm::kNeedles);
     hide_unless("blade_width", form != treerec::LeafForm::kSpray);
     hide_unless("petiole_length", form != treerec::LeafForm::kSpray && form != treerec::LeafForm::kSprig);
     hide_unless("sprig", form == treerec::LeafForm::kSprig);
@@ -434,7 +436,7 @@ void LeafRule::_bind_methods() {
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "sprig_string", PROPERTY_HINT_MULTILINE_TEXT),
                  "set_sprig_string", "get_sprig_string");
     ADD_GROUP("Pose", "");
-    add_value("angle", "curl");
+    add_value("angle", "fold");
     ADD_GROUP("Season", "");
     ADD_PROPERTY(PropertyInfo(Variant::FLOAT, "season", PROPERTY_HINT_RANGE, "0,1,0.01"), "set_season",
                  "get_season");

@@ -70,6 +70,7 @@ LeafRules palm() {
     made.angle_variation = 10.0;
     made.phototropism = 0.0;  // they arch away from the stem on all sides, not to the light
     made.curl = 75.0;
+    made.fold = 30.0;  // leaflets stand at an angle to one another, so that no frond is a line from the side
     made.leaflets = 41;
     made.blade_width = 0.06;
     made.follow_density = 0.0;
@@ -142,6 +143,7 @@ void check_leaf_rules(const LeafRules& rules) {
     require(rules.angle_variation, 0.0, 180.0, "angle variation");
     require(rules.phototropism, 0.0, 1.0, "phototropism");
     require(rules.curl, -180.0, 180.0, "curl");
+    require(rules.fold, -80.0, 80.0, "fold");
     require(rules.standing, 0.0, 1.0, "share of standing leaves");
     require(rules.follow_density, 0.0, 1.0, "share of the scan's density");
     require(rules.follow_color, 0.0, 1.0, "share of the scan's colour");

@@ -44,6 +44,8 @@ struct LeafSprig {
     std::vector<Leaf> leaves;  // none: one at every tip
 };
 
+inline constexpr double kUsualFold = 8.0;
+
 // Lengths in metres. On a smaller tree they shrink with the square root of its height: leaf_size (of sprays
 // alone: a single leaf has its own size) and internode below 12 m, twig_length and maximum_radius below 6 m.
 // Angles in degrees.
@@ -79,6 +81,9 @@ struct LeafRules {
     double angle_variation = 20.0;
     double phototropism = 0.5;  // 0: faces as the twig turns them, 0.5: to the light, 1: leaves bend up to it
     double curl = 18.0;         // how far a card bends down along its length
+    // By how much each half is turned out of the blade's plane about the midrib: down, as a roof, for sprays
+    // and the leaflets of a compound leaf; up, as a channel, for a single blade. Needles have none.
+    double fold = kUsualFold;
     std::shared_ptr<const LeafSprig> sprig;  // of kSprig; without one, kSimple
 
     // How many of them stand now: 1 in summer, 0 in winter. The same ones fall first for every value.

@@ -11,9 +11,11 @@ namespace treerec {
 namespace {
 
 constexpr float kStrongCurl = 40.0f;      // degrees: beyond it a card has several pieces
+constexpr float kLeastFold = 10.0f;       // degrees: a smaller one shows from near alone
 constexpr float kStalkShare = 0.022f;     // a petiole's width over the leaf's length
 constexpr float kLeafletReach = 2.2f;     // over the number of leaflets: their length over the whole leaf's
 constexpr float kPalmateHalf = 115.0f;    // degrees from the middle leaflet to the outermost
+constexpr float kRounded = 0.45f;         // of a flat card's normals, from one edge to the other
 constexpr float kNeedleSplay = 14.0f;     // degrees
 constexpr double kSprigLeafShare = 0.34;  // of the sprig's length
 
@@ -28,29 +30,42 @@ struct Frame {
         const float c = portable::cos(glm::radians(degrees)), s = portable::sin(glm::radians(degrees));
         return {origin, x * c - y * s, y * c + x * s, z};
     }
+    // Turned about its own y, so that x sinks for positive degrees.
+    Frame rolled(float degrees) const {
+        const float c = portable::cos(glm::radians(degrees)), s = portable::sin(glm::radians(degrees));
+        return {origin, x * c - z * s, y, z * c + x * s};
+    }
 };
+
+bool shows_fold(double fold, int level) {
+    return level <= 0 ? fold != 0.0 : std::abs(fold) >= kLeastFold;
+}
 
 class CardBuilder {
   public:
-    // A strip along frame.y that bends down by `curl` degrees on its way. columns: 2, or 3 for one that is
-    // folded along its middle by `fold` (of the width). u0, u1, v0 (at the base), v1: its part of the
-    // picture.
-    void strip(const Frame& frame, float length, float width, int pieces, int columns, float curl, float fold,
+    // A strip along frame.y that bends down by `curl` degrees on its way, and whose halves are turned down by
+    // `fold` degrees about its middle. u0, u1, v0 (at the base), v1: its part of the picture.
+    void strip(const Frame& frame, float length, float width, int pieces, float curl, float fold,
                const float (&u)[2], const float (&v)[2]) {
         const auto first = static_cast<uint32_t>(mesh_.positions.size());
-        const float bend = glm::radians(curl);
+        const float bend = glm::radians(curl), turn = glm::radians(fold);
+        const int columns = fold != 0.0f ? 3 : 2;
+        const float spread = fold != 0.0f ? portable::cos(turn) : 1.0f;
+        const float sunk = fold != 0.0f ? portable::sin(turn) : 0.0f;
         for (int i = 0; i <= pieces; i++) {
             const float t = static_cast<float>(i) / static_cast<float>(pieces);
             const bool straight = std::abs(bend) < 1e-3f;
             const float along = straight ? t : portable::sin(bend * t) / bend;
             const float down = straight ? 0.0f : (1.0f - portable::cos(bend * t)) / bend;
+            const Vec3 out = frame.z * portable::cos(bend * t) + frame.y * portable::sin(bend * t);
             for (int k = 0; k < columns; k++) {
                 const float across = static_cast<float>(k) / static_cast<float>(columns - 1) - 0.5f;
-                const float raised = columns == 3 && k == 1 ? fold * width : 0.0f;
-                const Vec3 out = frame.z * portable::cos(bend * t) + frame.y * portable::sin(bend * t);
-                add(frame.at(width * across, length * along, -length * down) + out * raised,
-                    out + frame.x * (columns == 3 ? 0.9f * fold * across * 4.0f : 0.45f * across), frame.x,
-                    {u[0] + (u[1] - u[0]) * (across + 0.5f), v[0] + (v[1] - v[0]) * t});
+                // Each edge faces as its half does, and the midrib between them: its ridge is round.
+                const Vec3 normal = columns == 2 ? out + frame.x * (kRounded * across)
+                                                 : out * spread + frame.x * (2.0f * sunk * across);
+                add(frame.at(width * spread * across, length * along, -length * down) -
+                        out * (width * sunk * std::abs(across)),
+                    normal, frame.x, {u[0] + (u[1] - u[0]) * (across + 0.5f), v[0] + (v[1] - v[0]) * t});
             }
         }
         const auto row = static_cast<uint32_t>(columns);
@@ -70,17 +85,17 @@ class CardBuilder {
         mesh_.uvs.push_back(uv);
     }
 
-    // One blade with the stalk's part of its own picture below it.
-    void blade(const Frame& frame, float length, float width, int level, float curl) {
-        const bool fine = level <= 0;
-        strip(frame, length, width, fine ? 2 : 1, fine && width > 0.1f * length ? 3 : 2, curl, -0.06f,
+    // One blade with the stalk's part of its own picture below it; its halves stand up, as a channel.
+    void blade(const Frame& frame, float length, float width, int level, float curl, double fold) {
+        const bool folded = shows_fold(fold, level) && (width > 0.1f * length || shows_fold(fold, 1));
+        strip(frame, length, width, level <= 0 ? 2 : 1, curl, folded ? static_cast<float>(-fold) : 0.0f,
               {0.0f, 1.0f}, {1.0f - kBladeStalk, 0.0f});
     }
 
     // Wood or a stalk, `width` metres thick.
     void stalk(const Frame& frame, float length, float width) {
         if (length <= 0.0f) return;
-        strip(frame, length, width, 1, 2, 0.0f, 0.0f,
+        strip(frame, length, width, 1, 0.0f, 0.0f,
               {0.5f - 0.5f * kBladeStalkWidth, 0.5f + 0.5f * kBladeStalkWidth}, {1.0f, 1.0f - kBladeStalk});
     }
 
@@ -100,8 +115,10 @@ class CardBuilder {
     Mesh mesh_;
 };
 
-Mesh folded_spray(bool fine) {
+// A card that is hardly curled and hardly folded: both at once from its middle, or flat from afar.
+Mesh bowed_spray(const LeafRules& rules, int level) {
     CardBuilder card;
+    const bool fine = level <= 0;
     const auto corner = [&](float x, float y, float z) {
         const Vec3 normal = fine ? Vec3(0.45f * x, 0.35f * (y - 0.4f), 1.0f) : Vec3(0.0f, 0.0f, 1.0f);
         card.add({x, y, z}, normal, {1.0f, 0.0f, 0.0f}, {x + 0.5f, 1.0f - y});
@@ -110,8 +127,7 @@ Mesh folded_spray(bool fine) {
     corner(0.5f, 0.0f, 0.0f);
     corner(0.5f, 1.0f, fine ? -0.16f : 0.0f);
     corner(-0.5f, 1.0f, fine ? -0.16f : 0.0f);
-    // The middle stands up, so that the card is folded along and bent across at once.
-    if (fine) corner(0.0f, 0.5f, 0.07f);
+    if (fine) corner(0.0f, 0.5f, 0.07f - 0.15f * static_cast<float>(1.0 - rules.fold / kUsualFold));
     card.mesh().indices = fine ? MeshArray<uint32_t>{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4}
                                : MeshArray<uint32_t>{0, 1, 2, 0, 2, 3};
     Mesh mesh = card.take();
@@ -120,11 +136,14 @@ Mesh folded_spray(bool fine) {
     return mesh;
 }
 
-Mesh curled_spray(const LeafRules& rules, int level) {
+Mesh spray(const LeafRules& rules, int level) {
+    const bool curled = std::abs(rules.curl) > kStrongCurl;
+    if (!curled && !shows_fold(rules.fold, 1)) return bowed_spray(rules, level);
     CardBuilder card;
-    const bool fine = level <= 0;
-    card.strip(Frame(), 1.0f, 1.0f, fine ? 5 : 2, fine ? 3 : 2, static_cast<float>(rules.curl), 0.10f,
-               {0.0f, 1.0f}, {1.0f, 0.0f});
+    const int pieces = curled ? (level <= 0 ? 5 : 2) : (level <= 0 ? 2 : 1);
+    card.strip(Frame(), 1.0f, 1.0f, pieces, static_cast<float>(rules.curl),
+               shows_fold(rules.fold, level) ? static_cast<float>(rules.fold) : 0.0f, {0.0f, 1.0f},
+               {1.0f, 0.0f});
     return card.take();
 }
 
@@ -134,8 +153,14 @@ Mesh single_leaf(const LeafRules& rules, int level, float petiole) {
     card.stalk(Frame(), petiole, kStalkShare);
     Frame foot;
     foot.origin.y = petiole;
-    card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl));
+    card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
+               rules.fold);
     return card.take();
+}
+
+// Of a compound leaf the fold turns the leaflets about the stalk; they themselves have little of it.
+double leaflets_fold(const LeafRules& rules) {
+    return std::clamp(rules.fold, -kUsualFold, kUsualFold);
 }
 
 // Coarser levels have fewer, larger leaflets.
@@ -151,7 +176,7 @@ Mesh pinnate_leaf(const LeafRules& rules, int level, float petiole) {
     const float top = 1.0f - (count % 2 ? length : 0.6f * length);  // the rachis
     card.stalk(Frame(), petiole + top, kStalkShare);
     const auto width = static_cast<float>(rules.blade_width) * length;
-    const auto curl = static_cast<float>(rules.curl);
+    const auto curl = static_cast<float>(rules.curl), fold = static_cast<float>(rules.fold);
     for (int i = 0; i < pairs; i++) {
         const float place = pairs > 1 ? static_cast<float>(i) / static_cast<float>(pairs - 1) : 1.0f;
         Frame foot;
@@ -159,12 +184,13 @@ Mesh pinnate_leaf(const LeafRules& rules, int level, float petiole) {
         // Longest in the middle, and closing in on the tip.
         const float size = length * (0.78f + 0.22f * portable::sin(3.1f * (0.15f + 0.7f * place)));
         for (const float side : {-1.0f, 1.0f})
-            card.blade(foot.turned(side * (72.0f - 22.0f * place)), size, width * size / length, level, curl);
+            card.blade(foot.rolled(side * fold).turned(side * (72.0f - 22.0f * place)), size,
+                       width * size / length, level, curl, leaflets_fold(rules));
     }
     if (count % 2) {
         Frame foot;
         foot.origin.y = petiole + top;
-        card.blade(foot, length, width, level, curl);
+        card.blade(foot, length, width, level, curl, leaflets_fold(rules));
     }
     return card.take();
 }
@@ -181,8 +207,10 @@ Mesh palmate_leaf(const LeafRules& rules, int level, float petiole) {
         const float spread =
             count > 1 ? kPalmateHalf * std::min(1.0f, 0.35f + 0.11f * static_cast<float>(count)) : 0.0f;
         const float size = 1.0f - 0.42f * place * place;
-        card.blade(foot.turned(spread * place), size, size * static_cast<float>(rules.blade_width), level,
-                   static_cast<float>(rules.curl));
+        const float side = place < 0.0f ? -1.0f : place > 0.0f ? 1.0f : 0.0f;
+        card.blade(foot.rolled(side * static_cast<float>(rules.fold)).turned(spread * place), size,
+                   size * static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
+                   leaflets_fold(rules));
     }
     return card.take();
 }
@@ -203,7 +231,7 @@ Mesh needle_bundle(const LeafRules& rules, int level, float petiole) {
         foot.x =
             glm::normalize(glm::cross(foot.y, std::abs(out.z) > 0.5f ? Vec3(0, 0, 1) : Vec3(0.3f, 0, 1)));
         foot.z = glm::cross(foot.x, foot.y);
-        card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), 1, static_cast<float>(rules.curl));
+        card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), 1, static_cast<float>(rules.curl), 0.0);
     }
     return card.take();
 }
@@ -252,7 +280,8 @@ Mesh sprig_card(const LeafRules& rules, int level) {
         const double size = leaves[i].size > 0.0 ? scale * leaves[i].size : kSprigLeafShare;
         const auto length = static_cast<float>(size * std::sqrt(static_cast<double>(step)));
         card.blade(frame_of(leaves[i].position, leaves[i].heading, leaves[i].up), length,
-                   length * static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl));
+                   length * static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
+                   rules.fold);
     }
     return card.take();
 }
@@ -268,7 +297,7 @@ Mesh build_leaf_card(const LeafRules& rules, int level) {
     const auto petiole = static_cast<float>(rules.petiole / rules.leaf_size);
     switch (rules.form) {
         case LeafForm::kSpray:
-            return std::abs(rules.curl) > kStrongCurl ? curled_spray(rules, level) : folded_spray(level <= 0);
+            return spray(rules, level);
         case LeafForm::kPinnate:
             return pinnate_leaf(rules, level, petiole);
         case LeafForm::kPalmate:

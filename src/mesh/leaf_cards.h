@@ -11,9 +11,10 @@ namespace treerec {
 
 // The card of size 1: base at the origin, tip at +Y, upper face +Z. level 0 is the finest; each further one
 // has fewer triangles. What it shows, and of which picture uv are (v = 1 at the base), is the rules' form: a
-// spray is one slightly folded card over the whole spray picture, all others are put together from the
-// picture of one blade, whose stalk (kBladeStalk) serves as petiole, rachis and wood too. Throws Error for a
-// sprig of more than kMostSprigParts pieces.
+// spray is one card over the whole spray picture, all others are put together from the picture of one blade,
+// whose stalk (kBladeStalk) serves as petiole, rachis and wood too. A fold of 10 degrees or more is there at
+// every level, which costs a flat card a second row of quads; a smaller one at level 0 alone. Throws Error
+// for a sprig of more than kMostSprigParts pieces.
 Mesh build_leaf_card(const LeafRules& rules, int level = 0);
 Mesh build_leaf_card(int level = 0);  // of a spray
 

@@ -200,6 +200,11 @@ func test_leaf_sliders_are_one_step() -> void:
 	_undo.redo()
 	_undo.redo()
 	check_near(_session.tree.leaf_rule.season, 0.7, 1e-6, "the season after redo")
+	for i: int in 5:
+		shown.sliders[&"fold"].value = 20.0 + i
+	check_equal(_session.tree.leaf_rule.fold, 24.0, "the fold")
+	_undo.undo()
+	check_equal(_session.tree.leaf_rule.fold, 8.0, "the fold after undo")
 	shown.preset.select(2)
 	shown.preset.item_selected.emit(2)
 	check_equal(_session.tree.leaf_rule.look, shown.preset.get_selected_metadata(), "the look")

@@ -60,6 +60,7 @@ func test_saves_and_loads() -> void:
 	var rule: LeafRule = LeafRule.from_preset("maple")
 	rule.form = LeafRule.FORM_PALMATE
 	rule.leaflets = 5
+	rule.fold = -33.0
 	rule.season = 0.7
 	rule.density_by_order = PackedFloat32Array([0.0, 0.5, 1.0])
 	rule.density_by_radius = Curve.new()
@@ -77,6 +78,7 @@ func test_saves_and_loads() -> void:
 			read.build_leaf_buffer(), made.build_leaf_buffer(), "the leaves in ." + extension
 		)
 		check_equal(read.leaf_rule.leaflets, 5, "the leaflets")
+		check_equal(read.leaf_rule.fold, -33.0, "the fold")
 		check_equal(read.leaf_rule.get_season_tints(), rule.get_season_tints(), "the tints")
 		check_equal(
 			read.build_leaf_form_arrays()[Mesh.ARRAY_VERTEX].size(),
@@ -104,6 +106,22 @@ func test_trees_saved_before_there_were_rules() -> void:
 	check_equal(
 		read.leaf_arrangement, TreeReconstruction.LEAF_ARRANGEMENT_OPPOSITE, "after loading"
 	)
+
+
+func test_rules_saved_before_there_was_a_fold() -> void:
+	var path: String = folder.path_join("unfolded.tres")
+	var file: FileAccess = FileAccess.open(path, FileAccess.WRITE)
+	file.store_string(
+		(
+			'[gd_resource type="LeafRule" format=3]\n\n[resource]\n'
+			+ 'look = "palm"\nleaf_size = 2.8\ncurl = 75.0\nevergreen = true\n'
+		)
+	)
+	file.close()
+	var read: LeafRule = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as LeafRule
+	check_equal(read.fold, LeafRule.new().fold, "the fold")
+	check_equal(read.curl, 75.0, "the curl")
+	check_equal(LeafRule.from_preset("palm").fold, 30.0, "a palm's fold")
 
 
 func test_forms_are_cards_of_their_own() -> void:
@@ -223,6 +241,15 @@ func test_an_instance_shows_changes_live_and_keeps_its_bark() -> void:
 		leaves.material_override.resource_path.ends_with("birch_blade.tres"),
 		leaves.material_override.resource_path
 	)
+	made.leaf_rule.form = LeafRule.FORM_SPRAY
+	made.leaf_rule.fold = 0.0
+	while instance.is_rebuilding():
+		await tree.process_frame
+	var flat: float = leaves.multimesh.mesh.get_aabb().size.x
+	made.leaf_rule.fold = 60.0
+	while instance.is_rebuilding():
+		await tree.process_frame
+	check_near(leaves.multimesh.mesh.get_aabb().size.x, 0.5 * flat, 1e-3, "a folded leaf's width")
 	made.skeleton = grown_tree(8).skeleton
 	while instance.is_rebuilding():
 		await tree.process_frame
@@ -236,6 +263,8 @@ func test_numbers_are_kept_in_their_range() -> void:
 	check_equal(rule.leaflets, 128, "leaflets")
 	rule.clustering = -3.0
 	check_equal(rule.clustering, 0.0, "clustering")
+	rule.fold = -500.0
+	check_equal(rule.fold, -80.0, "the fold")
 	expect_error("finite number")
 	rule.angle = NAN
 	check_equal(rule.angle, 55.0, "the angle")

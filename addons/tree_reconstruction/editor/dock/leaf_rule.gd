@@ -122,6 +122,15 @@ func _build() -> void:
 		0.01,
 		"%d %%"
 	)
+	_add_slider(
+		&"fold",
+		"Fold",
+		"How far each half of a leaf is turned about its midrib. At 0 it is flat.",
+		-60.0,
+		60.0,
+		1.0,
+		"%d°"
+	)
 	form = Widgets.choice(
 		PackedStringArray(["Spray", "Simple", "Pinnate", "Palmate", "Needles"]),
 		[
@@ -177,6 +186,7 @@ func _refresh() -> void:
 		sliders[property].set_value_no_signal(value)
 		_show_number(property, value)
 	(sliders[&"follow_density"].get_parent() as Control).visible = tree.has_foliage()
+	(sliders[&"fold"].get_parent() as Control).visible = rule.form != LeafRule.FORM_NEEDLES
 	Widgets.choose(form, rule.form)
 	Widgets.choose(arrangement, rule.arrangement)
 	_whose.visible = tree.leaf_rule != null and _is_file(tree.leaf_rule)
