@@ -4,6 +4,7 @@
 
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "scan/round_stems.h"
 #include "scan/samples.h"
 #include "scan/separate_trees.h"
 
@@ -34,6 +35,7 @@ constexpr double kThinnest = 0.25;      // of a thick stem's radius
 constexpr double kThinnestInAir = 0.4;  // where no ground tells what stands on it
 constexpr double kCoreContrast = 4.0;   // how much denser it is than the rest
 constexpr size_t kFewestPoints = 4;     // of a slice
+constexpr size_t kMostRound = 16;       // stems among leaves
 
 struct Cluster {
     DVec2 centre{0.0};
@@ -291,6 +293,39 @@ std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<
             stems.push_back(std::move(c.stem));
     }
     return stems;
+}
+
+void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
+                     std::vector<Stem>& stems, const Progress* progress) {
+    std::vector<Vec3> standing(points);
+    for (size_t i = 0; i < points.size(); i++)
+        standing[i].y = above[i];
+    double thick = 0.0;
+    for (const Stem& stem : stems)
+        thick = std::max(thick, stem.radius);
+    for (const RoundStem& round : find_round_stems(standing, progress, kMostRound)) {
+        Stem stem;
+        const StemRing &low = round.front(), &high = round.back();
+        stem.lean = (high.centre - low.centre) / (high.y - low.y);
+        stem.radius = round[round.size() / 2].radius;
+        if (stem.radius < kThinnest * thick || glm::length(stem.lean) > kMostLean) continue;
+        const DVec2 foot = low.centre - low.y * stem.lean;
+        const std::vector<uint8_t> on = points_on_stems(standing, {round});
+        double base = std::numeric_limits<double>::max();
+        for (uint32_t i = 0; i < points.size(); i++) {
+            if (!on[i]) continue;
+            stem.seed.push_back(i);
+            base = std::min<double>(base, points[i].y - above[i]);
+        }
+        stem.foot = {foot.x, base, foot.y};
+        const bool known = std::any_of(stems.begin(), stems.end(), [&](const Stem& other) {
+            const double least = std::max({3.0 * (stem.radius + other.radius), kClosest * height,
+                                           std::min(kClosestMetres, 0.15 * height)});
+            const DVec2 apart(other.foot.x - stem.foot.x, other.foot.z - stem.foot.z);
+            return glm::length(apart) < least || meet(stem, other, 0.01 * height, kHighestFork * height);
+        });
+        if (!known) stems.push_back(std::move(stem));
+    }
 }
 
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,

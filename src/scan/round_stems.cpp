@@ -26,10 +26,10 @@ constexpr double kLatestStart = 0.4;
 constexpr double kShortest = 0.12;
 // The search for circles.
 constexpr size_t kFewest = 12;       // points of a slice
-constexpr size_t kMostPoints = 800;  // that are looked at
-constexpr int kSeeds = 200;          // points of a slice that circles are tried through
-constexpr int kTrials = 8;           // circles per such point
-constexpr size_t kKept = 8;          // circles of a slice
+constexpr size_t kMostPoints = 200;  // that are looked at, per stem
+constexpr size_t kSeeds = 50;        // points of a slice that circles are tried through
+constexpr int kTrials = 16;          // circles per such point
+constexpr size_t kKept = 2;          // circles of a slice
 constexpr int kSectors = 24;
 constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
 constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
@@ -45,7 +45,6 @@ constexpr double kThinner = 0.75, kThicker = 1.15;  // from ring to ring upwards
 constexpr double kThickerAgain = 1.3;  // than it was below: from there on, circles go through leaves
 constexpr size_t kFewestRings = 8;
 constexpr double kLeastFilled = 0.5;  // of a stem's slices
-constexpr size_t kMostStems = 4;
 // What grows around their feet: as shares of the height,
 constexpr double kLowFoot = 0.05;    // where the lowest ring is of a stem that is seen from the ground up,
 constexpr double kLowGrowth = 0.03;  // and how far it reaches up
@@ -139,23 +138,24 @@ void refine(std::span<const DVec2> points, Circle& circle) {
 
 // points: of a slice, by rising x.
 std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinnest, double widest,
-                                 Random random) {
+                                 size_t stems, Random random) {
     std::vector<Circle> found;
     if (points.size() < kFewest) return found;
     const double range = portable::log(widest / thinnest);
-    std::vector<DVec2> near, close;
-    for (int seed = 0; seed < kSeeds; seed++) {
+    const auto beside = [&](double x, double reach) {
+        const auto less = [](const DVec2& p, double at) { return p.x < at; };
+        const auto begin = std::lower_bound(points.begin(), points.end(), x - reach, less);
+        return std::span(begin, std::lower_bound(begin, points.end(), x + reach, less));
+    };
+    const auto all_of = [&](const Circle& c) { return beside(c.centre.x, 2.0 * c.radius + 0.1); };
+    std::vector<DVec2> close;
+    for (size_t seed = 0; seed < kSeeds * stems; seed++) {
         const DVec2 a = points[random.below(static_cast<uint32_t>(points.size()))];
         const double size = thinnest * portable::exp(random.uniform() * range);
-        near.clear();
         close.clear();
-        auto p = std::lower_bound(points.begin(), points.end(), a.x - 3.0 * size,
-                                  [](const DVec2& b, double x) { return b.x < x; });
-        for (; p != points.end() && p->x < a.x + 3.0 * size; ++p) {
-            const DVec2 d = *p - a;
-            const double square = glm::dot(d, d);
-            if (square < 9.0 * size * size) near.push_back(*p);
-            if (square < 2.25 * size * size) close.push_back(*p);
+        for (const DVec2& p : beside(a.x, 1.5 * size)) {
+            const DVec2 d = p - a;
+            if (glm::dot(d, d) < 2.25 * size * size) close.push_back(p);
         }
         if (close.size() < kFewest) continue;
         for (int trial = 0; trial < kTrials; trial++) {
@@ -165,12 +165,16 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
             if (!circle_through(a, b, c, circle) || circle.radius < thinnest ||
                 circle.radius > std::min(widest, 1.2 * size))
                 continue;
-            if (is_bark(near, circle)) found.push_back(circle);
+            // Most circles through leaves are known by one point more.
+            const DVec2& d = close[random.below(count)];
+            if (std::abs(glm::distance(d, circle.centre) - circle.radius) > tolerance(circle.radius))
+                continue;
+            if (is_bark(all_of(circle), circle)) found.push_back(circle);
         }
     }
     for (Circle& circle : found) {
-        refine(points, circle);
-        if (circle.radius < thinnest || circle.radius > widest || !is_bark(points, circle))
+        refine(all_of(circle), circle);
+        if (circle.radius < thinnest || circle.radius > widest || !is_bark(all_of(circle), circle))
             circle.coverage = 0.0;
     }
     std::erase_if(found, [](const Circle& c) { return c.coverage == 0.0; });
@@ -183,7 +187,7 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
                    0.3 * other.radius;
         });
         if (!same) kept.push_back(circle);
-        if (kept.size() == kKept) break;
+        if (kept.size() == kKept * stems) break;
     }
     return kept;
 }
@@ -281,7 +285,8 @@ void for_points_beside(const std::vector<Vec3>& points, const std::vector<RoundS
 
 }  // namespace
 
-std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress& progress) {
+std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress* progress,
+                                        size_t most) {
     std::vector<RoundStem> stems;
     std::vector<float> heights;
     heights.reserve(points.size());
@@ -303,23 +308,23 @@ std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const P
     std::vector<Slice> slices(count);
     parallel_for(count, 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
-            progress.check();
+            if (progress) progress->check();
             slices[i].y = low + (static_cast<double>(i) + 0.5) * thickness;
             std::vector<DVec2>& own = members[i];
             // Evenly from all sides: the points are in the order of cells.
-            const size_t every = own.size() / kMostPoints + 1;
+            const size_t every = own.size() / (kMostPoints * most) + 1;
             for (size_t k = 0; k * every < own.size(); k++)
                 own[k] = own[k * every];
             own.resize((own.size() + every - 1) / every);
             std::sort(own.begin(), own.end(),
                       [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, Random(1, i));
+            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, most, Random(1, i));
         }
     });
     const auto latest = static_cast<size_t>(kLatestStart * static_cast<double>(count));
     const size_t least =
         std::max(kFewestRings, static_cast<size_t>(kLeastFilled * kShortest * height / thickness));
-    while (stems.size() < kMostStems) {
+    while (stems.size() < most) {
         const Chain chain = best_chain(slices, latest);
         if (chain.rings.size() < least) break;
         RoundStem stem;

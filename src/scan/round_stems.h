@@ -23,8 +23,10 @@ using RoundStem = std::vector<StemRing>;
 // (as Olofsson et al. 2014, "Tree stem and height measurements using terrestrial laser scanning and the
 // RANSAC algorithm"), and the chains of them that go up with little change (Viterbi). A chain is a stem where
 // it begins in the lower part of the tree and is long enough: among leaves alone circles follow no line.
-// Thickest first; none where no bark shows. points: metres, Y up, distinct, in canonical order.
-std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress& progress);
+// At most `most` of them, the thickest first; none where no bark shows. points: metres, Y up, distinct, in
+// canonical order.
+std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress* progress,
+                                        size_t most = 4);
 
 // By point: 1 for what lies on or in one of the stems.
 std::vector<uint8_t> points_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems);

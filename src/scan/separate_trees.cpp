@@ -203,6 +203,7 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
     const bool wide = std::min(crowns[0].size(), crowns[2].size()) > kFarWider * height;
     const bool by_tops = stems.size() < 2 && ground.found && wide;
     if (by_tops) stems = find_tops(points, above, height, spacing, progress);
+    if (!by_tops && stems.size() > 1) add_round_stems(points, above, height, stems, progress);
     if (stems.size() < 2) return result;
 
     const Voxels voxels(points, std::max(kVoxel * height, 1.2 * spacing), progress);

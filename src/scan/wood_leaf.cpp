@@ -387,7 +387,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     std::optional<std::vector<RoundStem>> stems;
     if (result.noise > 0.0) {
         // Dense leaves look like blur, but not where bark shows between them.
-        stems = find_round_stems(samples.points, progress);
+        stems = find_round_stems(samples.points, &progress);
         const double most = 2.0 * result.noise;
         if (!stems->empty() && spread_on_stems(samples.points, *stems, most) < kSharp * result.noise)
             result.noise = 0.0;
@@ -433,7 +433,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         }
     }
     if (!leafy && !verdict.limbs.fronds) return result;
-    if (!stems) stems = find_round_stems(samples.points, progress);
+    if (!stems) stems = find_round_stems(samples.points, &progress);
     if (!verdict.limbs.fronds) keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
     const auto& [cell_logits, threshold, leaf, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;

@@ -9,6 +9,7 @@
 #include "pipeline/reconstruct.h"
 #include "scan/read_cloud.h"
 #include "scan/samples.h"
+#include "scan/separate_trees.h"
 #include "scan/wood_leaf.h"
 #include "scan_samples.h"
 
@@ -75,7 +76,7 @@ TEST(RoundStems, AStemIsFoundBetweenBoughs) {
     for (const uint64_t seed : {1, 2}) {
         SCOPED_TRACE(seed);
         const Samples samples = take_samples(make_spruce(seed, true).points, 400000, nullptr);
-        const std::vector<RoundStem> stems = find_round_stems(samples.points, SubProgress(nullptr, 0.0, 1.0));
+        const std::vector<RoundStem> stems = find_round_stems(samples.points, nullptr);
         ASSERT_EQ(stems.size(), 1U);
         EXPECT_LT(stems[0].front().y, 0.05 * kHeight);
         EXPECT_GT(stems[0].back().y, 0.5 * kHeight);
@@ -90,10 +91,33 @@ TEST(RoundStems, AStemIsFoundBetweenBoughs) {
 TEST(RoundStems, LeavesAloneHaveNone) {
     for (const uint64_t seed : {1, 2}) {
         const Samples samples = take_samples(make_spruce(seed, false).points, 400000, nullptr);
-        EXPECT_TRUE(find_round_stems(samples.points, SubProgress(nullptr, 0.0, 1.0)).empty()) << seed;
+        EXPECT_TRUE(find_round_stems(samples.points, nullptr).empty()) << seed;
     }
-    EXPECT_TRUE(find_round_stems({}, SubProgress(nullptr, 0.0, 1.0)).empty());
-    EXPECT_TRUE(find_round_stems(std::vector<Vec3>(1), SubProgress(nullptr, 0.0, 1.0)).empty());
+    EXPECT_TRUE(find_round_stems({}, nullptr).empty());
+    EXPECT_TRUE(find_round_stems(std::vector<Vec3>(1), nullptr).empty());
+}
+
+// Boughs to the ground hide from above and from the side that two trees stand there.
+TEST(RoundStems, TreesInAThicketStandApart) {
+    const DVec3 apart(2.4, 0.0, 0.4);
+    std::vector<Vec3> all = make_spruce(1, true).points;
+    for (const Vec3& p : make_spruce(2, true).points)
+        all.push_back(p + Vec3(apart));
+    const Samples samples = take_samples(all, 400000, nullptr);
+    std::vector<float> above;
+    for (const Vec3& p : samples.points)
+        above.push_back(p.y);
+    std::vector<Stem> stems;
+    add_round_stems(samples.points, above, kHeight, stems, nullptr);
+    ASSERT_EQ(stems.size(), 2U);
+    const DVec3 first(stem_centre(0.0).x, 0.0, stem_centre(0.0).y);
+    for (const DVec3& foot : {first, first + apart})
+        EXPECT_TRUE(std::any_of(stems.begin(), stems.end(), [&](const Stem& stem) {
+            return glm::distance(stem.foot, foot) < 0.1 && std::abs(stem.radius - 0.1) < 0.04;
+        })) << foot.x;
+    // Those that are known already are not taken twice.
+    add_round_stems(samples.points, above, kHeight, stems, nullptr);
+    EXPECT_EQ(stems.size(), 2U);
 }
 
 TEST(RoundStems, TheSkeletonFollowsThem) {
