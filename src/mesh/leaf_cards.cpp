@@ -15,9 +15,18 @@ constexpr size_t kFloatsPerLeaf = 20;
 constexpr float kRoundness = 0.65f;  // how far the normals of baked leaves follow the crown
 constexpr float kMiddle = 0.5f;      // of a card, over its length
 constexpr double kKept = 0.42;       // of the leaves of one level, by the next
+constexpr double kFewest = 64.0;     // leaves: fewer are not thinned,
+constexpr double kLastWhole = 4.0;   // up to this level
 
 double leaf_share(double level) {
     return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
+}
+
+// A crown of few large leaves, as a palm's, is drawn by each of them: it would lose its outline, and a
+// handful of fronds several times as long as the others would stand for it.
+double kept_share(double level, size_t count) {
+    const double few = std::min(1.0, kFewest / static_cast<double>(std::max(count, size_t{1})));
+    return std::max(leaf_share(level), few * leaf_share(level - kLastWhole));
 }
 
 }  // namespace
@@ -77,8 +86,8 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
 
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level) {
     if (!(level > 0.0)) return leaves;
-    const double share = leaf_share(level);
-    const float growth = leaf_growth(level);
+    const double share = kept_share(level, leaves.size());
+    const auto growth = static_cast<float>(1.0 / std::sqrt(share));
     std::vector<LeafPlacement> kept;
     kept.reserve(static_cast<size_t>(static_cast<double>(leaves.size()) * share) + 2);
     for (size_t i = 0; i < leaves.size(); i++) {

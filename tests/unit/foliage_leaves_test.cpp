@@ -243,6 +243,26 @@ TEST(Leaves, TheLimitKeepsTheArea) {
     EXPECT_TRUE(place_leaves(tree, rules, 1).empty());
 }
 
+// From afar a palm was seven fronds, then three, of two and four times their length.
+TEST(Leaves, FewLargeLeavesStayAsTheyAre) {
+    Tree stem;
+    NodeId at = stem.add_root({0, 0, 0}, 0.2);
+    for (int i = 1; i <= 20; i++)
+        at = stem.add_child(at, {0, 0.5 * i, 0}, 0.15);
+    const std::vector<LeafPlacement> fronds = place_leaves(stem, leaf_preset("palm"), 1);
+    ASSERT_GT(fronds.size(), 20u);
+    ASSERT_LT(fronds.size(), 64u);
+    for (const double level : {0.5, 1.0, 2.0, 4.0}) {
+        const std::vector<LeafPlacement> kept = thin_leaves(fronds, level);
+        ASSERT_EQ(kept.size(), fronds.size()) << level;
+        for (size_t i = 0; i < kept.size(); i++)
+            EXPECT_EQ(kept[i].size, fronds[i].size);
+    }
+    // A budget still finds a level for them.
+    EXPECT_LT(thin_leaves(fronds, 7.0).size(), fronds.size() / 8);
+    EXPECT_LT(thin_leaves(fronds, 16.0).size(), 2u);
+}
+
 TEST(Leaves, CoarserLevelsAreSubsets) {
     const std::vector<LeafPlacement> all = place_leaves(test::random_tree(8, 1000), leaf_preset("maple"), 1);
     std::vector<LeafPlacement> finer = all;
