@@ -11,6 +11,7 @@
 #include "scan/thin_cloud.h"
 #include "scan/wood_leaf.h"
 #include "skeleton/complete_all.h"
+#include "skeleton/leaf_twigs.h"
 
 namespace treerec {
 
@@ -190,6 +191,16 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
     rebase_cloud(result.cloud, result.tree.frame());
 
     clock.restart();
+    if (!told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay) {
+        const DroppedTwigs dropped =
+            drop_leaf_twigs(result.tree, result.cloud.positions, told.leafiness, growing);
+        if (!dropped.leaf.empty()) {
+            told.foliage = true;
+            told.leaf.resize(dropped.leaf.size(), 0);
+            for (size_t i = 0; i < dropped.leaf.size(); i++)
+                told.leaf[i] = told.leaf[i] || dropped.leaf[i];
+        }
+    }
     if (told.foliage) {
         result.foliage = foliage_of(result.cloud, told.leaf, telling);
         result.foliage.reach = told.reach;

@@ -31,7 +31,8 @@ size_t ReconstructCache::bytes() const {
     size_t sum = 0;
     if (read) sum += bytes_of(read->cloud);
     if (clean) sum += bytes_of(clean->cloud);
-    if (leaves) sum += leaves->leaf.size() + leaves->wood_path.size();
+    if (leaves)
+        sum += leaves->leaf.size() + leaves->wood_path.size() + leaves->leafiness.size() * sizeof(float);
     return sum;
 }
 

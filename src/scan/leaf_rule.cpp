@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/parallel.h"
 #include "geometry/point_tree.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr size_t kGrain = 1024;
 constexpr std::array<size_t, 2> kNearest{8, 24};  // points
-constexpr size_t kLookedAt = 2;                   // points of a cell
+constexpr size_t kLookedAt = 2;                   // points of a cell, at most
 constexpr int kWayBack = 4;                       // steps to the ground that give a cell's direction
 constexpr size_t kNearInputs = 6;                 // by number of nearest points
 constexpr size_t kLeafInputs = kCellInputs + kNearest.size() * kNearInputs;
@@ -217,13 +218,14 @@ double leafiness(const CellInputs& means) {
 }
 
 std::vector<float> leaf_logits(const std::vector<Vec3>& points, const Cells& cells, const CellPaths& paths,
-                               const std::vector<CellInputs>& inputs, const Progress& progress) {
+                               const std::vector<CellInputs>& inputs, const LeafLooks& looks,
+                               const Progress& progress) {
     const PointTree tree(points);
     std::vector<std::array<uint32_t, kLookedAt>> looked_at(cells.count());
     std::vector<uint8_t> number(cells.count(), 0);
     for (uint32_t i = 0; i < points.size(); i++) {
         const uint32_t cell = cells.of_point[i];
-        if (number[cell] < kLookedAt) looked_at[cell][number[cell]++] = i;
+        if (number[cell] < looks.points) looked_at[cell][number[cell]++] = i;
     }
     std::vector<float> logits(cells.count(), 0.0F);
     parallel_for(cells.count(), kGrain, [&](size_t begin, size_t end) {
@@ -232,6 +234,10 @@ std::vector<float> leaf_logits(const std::vector<Vec3>& points, const Cells& cel
         std::array<float, kNearest.back()> squared{};
         std::array<float, kLeafInputs> all{};
         for (size_t v = begin; v < end; v++) {
+            if (v % looks.step != 0) {
+                logits[v] = std::numeric_limits<float>::quiet_NaN();
+                continue;
+            }
             std::copy(inputs[v].begin(), inputs[v].end(), all.begin());
             const Vec3 heading = heading_of(static_cast<uint32_t>(v), cells, paths);
             for (size_t n = 0; n < number[v]; n++) {

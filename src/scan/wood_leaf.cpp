@@ -122,6 +122,8 @@ constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 constexpr double kSharp = 0.35;
 
 constexpr double kMuchHidden = 0.3;
+constexpr size_t kVotes = 20000;     // cells, at most, that the branches are judged by
+constexpr double kNearlyAll = 0.93;  // of the points are leaves: what wood there is was guessed
 
 constexpr double kFrondPlanarity = 0.33;  // mean of all points; crowns of broad leaves have 0.16 to 0.25
 
@@ -337,10 +339,10 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
 // By leaf_rule.h; empty where it finds no leaves at all.
 std::vector<float> finer_logits(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
                                 const CellPaths& paths, const std::vector<uint32_t>& weights,
-                                const Progress& progress) {
+                                const LeafLooks& looks, const Progress& progress) {
     const std::vector<CellInputs> inputs = gather_inputs(shapes, paths);
     if (leafiness(mean_of(inputs, weights)) <= 0.0) return {};
-    return leaf_logits(points, cells, paths, inputs, progress);
+    return leaf_logits(points, cells, paths, inputs, looks, progress);
 }
 
 double extent_of(const std::vector<Vec3>& points) {
@@ -425,14 +427,26 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     Verdict verdict;
     if (leafy) verdict = judge(std::move(logits), share, cells, shapes, paths, progress);
     if (!result.by_colour && frond_like && !verdict.limbs.fronds) {
-        if (told_by_shape) logits = finer_logits(samples.points, cells, shapes, paths, weights, progress);
+        if (told_by_shape) logits = finer_logits(samples.points, cells, shapes, paths, weights, {}, progress);
         if (!logits.empty()) {
             share = find_share(logits, weights, progress);
             Verdict palm = judge(std::move(logits), share, cells, shapes, paths, progress);
             if (palm.limbs.fronds) verdict = std::move(palm);
         }
     }
-    if (!leafy && !verdict.limbs.fronds) return result;
+    const auto add_leafiness = [&] {
+        const LeafLooks looks{1, count / kVotes + 1};
+        const std::vector<float> finer =
+            finer_logits(samples.points, cells, shapes, paths, weights, looks, progress);
+        if (finer.empty()) return;
+        result.leafiness.resize(cloud.size());
+        for (size_t i = 0; i < cloud.size(); i++)
+            result.leafiness[i] = finer[cell_of_point[i]];
+    };
+    if (!leafy && !verdict.limbs.fronds) {
+        if (told_by_shape) add_leafiness();
+        return result;
+    }
     if (!stems) stems = find_round_stems(samples.points, &progress);
     if (!verdict.limbs.fronds) keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
     const auto& [cell_logits, threshold, leaf, limbs] = verdict;
@@ -460,6 +474,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         leaves += is_leaf;
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
+    if (told_by_shape && !result.by_colour && !result.fronds && result.leaf_share < kNearlyAll)
+        add_leafiness();
     if (result.hidden_share > kMuchHidden)
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +

@@ -18,6 +18,10 @@ struct WoodLeaf {
     // By point: 1 for what the skeleton should follow: all wood, and among the leaves the points along the
     // paths of limbs that the leaves hide.
     std::vector<uint8_t> wood_path;
+    // By point: the logit of being leaf at even odds, by the finer rule (leaf_rule.h); NaN for points that
+    // were not looked at. Only where shape shows leaves and what the skeleton follows may hold many of them,
+    // so that its branches want a second look (skeleton/leaf_twigs.h): even where `foliage` is false.
+    std::vector<float> leafiness;
     double hidden_share = 0.0;  // of the limbs' length in the crown: followed through leaves, not seen
     bool fronds = false;        // a palm: the skeleton should be one stem
     double reach = 0.0;         // metres: how far fronds reach from it
