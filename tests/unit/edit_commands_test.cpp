@@ -5,12 +5,14 @@
 
 #include <set>
 
+#include "cases.h"
 #include "edit_at_random.h"
 #include "random_tree.h"
 
 namespace treerec {
 namespace {
 
+using test::cases;
 using test::edit_at_random;
 using test::random_tree;
 using test::Tally;
@@ -19,7 +21,7 @@ using test::wild_tree;
 TEST(EditCommands, TenThousandRandomEditsKeepTheTreeSoundAndUndo) {
     Tally tally;
     int total = 0;
-    for (uint64_t seed = 1; total < 10000; seed++) {
+    for (uint64_t seed = 1; total < cases(10000); seed++) {
         const bool wild = seed % 3 == 0;
         const int nodes = static_cast<int>(2 + seed * 37 % 400);
         Tree tree = wild ? wild_tree(seed, nodes) : random_tree(seed, nodes);
@@ -30,7 +32,7 @@ TEST(EditCommands, TenThousandRandomEditsKeepTheTreeSoundAndUndo) {
         if (HasFatalFailure()) FAIL() << "seed " << seed;
     }
     for (const EditCommand& command : edit_commands())
-        EXPECT_GT(tally[command.name], 20) << command.name << " hardly ever did anything";
+        EXPECT_GT(tally[command.name], cases(20)) << command.name << " hardly ever did anything";
 }
 
 TEST(EditCommands, DescribeThemselves) {

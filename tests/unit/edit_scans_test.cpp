@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "cases.h"
 #include "edit/script.h"
 #include "edit_at_random.h"
 #include "pipeline/reconstruct.h"
@@ -10,6 +11,7 @@
 namespace treerec {
 namespace {
 
+using test::cases;
 using test::edit_at_random;
 using test::Tally;
 
@@ -35,11 +37,11 @@ TEST_F(EditScans, TenThousandRandomEditsKeepTheTreesSoundAndUndo) {
     };
     for (const Share& share : {Share{"vezy_A1B2.asc", 3000}, Share{"rtwig_coffeetree.txt", 3000},
                                Share{"vezy_A6B10.asc", 3500}, Share{"adtree_tree7.xyz", 500}}) {
-        edit_at_random(tree_of(share.file), seed++, share.edits, tally);
+        edit_at_random(tree_of(share.file), seed++, cases(share.edits), tally);
         if (HasFatalFailure()) FAIL() << share.file;
     }
     for (const EditCommand& command : edit_commands())
-        EXPECT_GT(tally[command.name], 20) << command.name << " hardly ever did anything";
+        EXPECT_GT(tally[command.name], cases(20)) << command.name << " hardly ever did anything";
 }
 
 // The work on one reconstruction is done again on another one of the same scan, made with other options:

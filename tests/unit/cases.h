@@ -1,0 +1,18 @@
+// How many cases the longest tests try.
+#pragma once
+
+namespace treerec::test {
+
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+// Of so many random cases, a sanitized program tries the first quarter: each takes several times as long
+// there, what it looks for is how memory is used, and the plain program tries them all.
+constexpr int cases(int all) {
+    return kSanitized ? (all + 3) / 4 : all;
+}
+
+}  // namespace treerec::test
