@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "cases.h"
 #include "geometry/parallel.h"
 #include "scan/clean_cloud.h"
 #include "scan_samples.h"
@@ -74,7 +75,7 @@ double flat_distance(const DVec3& a, const DVec3& b) {
 }
 
 TEST(ScanPickTree, FindsEveryTreeOfAForest) {
-    for (uint64_t seed = 1; seed <= 3; seed++) {
+    for (uint64_t seed = 1; seed <= uint64_t{test::cases(3)}; seed++) {
         for (const double apart : {4.5, 8.0}) {
             for (const bool ground : {true, false}) {
                 SCOPED_TRACE(std::to_string(seed) + " " + std::to_string(apart) + (ground ? " ground" : ""));
