@@ -447,8 +447,10 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         if (told_by_shape) add_leafiness();
         return result;
     }
-    if (!stems) stems = find_round_stems(samples.points, &progress);
-    if (!verdict.limbs.fronds) keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
+    if (!verdict.limbs.fronds) {
+        if (!stems) stems = find_round_stems(samples.points, &progress);
+        keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
+    }
     const auto& [cell_logits, threshold, leaf, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;
     result.fronds = limbs.fronds;
