@@ -205,9 +205,9 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
         result.foliage = foliage_of(result.cloud, told.leaf, telling);
         result.foliage.reach = told.reach;
         result.leaf_points = static_cast<size_t>(std::count(told.leaf.begin(), told.leaf.end(), uint8_t{1}));
-        for (uint8_t& flag : told.leaf)
-            flag = !flag;
-        result.wood = std::move(told.leaf);
+        result.wood.resize(told.leaf.size());
+        for (size_t i = 0; i < told.leaf.size(); i++)
+            result.wood[i] = !told.leaf[i] && (told.wood_path.empty() || told.wood_path[i]);
         clock.stop("Foliage", result.leaf_points);
     }
     if (options.complete && !told.fronds) {

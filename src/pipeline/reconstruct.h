@@ -39,9 +39,10 @@ struct Reconstruction {
     Foliage foliage;    // what the scan saw of leaves, in the tree's frame; empty for a bare tree
     bool palm = false;  // its leaves are fronds
     size_t points_read = 0;
-    size_t leaf_points = 0;     // of the cloud
-    std::vector<uint8_t> wood;  // by point of the cloud, 0 for leaves; empty where all is wood
-    double spacing = 0.0;       // metres: what the skeletonizer thinned to
+    size_t leaf_points = 0;  // of the cloud
+    // By point of the cloud, 0 for leaves and for what grows around the foot; empty where all is wood.
+    std::vector<uint8_t> wood;
+    double spacing = 0.0;  // metres: what the skeletonizer thinned to
     // Of the voxel flood alone (skeleton/skeleton.h).
     double voxel = 0.0;  // metres; 0 with the other method
     CloudKind kind = CloudKind::kSurface;

@@ -241,6 +241,14 @@ bool meet(const Stem& a, const Stem& b, double slack, double highest) {
     return glm::length(at_foot + height * drift) < 2.0 * (a.radius + b.radius) + slack;
 }
 
+// closest: what lies between the feet of two trees at least, as a share of the height.
+bool of_one_tree(const Stem& a, const Stem& b, double closest, double height) {
+    const double least =
+        std::max({3.0 * (a.radius + b.radius), closest * height, std::min(kClosestMetres, 0.15 * height)});
+    const DVec2 apart(b.foot.x - a.foot.x, b.foot.z - a.foot.z);
+    return glm::length(apart) < least || meet(a, b, 0.01 * height, kHighestFork * height);
+}
+
 }  // namespace
 
 std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
@@ -280,11 +288,7 @@ std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<
     for (Candidate& c : found) {
         Stem* same = nullptr;
         for (Stem& stem : stems) {
-            const double least = std::max({3.0 * (stem.radius + c.stem.radius),
-                                           (c.from_thicket ? kClosestInThicket : kClosest) * height,
-                                           std::min(kClosestMetres, 0.15 * height)});
-            const DVec2 apart(c.stem.foot.x - stem.foot.x, c.stem.foot.z - stem.foot.z);
-            if (glm::length(apart) < least || meet(stem, c.stem, 0.01 * height, kHighestFork * height))
+            if (of_one_tree(stem, c.stem, c.from_thicket ? kClosestInThicket : kClosest, height))
                 same = &stem;
         }
         if (same)
@@ -319,10 +323,7 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
         }
         stem.foot = {foot.x, base, foot.y};
         const bool known = std::any_of(stems.begin(), stems.end(), [&](const Stem& other) {
-            const double least = std::max({3.0 * (stem.radius + other.radius), kClosest * height,
-                                           std::min(kClosestMetres, 0.15 * height)});
-            const DVec2 apart(other.foot.x - stem.foot.x, other.foot.z - stem.foot.z);
-            return glm::length(apart) < least || meet(stem, other, 0.01 * height, kHighestFork * height);
+            return of_one_tree(other, stem, kClosest, height);
         });
         if (!known) stems.push_back(std::move(stem));
     }

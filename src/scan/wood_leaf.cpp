@@ -294,7 +294,8 @@ void smooth(std::vector<float>& logits, const Cells& cells, const Progress& prog
 struct Verdict {
     std::vector<float> logits;  // by cell, smoothed
     float threshold = 0.0F;
-    std::vector<uint8_t> leaf;  // by cell
+    std::vector<uint8_t> leaf;   // by cell
+    std::vector<uint8_t> other;  // by cell: 1 for what is none of the tree; empty where there is none
     Limbs limbs;
 };
 
@@ -328,12 +329,9 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
         verdict.leaf[v] = verdict.logits[v] > verdict.threshold && surplus[v] < 0;
     verdict.limbs = follow_limbs(cells, shapes, paths, verdict.leaf, progress);
     // What lies around the foot grows by itself.
-    const std::vector<uint8_t> around = points_around_feet(cells.centres, stems);
-    for (size_t v = 0; v < surplus.size(); v++) {
-        if (!around[v] || surplus[v] >= 0) continue;
-        verdict.leaf[v] = 1;
-        verdict.limbs.path[v] = 0;
-    }
+    verdict.other = points_around_feet(cells.centres, stems);
+    for (size_t v = 0; v < surplus.size(); v++)
+        verdict.other[v] = verdict.other[v] && surplus[v] < 0;
 }
 
 // By leaf_rule.h; empty where it finds no leaves at all.
@@ -451,7 +449,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         if (!stems) stems = find_round_stems(samples.points, &progress);
         keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
     }
-    const auto& [cell_logits, threshold, leaf, limbs] = verdict;
+    const auto& [cell_logits, threshold, leaf, other, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;
     result.fronds = limbs.fronds;
     result.reach = limbs.reach;
@@ -463,6 +461,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     size_t leaves = 0;
     for (size_t i = 0; i < cloud.size(); i++) {
         const uint32_t v = cell_of_point[i];
+        if (!other.empty() && other[v]) continue;
         bool is_leaf = leaf[v] != 0;
         // A frond's brown tip is no wood.
         if (result.by_colour && !limbs.fronds && leaf[v] == (cell_logits[v] > threshold)) {

@@ -16,7 +16,8 @@ struct WoodLeaf {
     bool by_colour = false;   // green told more than shape
     std::vector<uint8_t> leaf;  // by point of the cloud: 1 for a leaf
     // By point: 1 for what the skeleton should follow: all wood, and among the leaves the points along the
-    // paths of limbs that the leaves hide.
+    // paths of limbs that the leaves hide. What is neither leaf nor this is none of the tree: it grows around
+    // the foot.
     std::vector<uint8_t> wood_path;
     // By point: the logit of being leaf at even odds, by the finer rule (leaf_rule.h); NaN for points that
     // were not looked at. Only where shape shows leaves and what the skeleton follows may hold many of them,
