@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "skeleton/run.h"
 
 namespace treerec {
 
@@ -21,10 +22,8 @@ constexpr uint32_t kSampled = 7;                                   // one of so 
 constexpr size_t kLeastPart = 40;                                  // points: a smaller part runs nowhere
 constexpr size_t kLargePart = 200;                                 // points: of a larger part,
 constexpr uint32_t kOfLargePart = 3;                               // only one of so many is looked at
-constexpr double kAround = 2.0;        // link lengths: the wood that tells the direction
-constexpr double kLeastAround = 12.0;  // points
-constexpr double kElongated = 3.0;     // variance along over variance across: a direction that can be trusted
-constexpr double kAsideWeight = 2.5;   // a link straight aside counts as so many times longer, and once
+constexpr double kAround = 2.0;       // link lengths: the wood that tells the direction
+constexpr double kAsideWeight = 2.5;  // a link straight aside counts as so many times longer, and once
 
 struct Link {
     float squared;  // metres
@@ -61,13 +60,6 @@ struct Inside {
     }
 };
 
-// Where the wood around a link's start runs: a line through `middle`, or no direction.
-struct Run {
-    DVec3 middle{0.0};
-    DVec3 axis{0.0};
-    bool known = false;
-};
-
 // The cheapest link from a point to another part: its length in metres, the more the further it turns aside.
 struct Straightest {
     const std::vector<Vec3>& points;
@@ -82,13 +74,7 @@ struct Straightest {
     float limit() const { return static_cast<float>(std::min<double>(longest, 1.0001 * least * least)); }
     void add(float squared, uint32_t to) {
         if (part[to] == part[from] || squared >= longest) return;
-        double aside = 0.5;  // of the way
-        if (run.known) {
-            const DVec3 way = DVec3(points[to]) - run.middle;
-            const double ahead = std::abs(glm::dot(way, run.axis));
-            const double off = std::sqrt(std::max(0.0, glm::dot(way, way) - ahead * ahead));
-            aside = off / (ahead + off);
-        }
+        const double aside = run.known ? run.aside(DVec3(points[to])) : 0.5;
         const double cost = std::sqrt(squared) * (1.0 + kAsideWeight * aside);
         const bool first = squared != best.squared ? squared < best.squared : to < best.to;
         if (cost > least || (cost == least && !(best.from == from && first))) return;
@@ -245,25 +231,7 @@ class Bridges {
         tree_.search(points_[link.from], inside, [&](uint32_t node) {
             return part_of_node_[node] == own || part_of_node_[node] == kMixed;
         });
-        Run run;
-        const double count = static_cast<double>(around.size());
-        if (count < kLeastAround) return run;
-        for (const uint32_t v : around)
-            run.middle += DVec3(points_[v]);
-        run.middle /= count;
-        DMat3 covariance(0.0);
-        for (const uint32_t v : around) {
-            const DVec3 d = DVec3(points_[v]) - run.middle;
-            covariance += glm::outerProduct(d, d);
-        }
-        // Power iteration finds the main axis.
-        run.axis = normalized_or(DVec3(points_[link.to]) - run.middle, DVec3(0, 1, 0));
-        for (int i = 0; i < 16; i++)
-            run.axis = normalized_or(covariance * run.axis, run.axis);
-        const double along = glm::dot(run.axis, covariance * run.axis);
-        const double across = 0.5 * (covariance[0][0] + covariance[1][1] + covariance[2][2] - along);
-        run.known = along >= kElongated * across;
-        return run;
+        return run_of(points_, around, DVec3(points_[link.to]));
     }
 
     const std::vector<Vec3>& points_;

@@ -2,16 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "geometry/groups.h"
 #include "geometry/point_tree.h"
 #include "progress.h"
+#include "skeleton/point_graph.h"
 
 namespace treerec {
-
-using PointEdge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
 
 // Adds edges until all points are connected. Every part that the edges leave, but the largest, is linked to
 // another one, again and again until one part is left (Boruvka's algorithm): not by the shortest edge of all,

@@ -32,7 +32,7 @@ std::vector<float> edge_costs(const PointGraph& graph, const LocalScale& scale, 
 }  // namespace
 
 PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
-                        Progress& progress) {
+                        Progress& progress, const std::vector<SureLink>& sure) {
     const size_t count = graph.size();
     PathTree tree;
     tree.parent.assign(count, -1);
@@ -52,7 +52,10 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
         tree.along[seed.vertex] = distance;
         queue.push(entry(distance, seed.vertex));
     }
-    const std::vector<float> edge_cost = edge_costs(graph, scale, progress);
+    std::vector<float> edge_cost = edge_costs(graph, scale, progress);
+    for (const SureLink& link : sure)
+        for (const PointEdge& way : {link.edge, PointEdge(link.edge.second, link.edge.first)})
+            if (const auto e = find_edge(graph, way)) edge_cost[*e] = std::min(edge_cost[*e], link.cost);
     while (!queue.empty()) {
         const uint64_t least = queue.pop();
         const uint32_t v = static_cast<uint32_t>(least);

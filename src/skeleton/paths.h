@@ -13,6 +13,12 @@ struct PathSeed {
     double distance = 0.0;  // metres that the vertex already is away from the base
 };
 
+// An edge over a gap that wood is known to cross.
+struct SureLink {
+    PointEdge edge;
+    float cost;  // metres
+};
+
 struct PathTree {
     std::vector<int32_t> parent;  // by vertex; -1 at a seed
     std::vector<float> step;      // length of the edge to the parent, metres; 0 at a seed
@@ -23,8 +29,8 @@ struct PathTree {
 // Dijkstra's algorithm from all seeds at once. An edge costs its length up to the local reach, and
 // length * (length / reach)^2 beyond it, so that a path takes the wood rather than a gap (AdTree, Du et al.
 // 2019, 2.2, finds the same with plain lengths on complete scans). Ties are broken by vertex number.
-// seeds: at least one.
+// seeds: at least one. sure: edges over gaps that wood is known to cross, with their costs.
 PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
-                        Progress& progress);
+                        Progress& progress, const std::vector<SureLink>& sure = {});
 
 }  // namespace treerec

@@ -20,6 +20,32 @@ constexpr float kStrayFactor = 2.5f;  // times the neighbours' spacing, at most
 constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
 
+PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge>& edges) {
+    PointGraph graph;
+    graph.begin.assign(points.size() + 1, 0);
+    for (const auto& [a, b] : edges) {
+        graph.begin[a + 1]++;
+        graph.begin[b + 1]++;
+    }
+    for (size_t v = 0; v < points.size(); v++)
+        graph.begin[v + 1] += graph.begin[v];
+    graph.neighbour.resize(2 * edges.size());
+    graph.length.resize(2 * edges.size());
+    std::vector<uint32_t> fill(graph.begin.begin(), graph.begin.end() - 1);
+    for (const auto& [a, b] : edges) {
+        graph.neighbour[fill[a]++] = b;
+        graph.neighbour[fill[b]++] = a;
+    }
+    parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; v++) {
+            std::sort(graph.neighbour.begin() + graph.begin[v], graph.neighbour.begin() + graph.begin[v + 1]);
+            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
+                graph.length[e] = glm::distance(points[v], points[graph.neighbour[e]]);
+        }
+    });
+    return graph;
+}
+
 }  // namespace
 
 PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) {
@@ -52,29 +78,22 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
     });
     bridge_parts(points, tree, std::move(groups), edges, progress);
 
-    PointGraph graph;
-    graph.begin.assign(points.size() + 1, 0);
-    for (const auto& [a, b] : edges) {
-        graph.begin[a + 1]++;
-        graph.begin[b + 1]++;
-    }
-    for (size_t v = 0; v < points.size(); v++)
-        graph.begin[v + 1] += graph.begin[v];
-    graph.neighbour.resize(2 * edges.size());
-    graph.length.resize(2 * edges.size());
-    std::vector<uint32_t> fill(graph.begin.begin(), graph.begin.end() - 1);
-    for (const auto& [a, b] : edges) {
-        graph.neighbour[fill[a]++] = b;
-        graph.neighbour[fill[b]++] = a;
-    }
-    parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
-        for (size_t v = begin; v < end; v++) {
-            std::sort(graph.neighbour.begin() + graph.begin[v], graph.neighbour.begin() + graph.begin[v + 1]);
-            for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
-                graph.length[e] = glm::distance(points[v], points[graph.neighbour[e]]);
-        }
-    });
-    return graph;
+    return graph_of(points, edges);
+}
+
+std::optional<uint32_t> find_edge(const PointGraph& graph, const PointEdge& edge) {
+    const auto begin = graph.neighbour.begin() + graph.begin[edge.first];
+    const auto end = graph.neighbour.begin() + graph.begin[edge.first + 1];
+    const auto found = std::lower_bound(begin, end, edge.second);
+    if (found == end || *found != edge.second) return std::nullopt;
+    return static_cast<uint32_t>(found - graph.neighbour.begin());
+}
+
+void add_edges(PointGraph& graph, const std::vector<Vec3>& points, std::vector<PointEdge> edges) {
+    for (uint32_t v = 0; v < points.size(); v++)
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
+            if (v < graph.neighbour[e]) edges.emplace_back(v, graph.neighbour[e]);
+    graph = graph_of(points, edges);
 }
 
 void LocalScale::set_spacing(std::vector<float> values) {

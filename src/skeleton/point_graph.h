@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/vec.h"
 #include "progress.h"
 
 namespace treerec {
+
+using PointEdge = std::pair<uint32_t, uint32_t>;  // the smaller vertex first
 
 // An undirected, connected graph in compressed rows: the neighbours of v are neighbour[begin[v]] ..
 // neighbour[begin[v+1]), in ascending order, with the edges' lengths in metres beside them.
@@ -23,6 +27,12 @@ struct PointGraph {
 // shortest edges that make the whole connected. (AdTree, Du et al. 2019, 2.2, takes the edges of the Delaunay
 // triangulation, which costs ten times as much; the shortest paths through both are nearly the same.)
 PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress);
+
+// Where the edge stands in the first vertex's row (an index into `neighbour`), if there is one.
+std::optional<uint32_t> find_edge(const PointGraph& graph, const PointEdge& edge);
+
+// Adds edges that the graph does not have.
+void add_edges(PointGraph& graph, const std::vector<Vec3>& points, std::vector<PointEdge> edges);
 
 // How densely the scan samples the surface around each point.
 struct LocalScale {

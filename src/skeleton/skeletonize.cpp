@@ -21,6 +21,7 @@
 #include "skeleton/thin.h"
 #include "skeleton/tips.h"
 #include "skeleton/twigs.h"
+#include "skeleton/wide_gaps.h"
 #include "tree/trunk.h"
 
 namespace treerec {
@@ -29,13 +30,14 @@ namespace {
 
 constexpr size_t kLeastPoints = 10;
 constexpr double kVoxelSpacings = 2.0;  // a stated voxel is at least so many spacings wide
-constexpr double kTwigEscape = 0.02;    // metres that a twig must reach out of the bark,
-constexpr double kNoiseEscape = 2.5;    // and times the scan's noise
-constexpr double kWidestRing = 0.05;    // of the tree's extent
-constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
-constexpr double kLeastGap = 0.3;       // metres: a gap that the user is told of,
-constexpr double kGapShare = 0.04;      // and of the tree's extent
-constexpr double kRawRadius = 0.002;    // metres
+constexpr int kGapRounds = 4;
+constexpr double kTwigEscape = 0.02;  // metres that a twig must reach out of the bark,
+constexpr double kNoiseEscape = 2.5;  // and times the scan's noise
+constexpr double kWidestRing = 0.05;  // of the tree's extent
+constexpr double kFlatness = 1e-4;    // depth over width: less is rounding, not a scanned tree
+constexpr double kLeastGap = 0.3;     // metres: a gap that the user is told of,
+constexpr double kGapShare = 0.04;    // and of the tree's extent
+constexpr double kRawRadius = 0.002;  // metres
 
 // The shortest-path tree itself, for pictures.
 Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
@@ -113,7 +115,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     }
 
     SubProgress linking(listener, 0.1, 0.55);
-    const PointGraph graph = neighbour_graph(points, linking);
+    PointGraph graph = neighbour_graph(points, linking);
     const LocalScale first_scale = local_scale(graph, result.spacing);
     clock.stop("Neighbours", graph.neighbour.size() / 2);
 
@@ -121,16 +123,21 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     progress.check();
     const RootGuess root = find_root(points, graph, first_scale);
     progress.check();
-    const PathTree paths = shortest_paths(graph, first_scale, root.seeds, progress);
+    double extent = 0.0;
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root.position));
+    PathTree paths = shortest_paths(graph, first_scale, root.seeds, progress);
+    std::vector<SureLink> links;
+    for (int round = 0; round < kGapRounds; round++) {
+        if (!link_over_wide_gaps(points, paths, extent, graph, links, progress)) break;
+        paths = shortest_paths(graph, first_scale, root.seeds, progress, links);
+    }
     if (options.keep_raw) result.raw = raw_tree(points, paths, root.position);
     clock.stop("Shortest paths", points.size());
 
     progress.update(0.6, "Thickness");
     progress.check();
     LimbOptions limb_options;
-    double extent = 0.0;
-    for (const Vec3& p : points)
-        extent = std::max(extent, glm::distance(DVec3(p), root.position));
     limb_options.minimum_branch =
         options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
     limb_options.widest_loop = kWidestRing * extent;
