@@ -19,12 +19,13 @@ constexpr float kLonger = 1.5F;      // times the gap: the links that are compar
 constexpr float kAround = 1.5F;      // gaps: the wood that tells the direction
 constexpr float kMostAround = 6.0F;  // gaps: where less tells none
 constexpr float kTouching = 0.25F;   // of the gap: points of one piece of wood are no farther apart
-constexpr double kAside = 0.2;       // of the way: what still lies ahead
+constexpr double kAside = 0.28;      // of the way: what still lies ahead
 constexpr double kAsideWeight = 2.5;
 constexpr double kAtEnd = 0.9;        // of the piece lies behind its end
 constexpr double kCost = 2.0;         // times the length,
 constexpr double kAlike = 3.0;        // and as often as the widest link is wider than so many times,
 constexpr double kMostThin = 8.0;     // up to so often
+constexpr float kApart = 0.5F;        // gaps: between the ends of two stems
 constexpr float kBeside = 0.1F;       // of the gap: what is one end
 constexpr size_t kMostEnds = 400;     // that are looked at
 constexpr size_t kMostPiece = 20000;  // points
@@ -98,60 +99,15 @@ class Linker {
           done_(points.size(), 0) {}
 
     std::vector<SureLink> links(Progress& progress) {
-        std::vector<Vec3> here;
-        std::vector<uint32_t> number;
-        for (uint32_t v = 0; v < points_.size(); v++) {
-            if (beyond_[v]) continue;
-            here.push_back(points_[v]);
-            number.push_back(v);
-        }
-        const PointTree tree(here, &progress);
-        const float longest = kLonger * gap_.width;
-        std::vector<float> across(points_.size(), longest * longest);
-        parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
-            progress.check();
-            for (size_t v = begin; v < end; v++) {
-                if (!beyond_[v]) continue;
-                Nearest nearest{across[v]};
-                tree.search(points_[v], nearest);
-                across[v] = nearest.best;
-            }
-        });
-        const float shortest = *std::min_element(across.begin(), across.end());
-        if (gap_.width * gap_.width <= kAsShort * shortest) add(gap_.child, gap_.parent);
-        const float most = std::min(longest * longest, kLonger * kLonger * shortest);
-        std::vector<uint32_t> ends;  // nearer to this side than what they touch
-        for (uint32_t v = 0; v < points_.size(); v++)
-            if (beyond_[v] && across[v] < most && is_end(v, across)) ends.push_back(v);
-        std::sort(ends.begin(), ends.end(), [&](uint32_t a, uint32_t b) {
-            return across[a] != across[b] ? across[a] < across[b] : a < b;
-        });
-        size_t looked = 0;
-        for (const uint32_t v : ends) {
-            progress.check();
-            if (done_[v]) continue;
-            if (++looked > kMostEnds) break;
-            const float gap = std::sqrt(across[v]);
-            std::vector<uint32_t> piece;
-            Run run;
-            for (float around = kAround; !run.known && around <= kMostAround; around *= 2.0F) {
-                piece = piece_around(v, gap, around * gap);
-                run = run_of(points_, piece, DVec3(points_[v]));
-            }
-            bool linked = false;
-            if (run.known) {
-                Straightest found{here, run, kLonger * kLonger * across[v]};
-                tree.search(points_[v], found);
-                const uint32_t to = number[found.to];
-                linked = found.least < std::numeric_limits<double>::max() &&
-                         run.aside(DVec3(points_[to])) <= kAside && ends_there(piece, run, v, to);
-                if (linked) add(v, to);
-            }
-            // What lies right beside an end that is none is none either.
-            for (const uint32_t p : piece)
-                if (linked || glm::distance(points_[p], points_[v]) < kBeside * gap) done_[p] = 1;
-        }
-        if (links_.empty()) return {};
+        // Of a piece of wood that runs into the gap, either end may be the one that can be told.
+        link_from(1, progress);
+        link_from(0, progress);
+        // Where all end at the gap's own, one stem crosses it, and that has its link.
+        const auto elsewhere = [&](const SureLink& link) {
+            const uint32_t end = beyond_[link.edge.first] ? link.edge.first : link.edge.second;
+            return glm::distance(points_[end], points_[gap_.child]) > kApart * gap_.width;
+        };
+        if (std::none_of(links_.begin(), links_.end(), elsewhere)) return {};
         // A thin end is less likely to be where thick wood goes on.
         const double widest = *std::max_element(widths_.begin(), widths_.end());
         for (size_t i = 0; i < links_.size(); i++) {
@@ -162,12 +118,85 @@ class Linker {
     }
 
   private:
-    void add(uint32_t beyond, uint32_t here) {
-        const float gap = glm::distance(points_[beyond], points_[here]);
-        const DVec3 way = normalized_or(DVec3(points_[here]) - DVec3(points_[beyond]), DVec3(0, 1, 0));
-        widths_.push_back(std::min(width_of(piece_around(beyond, gap, kAround * gap), way),
-                                   width_of(piece_around(here, gap, kAround * gap), way)));
-        links_.push_back({{std::min(beyond, here), std::max(beyond, here)}, gap});
+    // side: of the ends that are looked at; 1 beyond the gap.
+    void link_from(uint8_t side, Progress& progress) {
+        std::vector<Vec3> opposite;
+        std::vector<uint32_t> number;
+        for (uint32_t v = 0; v < points_.size(); v++) {
+            if (beyond_[v] == side) continue;
+            opposite.push_back(points_[v]);
+            number.push_back(v);
+        }
+        const PointTree tree(opposite, &progress);
+        const float longest = kLonger * gap_.width;
+        std::vector<float> across(points_.size(), longest * longest);
+        parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
+            progress.check();
+            for (size_t v = begin; v < end; v++) {
+                if (beyond_[v] != side) continue;
+                Nearest nearest{across[v]};
+                tree.search(points_[v], nearest);
+                across[v] = nearest.best;
+            }
+        });
+        const float shortest = *std::min_element(across.begin(), across.end());
+        if (side == 1 && (gap_.width * gap_.width <= kAsShort * shortest || goes_on_straight(gap_)))
+            add(gap_.child, gap_.parent);
+        const float most = std::min(longest * longest, kLonger * kLonger * shortest);
+        std::vector<uint32_t> ends;  // nearer to the other side than what they touch
+        for (uint32_t v = 0; v < points_.size(); v++)
+            if (beyond_[v] == side && across[v] < most && is_end(v, across)) ends.push_back(v);
+        std::sort(ends.begin(), ends.end(), [&](uint32_t a, uint32_t b) {
+            return across[a] != across[b] ? across[a] < across[b] : a < b;
+        });
+        size_t looked = 0;
+        for (const uint32_t v : ends) {
+            progress.check();
+            if (done_[v]) continue;
+            if (++looked > kMostEnds) break;
+            const float gap = std::sqrt(across[v]);
+            std::vector<uint32_t> piece;
+            const Run run = run_at(v, gap, piece);
+            bool linked = false;
+            if (run.known) {
+                Straightest found{opposite, run, kLonger * kLonger * across[v]};
+                tree.search(points_[v], found);
+                const uint32_t to = number[found.to];
+                linked = found.least < std::numeric_limits<double>::max() &&
+                         run.aside(DVec3(points_[to])) <= kAside && ends_there(piece, run, v, to);
+                if (linked) add(v, to);
+            }
+            // What lies right beside an end that is none is none either.
+            for (const uint32_t p : piece)
+                if (linked || glm::distance(points_[p], points_[v]) < kBeside * gap) done_[p] = 1;
+        }
+    }
+
+    void add(uint32_t a, uint32_t b) {
+        const PointEdge edge(std::min(a, b), std::max(a, b));
+        if (is_sure(links_, edge)) return;
+        const float gap = glm::distance(points_[a], points_[b]);
+        const DVec3 way = normalized_or(DVec3(points_[b]) - DVec3(points_[a]), DVec3(0, 1, 0));
+        widths_.push_back(std::min(width_of(piece_around(a, gap, kAround * gap), way),
+                                   width_of(piece_around(b, gap, kAround * gap), way)));
+        links_.push_back({edge, gap});
+    }
+
+    // How the wood runs that ends at v, and its points. gap: metres.
+    Run run_at(uint32_t v, float gap, std::vector<uint32_t>& piece) {
+        Run run;
+        for (float around = kAround; !run.known && around <= kMostAround; around *= 2.0F) {
+            piece = piece_around(v, gap, around * gap);
+            run = run_of(points_, piece, DVec3(points_[v]));
+        }
+        return run;
+    }
+
+    bool goes_on_straight(const Gap& gap) {
+        std::vector<uint32_t> piece;
+        const Run run = run_at(gap.child, gap.width, piece);
+        return run.known && run.aside(DVec3(points_[gap.parent])) <= kAside &&
+               ends_there(piece, run, gap.child, gap.parent);
     }
 
     bool touch(uint32_t e, float gap) const { return graph_.length[e] <= kTouching * gap; }
@@ -175,7 +204,7 @@ class Linker {
     bool is_end(uint32_t v, const std::vector<float>& across) const {
         for (uint32_t e = graph_.begin[v]; e < graph_.begin[v + 1]; e++) {
             const uint32_t n = graph_.neighbour[e];
-            if (!beyond_[n] || !touch(e, std::sqrt(across[v]))) continue;
+            if (beyond_[n] != beyond_[v] || !touch(e, std::sqrt(across[v]))) continue;
             if (across[n] < across[v] || (across[n] == across[v] && n < v)) return false;
         }
         return true;
