@@ -30,14 +30,14 @@ namespace {
 
 constexpr size_t kLeastPoints = 10;
 constexpr double kVoxelSpacings = 2.0;  // a stated voxel is at least so many spacings wide
-constexpr int kGapRounds = 4;
-constexpr double kTwigEscape = 0.02;  // metres that a twig must reach out of the bark,
-constexpr double kNoiseEscape = 2.5;  // and times the scan's noise
-constexpr double kWidestRing = 0.05;  // of the tree's extent
-constexpr double kFlatness = 1e-4;    // depth over width: less is rounding, not a scanned tree
-constexpr double kLeastGap = 0.3;     // metres: a gap that the user is told of,
-constexpr double kGapShare = 0.04;    // and of the tree's extent
-constexpr double kRawRadius = 0.002;  // metres
+constexpr int kGapRounds = 4;           // wide gaps that are looked at, one behind the other
+constexpr double kTwigEscape = 0.02;    // metres that a twig must reach out of the bark,
+constexpr double kNoiseEscape = 2.5;    // and times the scan's noise
+constexpr double kWidestRing = 0.05;    // of the tree's extent
+constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
+constexpr double kLeastGap = 0.3;       // metres: a gap that the user is told of,
+constexpr double kGapShare = 0.04;      // and of the tree's extent
+constexpr double kRawRadius = 0.002;    // metres
 
 // The shortest-path tree itself, for pictures.
 Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {

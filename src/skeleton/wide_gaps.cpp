@@ -140,7 +140,7 @@ class Linker {
             }
         });
         const float shortest = *std::min_element(across.begin(), across.end());
-        if (side == 1 && (gap_.width * gap_.width <= kAsShort * shortest || goes_on_straight(gap_)))
+        if (side == 1 && (gap_.width * gap_.width <= kAsShort * shortest || gap_goes_on()))
             add(gap_.child, gap_.parent);
         const float most = std::min(longest * longest, kLonger * kLonger * shortest);
         std::vector<uint32_t> ends;  // nearer to the other side than what they touch
@@ -162,8 +162,7 @@ class Linker {
                 Straightest found{opposite, run, kLonger * kLonger * across[v]};
                 tree.search(points_[v], found);
                 const uint32_t to = number[found.to];
-                linked = found.least < std::numeric_limits<double>::max() &&
-                         run.aside(DVec3(points_[to])) <= kAside && ends_there(piece, run, v, to);
+                linked = found.least < std::numeric_limits<double>::max() && goes_on(piece, run, v, to);
                 if (linked) add(v, to);
             }
             // What lies right beside an end that is none is none either.
@@ -192,11 +191,10 @@ class Linker {
         return run;
     }
 
-    bool goes_on_straight(const Gap& gap) {
+    bool gap_goes_on() {
         std::vector<uint32_t> piece;
-        const Run run = run_at(gap.child, gap.width, piece);
-        return run.known && run.aside(DVec3(points_[gap.parent])) <= kAside &&
-               ends_there(piece, run, gap.child, gap.parent);
+        const Run run = run_at(gap_.child, gap_.width, piece);
+        return run.known && goes_on(piece, run, gap_.child, gap_.parent);
     }
 
     bool touch(uint32_t e, float gap) const { return graph_.length[e] <= kTouching * gap; }
@@ -242,8 +240,9 @@ class Linker {
         return std::sqrt(std::max(0.0, squared) / static_cast<double>(piece.size()));
     }
 
-    // Whether the piece lies behind its end, as seen from `to`.
-    bool ends_there(const std::vector<uint32_t>& piece, const Run& run, uint32_t end, uint32_t to) const {
+    // Whether the piece runs on to `to` and lies behind its end, as seen from there.
+    bool goes_on(const std::vector<uint32_t>& piece, const Run& run, uint32_t end, uint32_t to) const {
+        if (run.aside(DVec3(points_[to])) > kAside) return false;
         const auto along = [&](uint32_t v) { return glm::dot(DVec3(points_[v]) - run.middle, run.axis); };
         const double ahead = along(to) < 0.0 ? -1.0 : 1.0;
         const double most = ahead * along(end);
