@@ -127,10 +127,12 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     for (const Vec3& p : points)
         extent = std::max(extent, glm::distance(DVec3(p), root.position));
     PathTree paths = shortest_paths(graph, first_scale, root.seeds, progress);
-    std::vector<SureLink> links;
+    WideGaps gaps;
     for (int round = 0; round < kGapRounds; round++) {
-        if (!link_over_wide_gaps(points, paths, extent, graph, links, progress)) break;
-        paths = shortest_paths(graph, first_scale, root.seeds, progress, links);
+        const size_t known = gaps.links.size();
+        if (!link_over_wide_gap(points, paths, extent, graph, gaps, progress)) break;
+        if (gaps.links.size() > known)
+            paths = shortest_paths(graph, first_scale, root.seeds, progress, gaps.links);
     }
     if (options.keep_raw) result.raw = raw_tree(points, paths, root.position);
     clock.stop("Shortest paths", points.size());

@@ -42,8 +42,8 @@ bool is_sure(const std::vector<SureLink>& links, const PointEdge& edge) {
     return std::any_of(links.begin(), links.end(), [&](const SureLink& link) { return link.edge == edge; });
 }
 
-// Of those as wide as `least` (metres) that are not sure, the one that most hangs on.
-Gap heaviest_gap(const PathTree& paths, double least, const std::vector<SureLink>& sure) {
+// Of those as wide as `least` (metres) that are not known, the one that most hangs on.
+Gap heaviest_gap(const PathTree& paths, double least, const std::vector<PointEdge>& known) {
     const size_t count = paths.parent.size();
     std::vector<uint32_t> behind(count, 1);
     Gap gap{0, 0, 0.0F};
@@ -54,7 +54,9 @@ Gap heaviest_gap(const PathTree& paths, double least, const std::vector<SureLink
         behind[paths.parent[v]] += behind[v];
         if (paths.step[v] < least || behind[v] < most) continue;
         const uint32_t parent = static_cast<uint32_t>(paths.parent[v]);
-        if (is_sure(sure, {std::min(v, parent), std::max(v, parent)})) continue;
+        if (std::find(known.begin(), known.end(), PointEdge(std::min(v, parent), std::max(v, parent))) !=
+            known.end())
+            continue;
         gap = {v, parent, paths.step[v]};
         most = behind[v];
     }
@@ -116,6 +118,8 @@ class Linker {
         }
         return links_;
     }
+
+    bool any_goes_on() const { return !links_.empty(); }
 
   private:
     // side: of the ends that are looked at; 1 beyond the gap.
@@ -264,24 +268,27 @@ class Linker {
 
 }  // namespace
 
-bool link_over_wide_gaps(const std::vector<Vec3>& points, const PathTree& paths, double extent,
-                         PointGraph& graph, std::vector<SureLink>& links, Progress& progress) {
-    const Gap gap = heaviest_gap(paths, kWide * extent, links);
+bool link_over_wide_gap(const std::vector<Vec3>& points, const PathTree& paths, double extent,
+                        PointGraph& graph, WideGaps& gaps, Progress& progress) {
+    std::vector<PointEdge> known = gaps.looked_at;
+    for (const SureLink& link : gaps.links)
+        known.push_back(link.edge);
+    const Gap gap = heaviest_gap(paths, kWide * extent, known);
     if (gap.width == 0.0F) return false;
+    gaps.looked_at.emplace_back(std::min(gap.child, gap.parent), std::max(gap.child, gap.parent));
     std::vector<uint8_t> beyond(points.size(), 0);
     beyond[gap.child] = 1;
     for (const uint32_t v : paths.order)
         if (paths.parent[v] >= 0 && beyond[paths.parent[v]]) beyond[v] = 1;
     std::vector<PointEdge> added;
-    bool any = false;
-    for (const SureLink& link : Linker(points, graph, std::move(beyond), gap).links(progress)) {
-        if (is_sure(links, link.edge)) continue;
-        links.push_back(link);
-        any = true;
+    Linker linker(points, graph, std::move(beyond), gap);
+    for (const SureLink& link : linker.links(progress)) {
+        if (is_sure(gaps.links, link.edge)) continue;
+        gaps.links.push_back(link);
         if (!find_edge(graph, link.edge)) added.push_back(link.edge);
     }
     if (!added.empty()) add_edges(graph, points, std::move(added));
-    return any;
+    return linker.any_goes_on();
 }
 
 }  // namespace treerec

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "skeleton/skeleton.h"
 #include "skeleton_test_clouds.h"
@@ -56,18 +57,40 @@ double way_down(const Tree& tree, const PointCloud& cloud, const DVec3& place) {
     return way;
 }
 
+// to: metres, where the slab ends that is cut out of the stems.
+void expect_stems_on_their_stumps(const PointCloud& cloud, double to, const std::string& what) {
+    const SkeletonResult result = skeletonize(cloud, {});
+    for (const double turn : {0.0, 2.1, 4.2}) {
+        const DVec3 foot = on_stem(turn, to + 0.15);
+        const double straight = kForkHeight + glm::distance(foot, DVec3(0.0, kForkHeight, 0.0));
+        EXPECT_LT(way_down(result.tree, cloud, foot), 1.25 * straight)
+            << what << ", the stem towards " << turn;
+    }
+}
+
 TEST(WideGaps, EveryStemStandsOnItsOwnStump) {
     for (const uint64_t seed : {1, 2, 3})
         for (const double width : {0.3, 0.45, 0.6}) {
             const double from = 1.25, to = from + width;
-            const PointCloud cloud = cut_tree(seed, from, to);
-            const SkeletonResult result = skeletonize(cloud, {});
-            for (const double turn : {0.0, 2.1, 4.2}) {
-                const DVec3 foot = on_stem(turn, to + 0.15);
-                const double straight = kForkHeight + glm::distance(foot, DVec3(0.0, kForkHeight, 0.0));
-                EXPECT_LT(way_down(result.tree, cloud, foot), 1.25 * straight)
-                    << "seed " << seed << ", a gap of " << width << " m, the stem towards " << turn;
-            }
+            expect_stems_on_their_stumps(
+                cut_tree(seed, from, to), to,
+                "seed " + std::to_string(seed) + ", a gap of " + std::to_string(width) + " m");
+        }
+}
+
+// All hangs on a gap in the trunk, which its one stem crosses; the stems' own comes after it.
+TEST(WideGaps, AGapInTheTrunkHidesNoneAboveIt) {
+    for (const uint64_t seed : {1, 2, 3})
+        for (const double width : {0.3, 0.45, 0.6}) {
+            const double from = 1.25, to = from + width;
+            const PointCloud whole = cut_tree(seed, from, to);
+            PointCloud cloud;
+            cloud.frame = whole.frame;
+            for (const Vec3& p : whole.positions)
+                if (p.y < 0.3F || p.y > 0.55F || p.x > 1.4F) cloud.positions.push_back(p);
+            expect_stems_on_their_stumps(
+                cloud, to,
+                "seed " + std::to_string(seed) + ", gaps of 0.25 and " + std::to_string(width) + " m");
         }
 }
 
