@@ -6,12 +6,16 @@
 #include "geometry/bounds.h"
 #include "geometry/groups.h"
 #include "geometry/portable_math.h"
+#include "skeleton/base_end.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kLyingRatio = 0.55;    // height over width below which there is no upright trunk
+constexpr double kLyingRatio = 0.55;    // height over width below which there may be no upright trunk
+constexpr double kUpright = 0.7;        // the least sine of such a trunk's slope at its foot,
+constexpr double kFootShare = 0.1;      // and of the height: how far up the foot may be
+constexpr double kFaceShare = 0.02;     // of the diagonal: what belongs to a branch's cut face
 constexpr double kGroupShare = 0.002;   // of the points: a smaller group is no trunk
 constexpr size_t kGroupLeast = 6;       // points
 constexpr double kSlabShare = 0.006;    // of the height: the slice that counts as the base
@@ -30,62 +34,22 @@ std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& s
     return groups.names();
 }
 
-uint32_t farthest(const PathTree& paths, const std::vector<uint8_t>& wood) {
-    uint32_t best = paths.order.front();
-    for (uint32_t v = 0; v < paths.along.size(); v++)
-        if (wood[v] && paths.along[v] > paths.along[best]) best = v;
-    return best;
-}
-
-// Root mean square distance of the points around `centre` from their main axis: how thick this end is.
-double end_width(const std::vector<Vec3>& points, const DVec3& centre, double radius) {
-    DVec3 mean(0.0);
-    double count = 0.0;
-    for (const Vec3& p : points)
-        if (glm::distance(DVec3(p), centre) < radius) {
-            mean += DVec3(p);
-            count += 1.0;
-        }
-    mean /= count;
-    DMat3 covariance(0.0);
-    for (const Vec3& p : points)
-        if (glm::distance(DVec3(p), centre) < radius) {
-            const DVec3 d = DVec3(p) - mean;
-            covariance += glm::outerProduct(d, d);
-        }
-    // Power iteration finds the axis; what is left of the trace is the cross-section.
-    DVec3 axis = glm::normalize(DVec3(1.0, 0.9, 1.1));
-    for (int i = 0; i < 50; i++)
-        axis = normalized_or(covariance * axis, axis);
-    const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
-    return std::sqrt(std::max(0.0, trace - glm::dot(axis, covariance * axis)) / count);
-}
-
+// The cut face is round: all within a little of the end belong to the base.
 RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood,
-                      const PointGraph& graph, const LocalScale& scale, double diagonal) {
-    SubProgress silent(nullptr, 0.0, 1.0);
-    const uint32_t start = static_cast<uint32_t>(std::find(wood.begin(), wood.end(), 1) - wood.begin());
-    const uint32_t first = farthest(shortest_paths(graph, scale, {{start, 0.0}}, silent), wood);
-    const PathTree from_first = shortest_paths(graph, scale, {{first, 0.0}}, silent);
-    const uint32_t second = farthest(from_first, wood);
-    const double radius = 0.04 * diagonal;
-    const bool take_first =
-        end_width(points, DVec3(points[first]), radius) >= end_width(points, DVec3(points[second]), radius);
-    const uint32_t end = take_first ? first : second;
-    const PathTree paths = take_first ? from_first : shortest_paths(graph, scale, {{second, 0.0}}, silent);
+                      const PointGraph& graph, const LocalScale& scale, const DVec3& end, double slab,
+                      Progress& progress) {
+    const auto off = [&](uint32_t v) { return glm::distance(DVec3(points[v]), end); };
+    uint32_t nearest = static_cast<uint32_t>(std::find(wood.begin(), wood.end(), 1) - wood.begin());
+    for (uint32_t v = nearest; v < points.size(); v++)
+        if (wood[v] && off(v) < off(nearest)) nearest = v;
+    const PathTree paths = shortest_paths(graph, scale, {{nearest, 0.0}}, progress);
     RootGuess root;
     root.lying = true;
-    // The cut face is round: all within a little of the end vertex belong to the base.
-    const double slab = 0.5 * radius;
     DVec3 sum(0.0);
     for (uint32_t v = 0; v < points.size(); v++) {
         if (paths.along[v] > slab) continue;
         root.seeds.push_back({v, 0.0});
         sum += DVec3(points[v]);
-    }
-    if (root.seeds.empty()) {
-        root.seeds.push_back({end, 0.0});
-        sum = DVec3(points[end]);
     }
     root.position = sum / static_cast<double>(root.seeds.size());
     return root;
@@ -93,7 +57,8 @@ RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t
 
 }  // namespace
 
-RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale) {
+RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+                    Progress& progress) {
     const std::vector<uint32_t> group = linked_groups(graph, scale);
     std::vector<size_t> members(points.size(), 0);
     std::vector<float> heights(points.size());
@@ -113,8 +78,18 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         if (wood[v]) bounds.add(DVec3(points[v]));
     }
     const DVec3 size = bounds.size();
-    if (size.y < kLyingRatio * std::max(size.x, size.z))
-        return root_at_end(points, wood, graph, scale, bounds.diagonal());
+    if (size.y < kLyingRatio * std::max(size.x, size.z)) {
+        std::vector<Vec3> of_wood;
+        for (size_t v = 0; v < points.size(); v++)
+            if (wood[v]) of_wood.push_back(points[v]);
+        const BaseEnd base = find_base_end(of_wood, progress);
+        // A spreading tree is wider than high, too.
+        const bool stands =
+            base.direction.y > kUpright && base.position.y < bounds.min.y + kFootShare * size.y;
+        if (!stands)
+            return root_at_end(points, wood, graph, scale, base.position, kFaceShare * bounds.diagonal(),
+                               progress);
+    }
 
     size_t base_group = points.size();
     for (size_t g = 0; g < points.size(); g++)

@@ -1,4 +1,4 @@
-// Where the tree comes out of the ground - or, for a cut branch, its thick end.
+// Where the tree comes out of the ground - or where a cut branch came off its tree.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,13 @@ namespace treerec {
 struct RootGuess {
     DVec3 position{0.0};          // centre of the base
     std::vector<PathSeed> seeds;  // the points of the base, with their distance above it
-    bool lying = false;           // no trunk from below: a horizontal branch, rooted at its thick end
+    bool lying = false;           // no trunk from below: a horizontal branch, rooted at its base
 };
 
 // The base is not the lowest point, which may be a stray one: it is the lowest part of the lowest group of
 // linked points that is large enough to be wood. Where the cloud is much wider than high (a scanned branch),
-// the far end with the widest cross-section is taken. points: tree space, metres.
-RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale);
+// it is where find_base_end() says, unless a trunk stands there. points: tree space, metres.
+RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
+                    Progress& progress);
 
 }  // namespace treerec
