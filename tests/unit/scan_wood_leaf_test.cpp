@@ -315,6 +315,34 @@ TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {
     }
 }
 
+// Which points share a cell is chance; what kind of tree it is must not be.
+TEST(WoodLeafScans, TurnedOrThinnedAPalmStaysOneAndNoOtherBecomesOne) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    for (const char* file : {"itsme_tropical_tree_1.las", "pytlidar_palm_1.las",
+                             "populus_sapling_normals.txt", "itsme_buttressed_tree_1.txt"}) {
+        PointCloud cloud = real_scan(folder, file);
+        clean_cloud(cloud, {});
+        const bool palm =
+            std::string(file).starts_with("itsme_tropical") || std::string(file).starts_with("pytlidar_palm");
+        Random random(3);
+        for (const double degrees : {0.0, 40.0, 130.0, 215.0}) {
+            const double angle = glm::radians(degrees);
+            const auto turn = [&](const Vec3& p) {
+                return Vec3(std::cos(angle) * p.x - std::sin(angle) * p.z, p.y,
+                            std::sin(angle) * p.x + std::cos(angle) * p.z);
+            };
+            PointCloud turned, thinned;
+            for (const Vec3& p : cloud.positions) {
+                turned.positions.push_back(turn(p));
+                if (random.uniform() < 0.8) thinned.positions.push_back(turn(p));
+            }
+            EXPECT_EQ(tell_wood_from_leaves(turned).fronds, palm) << file << " turned by " << degrees;
+            EXPECT_EQ(tell_wood_from_leaves(thinned).fronds, palm) << file << " thinned, by " << degrees;
+        }
+    }
+}
+
 TEST(WoodLeafScans, TheSplitTreeIsSplitAlike) {
     const char* folder = std::getenv("TREEREC_SCANS");
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
