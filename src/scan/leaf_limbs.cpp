@@ -27,11 +27,11 @@ constexpr double kHubQuantile = 0.8;  // of the leaves: some of a blurred stem's
 constexpr double kHubShare = 0.1;     // of the height: the ways of leaves meet wood as near to the hub
 constexpr double kLeastPlanarity = 0.27;
 // Where blur has made fronds as thick as other leaves: a tuft that hangs around the end of a tall bare stem.
-// Of real scans, turned and thinned, nearly all of a palm's leaves meet their stem within 0.12 of the crown's
+// Of real scans, turned and thinned, nearly all of a palm's leaves meet their stem within 0.18 of the crown's
 // extent of the hub, broad leaves above a stem as tall within 0.23 and more.
 constexpr double kTuftHub = 0.75;      // of the height: the hub is higher
 constexpr double kTuftQuantile = 0.9;  // of the leaves
-constexpr double kTuftSpread = 0.17;   // of the crown's extent
+constexpr double kTuftSpread = 0.2;    // of the crown's extent
 constexpr double kTuftHanging = 0.1;   // of the leaves: more hang below the hub
 // A palm's stem is stout: at its thinnest, 0.017 of the crown's extent and more of real scans. A sapling that
 // is all leaves has 0.005.
