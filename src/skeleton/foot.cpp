@@ -20,6 +20,7 @@ constexpr size_t kLeastStations = 4;
 constexpr double kMostCrooked = 0.4;  // radii: root mean square off the line
 constexpr double kClearShare = 0.05;  // of the stem's length: from there on it stands clear of its foot,
 constexpr double kClearEnd = 0.15;    // and up to there it is about as thick
+constexpr double kNextEnd = 0.3;      // of its length: what comes next
 constexpr double kFootRadii = 6.0;    // radii: the foot's length at most
 constexpr double kLeastFoot = 0.75;   // of the stem's radius
 constexpr double kMostFoot = 2.0;
@@ -118,15 +119,21 @@ void limit_foot(std::vector<Station>& stem) {
     std::vector<double> arcs(stem.size(), 0.0);
     for (size_t i = 1; i < stem.size(); i++)
         arcs[i] = arc += glm::distance(stem[i].position, stem[i - 1].position);
-    std::vector<double> radii;
-    for (size_t i = 0; i < stem.size(); i++)
-        if (stem[i].measured && arcs[i] >= kClearShare * arc && arcs[i] <= kClearEnd * arc)
-            radii.push_back(stem[i].radius);
-    if (radii.size() < kLeastStations) return;
-    const double radius = quantile(radii, 0.5);
+    const auto radius_between = [&](double low, double high) {
+        std::vector<double> radii;
+        for (size_t i = 0; i < stem.size(); i++)
+            if (stem[i].measured && arcs[i] >= low * arc && arcs[i] <= high * arc)
+                radii.push_back(stem[i].radius);
+        return radii.size() < kLeastStations ? 0.0 : quantile(radii, 0.5);
+    };
+    const double radius = radius_between(kClearShare, kClearEnd);
+    if (radius == 0.0) return;
+    // The flare of a short stem reaches up to there; what is thinner is not its root, but the stem.
+    const double next = radius_between(kClearEnd, kNextEnd);
+    const double least = kLeastFoot * (next > 0.0 && next < kLeastFoot * radius ? next : radius);
     for (size_t i = 0; i < stem.size() && arcs[i] < kFootRadii * radius; i++) {
         if (!stem[i].measured) continue;
-        if (stem[i].radius < kLeastFoot * radius) {
+        if (stem[i].radius < least) {
             stem[i].measured = false;
             stem[i].radius = 0.0;
         }

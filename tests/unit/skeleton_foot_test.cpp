@@ -49,6 +49,35 @@ TEST(Foot, StationsBelowTheRootGoWithIt) {
         EXPECT_LT(glm::distance(axes[0][i].position, DVec3(0.0, 0.1 * static_cast<double>(i), 0.0)), 1e-9);
 }
 
+// A palm of 6 m, whose foot is twice as thick as its stem up to a height of 0.7 m.
+TEST(Foot, AFlareDoesNotUnmakeWhatIsMeasuredAboveIt) {
+    std::vector<Station> stem(60);
+    for (size_t i = 0; i < stem.size(); i++) {
+        const double height = 0.1 * static_cast<double>(i);
+        stem[i].position = {0.0, height, 0.0};
+        stem[i].radius = height < 0.5 ? 0.34 : height < 0.8 ? 0.27 : 0.18 - 0.01 * height;
+        stem[i].measured = true;
+    }
+    const std::vector<Station> before = stem;
+    limit_foot(stem);
+    for (size_t i = 0; i < stem.size(); i++) {
+        EXPECT_TRUE(stem[i].measured) << "at " << stem[i].position.y;
+        EXPECT_EQ(stem[i].radius, before[i].radius) << "at " << stem[i].position.y;
+    }
+}
+
+TEST(Foot, ASpurBelowTheStemTellsNothingOfIt) {
+    std::vector<Station> stem(60);
+    for (size_t i = 0; i < stem.size(); i++) {
+        stem[i].position = {0.0, 0.1 * static_cast<double>(i), 0.0};
+        stem[i].radius = i < 3 ? 0.05 : 0.15;
+        stem[i].measured = true;
+    }
+    limit_foot(stem);
+    for (size_t i = 0; i < stem.size(); i++)
+        EXPECT_EQ(stem[i].measured, i >= 3) << "at " << stem[i].position.y;
+}
+
 TEST(Foot, OfALyingBranchKeepsItsLength) {
     Random random(5);
     std::vector<std::vector<Station>> axes{stem_on_spur(random, DVec3(0.0), DVec3(1, 0, 0), 1)};
