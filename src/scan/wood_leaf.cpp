@@ -35,6 +35,8 @@ constexpr double kLeastFineResolution = 60.0;
 constexpr double kLeastFilledResolution = 40.0;
 constexpr double kFilledCells = 0.58;  // of the cells around
 constexpr double kFilledScatter = 0.5;
+// Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
+constexpr double kSparseFilled = 0.37;
 constexpr double kMostShare = 0.85;  // that the threshold follows
 constexpr double kThresholdShare =
     0.5;  // of the logit of the share: between the most likely and the even-handed
@@ -421,7 +423,10 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    const bool leafy = result.by_colour || (told_by_shape && share >= kLeastShare);
+    bool leafy = result.by_colour || (told_by_shape && share >= kLeastShare);
+    // Of a bare tree's twigs too few points may be left to look like twigs.
+    if (leafy && !result.by_colour && filled < kSparseFilled)
+        leafy = leafiness(mean_of(gather_inputs(shapes, paths), weights)) > 0.0;
     Verdict verdict;
     if (leafy) verdict = judge(std::move(logits), share, cells, shapes, paths, progress);
     if (!result.by_colour && frond_like && !verdict.limbs.fronds) {

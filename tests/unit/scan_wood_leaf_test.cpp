@@ -315,6 +315,22 @@ TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {
     }
 }
 
+TEST(WoodLeafScans, ABareTreeOfFewPointsIsBare) {
+    const char* folder = std::getenv("TREEREC_SCANS");
+    if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    for (const char* file : {"wytham_Tf8_ash.txt", "wytham_Tf15_sycamore.txt"}) {
+        const PointCloud whole = real_scan(folder, file);
+        for (const double share : {0.15, 0.1, 0.07}) {
+            Random random(4);
+            PointCloud cloud;
+            cloud.frame = whole.frame;
+            for (const Vec3& p : whole.positions)
+                if (random.uniform() < share) cloud.positions.push_back(p);
+            EXPECT_FALSE(tell_wood_from_leaves(cloud).foliage) << file << ", " << cloud.size() << " points";
+        }
+    }
+}
+
 // Which points share a cell is chance; what kind of tree it is must not be.
 TEST(WoodLeafScans, TurnedOrThinnedAPalmStaysOneAndNoOtherBecomesOne) {
     const char* folder = std::getenv("TREEREC_SCANS");
