@@ -23,11 +23,13 @@ constexpr double kBehind = 0.5;        // cosine: what lies behind an end
 constexpr double kAround = 0.06;       // of the extent: how far from its end a trial may begin
 constexpr double kBeside = 1.2;        // of a side branch's length: how much of its parent is looked at,
 constexpr double kParts = 0.35;        // and how far from that its tip is
-constexpr double kBark = 2.0;          // times the widest end's width
+constexpr double kBark = 2.5;          // times the widest end's width: more than across it
 constexpr double kMostBehind = 0.3;    // of the points around it
 constexpr double kThickness = 0.06;    // what the thickest end is worth, as a cosine
 constexpr double kUpright = 0.8;       // the least sine of a trunk's slope at its foot,
 constexpr double kStanding = 0.03;     // and what such a foot is worth
+constexpr size_t kFewForks = 6;        // tell nothing: the wider one of two far ends is taken,
+constexpr double kEndShare = 0.04;     // of the extent: what is around it
 constexpr double kStep = 0.01;         // of the extent: between two sections of the wood,
 constexpr double kSpacings = 3.0;      // and no fewer spacings of the points
 constexpr double kBand = 1.5;          // steps: what belongs to a section, to either side
@@ -71,6 +73,12 @@ struct Behind {
     uint32_t farthest;  // of them; the end's own where there are none
 };
 
+// How the side branches of a trial go on.
+struct Turns {
+    double mean;   // cosine
+    size_t forks;  // that tell it
+};
+
 class BaseFinder {
   public:
     BaseFinder(const std::vector<Vec3>& points, Progress& progress)
@@ -101,11 +109,15 @@ class BaseFinder {
         double widest = 0.0;
         for (const Trial& trial : trials)
             widest = std::max(widest, trial.width);
+        // The second trial is from the end of the longest path.
+        // A way of fewer than some points has no direction.
+        const bool told = step_ <= kLeastSide * extent_;
+        if (!told || turns(trials[1], kBark * widest).forks < kFewForks) return thicker_end(trials[1]);
         const Trial* best = nullptr;
         double most = 0.0;
         for (const Trial& trial : trials) {
             const bool stands = !best && trial.end.direction.y > kUpright;
-            double worth = mean_turn(trial, kBark * widest) - (trial.is_end ? 0.0 : 1.0);
+            double worth = turns(trial, kBark * widest).mean - (trial.is_end ? 0.0 : 1.0);
             if (widest > 0.0) worth += (kThickness + (stands ? kStanding : 0.0)) * trial.width / widest;
             if (best && worth <= most) continue;
             best = &trial;
@@ -202,11 +214,41 @@ class BaseFinder {
         return true;
     }
 
+    // Of a branch with hardly a fork: the end of the longest path around which the points spread wider.
+    BaseEnd thicker_end(const Trial& first) const {
+        const Trial second = trial_at(first.branches.tip[first.paths.order.front()]);
+        return spread_around(first.end.position) >= spread_around(second.end.position) ? first.end
+                                                                                       : second.end;
+    }
+
+    // Root mean square distance of the points around an end from their main axis, metres.
+    double spread_around(const DVec3& end) const {
+        std::vector<DVec3> around;
+        DVec3 mean(0.0);
+        for (const Vec3& p : points_)
+            if (glm::distance(DVec3(p), end) < kEndShare * extent_) {
+                around.emplace_back(p);
+                mean += around.back();
+            }
+        const auto count = static_cast<double>(around.size());
+        mean /= count;
+        DMat3 covariance(0.0);
+        for (const DVec3& p : around)
+            covariance += glm::outerProduct(p - mean, p - mean);
+        // Power iteration finds the axis; what is left of the trace is the cross-section.
+        DVec3 axis = glm::normalize(DVec3(1.0, 0.9, 1.1));
+        for (int i = 0; i < 50; i++)
+            axis = normalized_or(covariance * axis, axis);
+        const double trace = covariance[0][0] + covariance[1][1] + covariance[2][2];
+        return std::sqrt(std::max(0.0, trace - glm::dot(axis, covariance * axis)) / count);
+    }
+
     // bark: metres across; what reaches no farther out is no branch.
-    double mean_turn(const Trial& trial, double bark) const {
+    Turns turns(const Trial& trial, double bark) const {
         const PathTree& paths = trial.paths;
         const Branches& branches = trial.branches;
         double sum = 0.0, weights = 0.0;
+        size_t forks = 0;
         std::vector<double> mass(paths.order.size(), 1.0);
         for (size_t i = mass.size(); i-- > 0;)
             if (const int32_t parent = paths.parent[paths.order[i]]; parent >= 0)
@@ -218,18 +260,22 @@ class BaseFinder {
             const double from = paths.along[fork], length = paths.along[tip] - from;
             if (length < kLeastSide * extent_) continue;
             if (!parts(paths, branches.tip[fork], fork, tip, length, bark)) continue;
-            const uint32_t before = point_on(paths, fork, from - kBefore * extent_);
             const double ahead = std::clamp(0.5 * length, kLeastSide * extent_, kAhead * extent_);
-            const DVec3 way = normalized_or(place(fork) - place(before), trial.end.direction);
+            // At the end itself there is no way before; what goes back from there tells against it.
+            const bool at_end = from < kBefore * extent_;
+            const DVec3 before = place(point_on(paths, fork, from - kBefore * extent_));
+            const DVec3 way = at_end ? trial.end.direction : normalized_or(place(fork) - before, DVec3(0.0));
             const auto turn = [&](uint32_t of) {
                 const DVec3 on = place(point_on(paths, of, from + ahead)) - place(fork);
                 return glm::dot(way, normalized_or(on, DVec3(0.0)));
             };
+            if (at_end && turn(tip) > -kBehind) continue;
+            forks += at_end ? 0 : 1;
             const double weight = std::sqrt(length * mass[v]);
-            sum += weight * 0.5 * (turn(tip) + turn(branches.tip[fork]));
+            sum += weight * (at_end ? turn(tip) : 0.5 * (turn(tip) + turn(branches.tip[fork])));
             weights += weight;
         }
-        return weights > 0.0 ? sum / weights : 0.0;
+        return {weights > 0.0 ? sum / weights : 0.0, forks};
     }
 
     // Metres: how far the points of the first sections on the way to the tip lie from their middles, across
