@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/bounds.h"
 #include "geometry/parallel.h"
@@ -97,10 +98,12 @@ class BaseFinder {
     }
 
     BaseEnd find() const {
+        std::vector<uint32_t> ends = far_ends();
+        // A way of fewer than some points has no direction.
+        if (step_ > kLeastSide * extent_) return thicker_end(trial_at(ends.front()));
         const auto lower = [](const Vec3& a, const Vec3& b) { return a.y < b.y; };
         const auto lowest = std::min_element(points_.begin(), points_.end(), lower);
-        std::vector<uint32_t> ends = far_ends();
-        ends.insert(ends.begin(), static_cast<uint32_t>(lowest - points_.begin()));
+        ends.push_back(static_cast<uint32_t>(lowest - points_.begin()));
         std::vector<Trial> trials(ends.size());
         parallel_for(ends.size(), 1, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; i++)
@@ -109,19 +112,20 @@ class BaseFinder {
         double widest = 0.0;
         for (const Trial& trial : trials)
             widest = std::max(widest, trial.width);
-        // The second trial is from the end of the longest path.
-        // A way of fewer than some points has no direction.
-        const bool told = step_ <= kLeastSide * extent_;
-        if (!told || turns(trials[1], kBark * widest).forks < kFewForks) return thicker_end(trials[1]);
+        if (turns(trials.front(), kBark * widest).forks < kFewForks) return thicker_end(trials.front());
+        const auto worth = [&](const Trial& trial) {
+            const bool stands = &trial == &trials.back() && trial.end.direction.y > kUpright;
+            const double wide = widest > 0.0 ? trial.width / widest : 0.0;
+            return turns(trial, kBark * widest).mean - (trial.is_end ? 0.0 : 1.0) +
+                   (kThickness + (stands ? kStanding : 0.0)) * wide;
+        };
         const Trial* best = nullptr;
         double most = 0.0;
         for (const Trial& trial : trials) {
-            const bool stands = !best && trial.end.direction.y > kUpright;
-            double worth = turns(trial, kBark * widest).mean - (trial.is_end ? 0.0 : 1.0);
-            if (widest > 0.0) worth += (kThickness + (stands ? kStanding : 0.0)) * trial.width / widest;
-            if (best && worth <= most) continue;
+            const double own = worth(trial);
+            if (best && own <= most) continue;
             best = &trial;
-            most = worth;
+            most = own;
         }
         return best->end;
     }
@@ -131,7 +135,7 @@ class BaseFinder {
 
     DVec3 place(uint32_t v) const { return DVec3(points_[v]); }
 
-    // Ends of long branches, each as far away from those before as can be.
+    // Ends of long branches, each as far away from those before as can be; the longest path's own first.
     std::vector<uint32_t> far_ends() const {
         const uint32_t first = Branches(paths_from(0)).tip[0];
         const PathTree paths = paths_from(first);

@@ -270,12 +270,9 @@ class Linker {
 
 bool link_over_wide_gap(const std::vector<Vec3>& points, const PathTree& paths, double extent,
                         PointGraph& graph, WideGaps& gaps, Progress& progress) {
-    std::vector<PointEdge> known = gaps.looked_at;
-    for (const SureLink& link : gaps.links)
-        known.push_back(link.edge);
-    const Gap gap = heaviest_gap(paths, kWide * extent, known);
+    const Gap gap = heaviest_gap(paths, kWide * extent, gaps.known);
     if (gap.width == 0.0F) return false;
-    gaps.looked_at.emplace_back(std::min(gap.child, gap.parent), std::max(gap.child, gap.parent));
+    gaps.known.emplace_back(std::min(gap.child, gap.parent), std::max(gap.child, gap.parent));
     std::vector<uint8_t> beyond(points.size(), 0);
     beyond[gap.child] = 1;
     for (const uint32_t v : paths.order)
@@ -285,6 +282,7 @@ bool link_over_wide_gap(const std::vector<Vec3>& points, const PathTree& paths, 
     for (const SureLink& link : linker.links(progress)) {
         if (is_sure(gaps.links, link.edge)) continue;
         gaps.links.push_back(link);
+        gaps.known.push_back(link.edge);
         if (!find_edge(graph, link.edge)) added.push_back(link.edge);
     }
     if (!added.empty()) add_edges(graph, points, std::move(added));

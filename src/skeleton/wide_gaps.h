@@ -6,8 +6,8 @@
 namespace treerec {
 
 struct WideGaps {
-    std::vector<SureLink> links;       // over them
-    std::vector<PointEdge> looked_at;  // the edges that hung much of the tree on the rest
+    std::vector<SureLink> links;   // over them
+    std::vector<PointEdge> known;  // those links, and every edge that a gap was found at
 };
 
 // Where a good part of the tree hangs on one link over a wide gap, as where a slab of the scan is missing,

@@ -16,6 +16,7 @@
 
 #include "error.h"
 #include "geometry/random.h"
+#include "scan/clean_cloud.h"
 #include "scan/point_cloud.h"
 #include "scan/read_cloud.h"
 
@@ -156,6 +157,16 @@ inline std::string scans_folder() {
     const char* folder = std::getenv("TREEREC_SCANS");
     if (!folder || !std::filesystem::is_directory(std::string(folder) + "/clouds")) return {};
     return std::string(folder) + "/clouds/";
+}
+
+// A real scan with Z up and in metres, as it lies in scans_folder().
+inline PointCloud upright_scan(const std::string& file) {
+    PointCloud cloud = read_cloud(scans_folder() + file);
+    OrientOptions upright;
+    upright.up = UpAxis::kZ;
+    upright.metres_per_unit = 1.0;
+    orient_cloud(cloud, upright);
+    return cloud;
 }
 
 }  // namespace treerec::scan_test

@@ -11,6 +11,7 @@
 #include "scan/clean_cloud.h"
 #include "scan/read_cloud.h"
 #include "scan/wood_leaf.h"
+#include "scan_samples.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
 
@@ -239,15 +240,6 @@ TEST(WoodLeaf, CanBeCancelled) {
     EXPECT_THROW(tell_wood_from_leaves(made.cloud, &stop), Cancelled);
 }
 
-PointCloud real_scan(const std::string& folder, const std::string& file) {
-    PointCloud cloud = read_cloud(folder + "/clouds/" + file);
-    OrientOptions upright;
-    upright.up = UpAxis::kZ;
-    upright.metres_per_unit = 1.0;
-    orient_cloud(cloud, upright);
-    return cloud;
-}
-
 TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
     const char* folder = std::getenv("TREEREC_SCANS");
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
@@ -257,7 +249,7 @@ TEST(WoodLeafScans, LeaflessTreesAreLeftWhole) {
           "adtree_Lille_11_leafoff_tall.xyz", "adtree_Lille_2_multistem.xyz", "adtree_tree7.xyz",
           "adtree_tree13_trunk_gap.xyz", "adtree_ahn3_delft_airborne_sparse.xyz", "rtwig_coffeetree.txt",
           "archi_tree2_leafoff.las", "voxr_tree_t0.asc", "voxr_tree_t1.asc"})
-        EXPECT_FALSE(tell_wood_from_leaves(real_scan(folder, file)).foliage) << file;
+        EXPECT_FALSE(tell_wood_from_leaves(scan_test::upright_scan(file)).foliage) << file;
 }
 
 TEST(WoodLeafScans, NoisyLeaflessTreesAreLeftWhole) {
@@ -266,7 +258,7 @@ TEST(WoodLeafScans, NoisyLeaflessTreesAreLeftWhole) {
     Random random(1);
     for (const char* file : {"adtree_Lille_11_leafoff_tall.xyz", "adtree_Lille_2_multistem.xyz",
                              "adtree_tree7.xyz", "adtree_tree13_trunk_gap.xyz"}) {
-        const PointCloud sharp = real_scan(folder, file);
+        const PointCloud sharp = scan_test::upright_scan(file);
         for (const double noise : {0.02, 0.05}) {
             for (const int copies : {1, 10}) {
                 PointCloud cloud;
@@ -286,7 +278,7 @@ TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
     for (const char* file : {"rtls_leafy_urban.txt", "itsme_tropical_tree_1.txt",
                              "itsme_buttressed_tree_1.txt", "pytlidar_palm_1.las"}) {
-        PointCloud cloud = real_scan(folder, file);
+        PointCloud cloud = scan_test::upright_scan(file);
         clean_cloud(cloud, {});
         const WoodLeaf told = tell_wood_from_leaves(cloud);
         ASSERT_TRUE(told.foliage) << file;
@@ -319,7 +311,7 @@ TEST(WoodLeafScans, ABareTreeOfFewPointsIsBare) {
     const char* folder = std::getenv("TREEREC_SCANS");
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
     for (const char* file : {"wytham_Tf8_ash.txt", "wytham_Tf15_sycamore.txt"}) {
-        const PointCloud whole = real_scan(folder, file);
+        const PointCloud whole = scan_test::upright_scan(file);
         for (const double share : {0.15, 0.1, 0.07}) {
             Random random(4);
             PointCloud cloud;
@@ -337,7 +329,7 @@ TEST(WoodLeafScans, TurnedOrThinnedAPalmStaysOneAndNoOtherBecomesOne) {
     if (!folder) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
     for (const char* file : {"itsme_tropical_tree_1.las", "pytlidar_palm_1.las",
                              "populus_sapling_normals.txt", "itsme_buttressed_tree_1.txt"}) {
-        PointCloud cloud = real_scan(folder, file);
+        PointCloud cloud = scan_test::upright_scan(file);
         clean_cloud(cloud, {});
         const bool palm =
             std::string(file).starts_with("itsme_tropical") || std::string(file).starts_with("pytlidar_palm");

@@ -7,8 +7,6 @@
 #include <string>
 
 #include "geometry/bounds.h"
-#include "scan/clean_cloud.h"
-#include "scan/read_cloud.h"
 #include "scan_samples.h"
 #include "skeleton/skeleton.h"
 #include "skeleton_test_clouds.h"
@@ -86,13 +84,9 @@ TEST(BaseEnd, OfASpreadingTreeIsItsFoot) {
 
 // A cut branch that was scanned lying: tufts of twigs at its tips are wider than its cut face.
 TEST(BaseEnd, OfALyingScanIsItsCutFace) {
-    const std::string scans = scan_test::scans_folder();
-    if (scans.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
-    PointCloud cloud = read_cloud(scans + "vezy_A5B8.asc");
-    OrientOptions upright;
-    upright.up = UpAxis::kZ;
-    upright.metres_per_unit = 1.0;
-    orient_cloud(cloud, upright);
+    if (scan_test::scans_folder().empty())
+        GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    const PointCloud cloud = scan_test::upright_scan("vezy_A5B8.asc");
     double east = -1e9;
     for (const Vec3& p : cloud.positions)
         east = std::max(east, cloud.frame.to_scan(DVec3(p)).x);
