@@ -8,14 +8,15 @@
 
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
-#include "geometry/quantile.h"
 #include "scan/leaf_blur.h"
 #include "scan/leaf_cells.h"
 #include "scan/leaf_limbs.h"
 #include "scan/leaf_paths.h"
+#include "scan/leaf_presence.h"
 #include "scan/leaf_rule.h"
 #include "scan/round_stems.h"
 #include "scan/samples.h"
+#include "scan/shape_terms.h"
 
 namespace treerec {
 
@@ -25,33 +26,13 @@ constexpr size_t kMostSamples = 400000;
 constexpr size_t kLeastPoints = 300;
 constexpr size_t kGrain = 512;
 
-// A tree with a smaller share of leaves counts as bare: leafless trees of dense twigs reach 0.3 by chance.
-constexpr double kLeastShare = 0.4;
-// A cloud with fewer cells along its extent, or with fewer ones finer than a leaf, shows neither leaves nor
-// twigs, unless it is filled as no bare crown is.
-constexpr double kLeastResolution = 95.0;
-constexpr double kFineCell = 0.06;  // metres
-constexpr double kLeastFineResolution = 60.0;
-constexpr double kLeastFilledResolution = 40.0;
-constexpr double kFilledCells = 0.58;  // of the cells around
-constexpr double kFilledScatter = 0.5;
-// Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
-constexpr double kSparseFilled = 0.37;
 constexpr double kMostShare = 0.85;  // that the threshold follows
 constexpr double kThresholdShare =
     0.5;  // of the logit of the share: between the most likely and the even-handed
 constexpr int kSmoothings = 3;
 constexpr float kSmoothWeight = 0.5F;
 
-constexpr float kReach = 3.0F;  // standard deviations: what lies further out says no more
 constexpr float kBias = -0.912F;
-struct Term {
-    float mean;
-    float deviation;
-    float weight;  // of the standardised value; the sum is the logit of being leaf at even odds
-};
-// By scale: linearity, planarity, scatter, occupied, crowd.
-using ShapeTerms = std::array<std::array<Term, 5>, kShapeScales>;
 constexpr ShapeTerms kShapeTerms{{
     {{{0.4209F, 0.2340F, -0.425F},
       {0.2754F, 0.1797F, -0.203F},
@@ -73,27 +54,6 @@ constexpr ShapeTerms kShapeTerms{{
       {0.5064F, 0.1801F, 0.470F},
       {0.6387F, 0.2271F, -0.890F},
       {4.113F, 0.7961F, 1.988F}}},
-}};
-// The same for shapes on the coarser grids alone, which are quick to find.
-constexpr float kQuickBias = -0.6825F;
-constexpr double kSurelyBare = -1.6;  // leafy clouds have a mean above -1.4, most bare ones one below -1.6
-constexpr ShapeTerms kQuickTerms{{
-    {{{0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}},
-    {{{0.3997F, 0.2186F, -0.168F},
-      {0.2666F, 0.1669F, -0.030F},
-      {0.3336F, 0.1836F, 0.165F},
-      {0.4283F, 0.1876F, 0.442F},
-      {2.778F, 0.6209F, -0.512F}}},
-    {{{0.3375F, 0.1858F, -0.217F},
-      {0.2553F, 0.1533F, 0.189F},
-      {0.4072F, 0.1842F, 0.061F},
-      {0.5084F, 0.2021F, 0.225F},
-      {3.366F, 0.7300F, -0.591F}}},
-    {{{0.0F, 1.0F, 0.0F},
-      {0.0F, 1.0F, 0.0F},
-      {0.5064F, 0.1801F, 0.553F},
-      {0.6387F, 0.2271F, -1.276F},
-      {4.113F, 0.7961F, 2.616F}}},
 }};
 struct PathTerm {
     float CellPath::*member;
@@ -127,36 +87,11 @@ constexpr double kMuchHidden = 0.3;
 constexpr size_t kVotes = 20000;     // cells, at most, that the branches are judged by
 constexpr double kNearlyAll = 0.93;  // of the points are leaves: what wood there is was guessed
 
-constexpr double kFrondPlanarity = 0.33;  // mean of all points; crowns of broad leaves have 0.16 to 0.25
-
-float value_of(float value, const Term& term) {
-    return term.weight * std::clamp((value - term.mean) / term.deviation, -kReach, kReach);
-}
-
-float sum_of_terms(const CellShape* shapes, const ShapeTerms& all) {
-    float sum = 0.0F;
-    for (size_t s = 0; s < kShapeScales; s++) {
-        const std::array<Term, 5>& terms = all[s];
-        sum += value_of(shapes[s].linearity, terms[0]) + value_of(shapes[s].planarity, terms[1]) +
-               value_of(shapes[s].scatter, terms[2]) + value_of(shapes[s].occupied / 26.0F, terms[3]) +
-               value_of(shapes[s].crowd, terms[4]);
-    }
-    return sum;
-}
-
 float logit_by_shape(const CellShape* shapes, const CellPath& path) {
     float sum = kBias + sum_of_terms(shapes, kShapeTerms);
     for (const PathTerm& p : kPathTerms)
         sum += value_of(path.*p.member, p.term);
     return sum;
-}
-
-// A first look: by the coarser shapes alone, whether the mean over the points is far on the side of wood.
-bool surely_bare(const Cells& cells, const CellShapes& shapes) {
-    double sum = 0.0;
-    for (const uint32_t v : cells.of_point)
-        sum += sum_of_terms(&shapes[v * kShapeScales], kQuickTerms);
-    return sum / static_cast<double>(cells.of_point.size()) + kQuickBias < kSurelyBare;
 }
 
 std::vector<CellInputs> gather_inputs(const CellShapes& shapes, const CellPaths& paths) {
@@ -166,7 +101,8 @@ std::vector<CellInputs> gather_inputs(const CellShapes& shapes, const CellPaths&
     return inputs;
 }
 
-CellInputs mean_of(const std::vector<CellInputs>& inputs, const std::vector<uint32_t>& weights) {
+// By leaf_rule.h: of the mean of all points' cells.
+double mean_leafiness(const std::vector<CellInputs>& inputs, const std::vector<uint32_t>& weights) {
     std::array<double, kCellInputs> sums{};
     double all = 0.0;
     for (size_t v = 0; v < inputs.size(); v++) {
@@ -177,7 +113,7 @@ CellInputs mean_of(const std::vector<CellInputs>& inputs, const std::vector<uint
     CellInputs means{};
     for (size_t i = 0; i < kCellInputs; i++)
         means[i] = static_cast<float>(sums[i] / all);
-    return means;
+    return leafiness(means);
 }
 
 double logit(double p) {
@@ -336,26 +272,6 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
         verdict.other[v] = verdict.other[v] && surplus[v] < 0;
 }
 
-// By leaf_rule.h; empty where it finds no leaves at all.
-std::vector<float> finer_logits(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
-                                const CellPaths& paths, const std::vector<uint32_t>& weights,
-                                const LeafLooks& looks, const Progress& progress) {
-    const std::vector<CellInputs> inputs = gather_inputs(shapes, paths);
-    if (leafiness(mean_of(inputs, weights)) <= 0.0) return {};
-    return leaf_logits(points, cells, paths, inputs, looks, progress);
-}
-
-double extent_of(const std::vector<Vec3>& points) {
-    double extent = 0.0;
-    std::vector<float> values(points.size());
-    for (int axis = 0; axis < 3; axis++) {
-        for (size_t v = 0; v < points.size(); v++)
-            values[v] = points[v][axis];
-        extent = std::max<double>(extent, quantile(values, 0.99) - quantile(values, 0.01));
-    }
-    return extent;
-}
-
 }  // namespace
 
 WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
@@ -370,21 +286,32 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     const bool colored = cloud.has_colors();
     if (!colored && surely_bare(cells, shapes)) return result;
     measure_shapes(cells, 0, 0, shapes, progress);
+    const CrownLooks looks = look_at_crown(cells, shapes);
     std::vector<uint32_t> weights(count, 0);
-    double filled = 0.0, scattered = 0.0, flat = 0.0;
-    for (const uint32_t v : cells.of_point) {
+    for (const uint32_t v : cells.of_point)
         weights[v]++;
-        filled += shapes[v * kShapeScales].occupied / 26.0;
-        scattered += shapes[v * kShapeScales].scatter;
-        flat += shapes[v * kShapeScales + 1].planarity;
+    bool resolved = resolves_leaves(looks);
+    std::optional<CellPaths> paths;
+    std::vector<CellInputs> inputs;
+    std::vector<float> logits;
+    double lush = 0.0, share = 0.0;
+    const auto look_closer = [&] {
+        if (paths) return;
+        paths = trace_paths(cells, progress);
+        inputs = gather_inputs(shapes, *paths);
+        lush = mean_leafiness(inputs, weights);
+        logits.resize(count);
+        parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+            progress.check();
+            for (size_t v = begin; v < end; v++)
+                logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths->paths[v]);
+        });
+        share = find_share(logits, weights, progress);
+    };
+    if (!resolved && may_resolve_leaves(looks)) {
+        look_closer();
+        resolved = is_lush(lush);
     }
-    filled /= static_cast<double>(samples.points.size());
-    scattered /= static_cast<double>(samples.points.size());
-    flat /= static_cast<double>(samples.points.size());
-    const double resolution = extent_of(cells.centres) / cells.size;
-    const bool resolved =
-        resolution > kLeastResolution || (cells.size < kFineCell && resolution > kLeastFineResolution) ||
-        (resolution > kLeastFilledResolution && filled > kFilledCells && scattered > kFilledScatter);
     if (resolved) result.noise = blur_of(samples.points, progress);
     std::optional<std::vector<RoundStem>> stems;
     if (result.noise > 0.0) {
@@ -394,19 +321,15 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         if (!stems->empty() && spread_on_stems(samples.points, *stems, most) < kSharp * result.noise)
             result.noise = 0.0;
     }
+    if (result.noise > 0.0 && may_be_leaves_not_blur(looks)) {
+        look_closer();
+        if (are_leaves_not_blur(share, lush)) result.noise = 0.0;
+    }
     const bool told_by_shape = resolved && !(result.noise > 0.0);
-    // Fronds are flat like no other leaves, even blurred, and their stem may have most of the points.
-    const bool frond_like = flat > kFrondPlanarity;
+    // Even blurred, fronds are flat; and their stem may have most of the points.
+    const bool frond_like = looks_like_fronds(looks);
     if (!colored && !told_by_shape && !frond_like) return result;
-    const CellPaths paths = trace_paths(cells, progress);
-
-    std::vector<float> logits(count);
-    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
-        progress.check();
-        for (size_t v = begin; v < end; v++)
-            logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths.paths[v]);
-    });
-    double share = find_share(logits, weights, progress);
+    look_closer();
 
     std::vector<uint32_t> cell_of_point(cloud.size());
     for (size_t i = 0; i < cloud.size(); i++)
@@ -423,24 +346,24 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    bool leafy = result.by_colour || (told_by_shape && share >= kLeastShare);
-    // Of a bare tree's twigs too few points may be left to look like twigs.
-    if (leafy && !result.by_colour && filled < kSparseFilled)
-        leafy = leafiness(mean_of(gather_inputs(shapes, paths), weights)) > 0.0;
+    const bool leafy = result.by_colour || (told_by_shape && is_in_leaf(looks, share, lush));
+    // By leaf_rule.h; empty where it finds no leaves at all.
+    const auto finer_logits = [&](const LeafLooks& where) {
+        if (lush <= 0.0) return std::vector<float>();
+        return leaf_logits(samples.points, cells, *paths, inputs, where, progress);
+    };
     Verdict verdict;
-    if (leafy) verdict = judge(std::move(logits), share, cells, shapes, paths, progress);
+    if (leafy) verdict = judge(std::move(logits), share, cells, shapes, *paths, progress);
     if (!result.by_colour && frond_like && !verdict.limbs.fronds) {
-        if (told_by_shape) logits = finer_logits(samples.points, cells, shapes, paths, weights, {}, progress);
+        if (told_by_shape) logits = finer_logits({});
         if (!logits.empty()) {
             share = find_share(logits, weights, progress);
-            Verdict palm = judge(std::move(logits), share, cells, shapes, paths, progress);
+            Verdict palm = judge(std::move(logits), share, cells, shapes, *paths, progress);
             if (palm.limbs.fronds) verdict = std::move(palm);
         }
     }
     const auto add_leafiness = [&] {
-        const LeafLooks looks{1, count / kVotes + 1};
-        const std::vector<float> finer =
-            finer_logits(samples.points, cells, shapes, paths, weights, looks, progress);
+        const std::vector<float> finer = finer_logits({1, count / kVotes + 1});
         if (finer.empty()) return;
         result.leafiness.resize(cloud.size());
         for (size_t i = 0; i < cloud.size(); i++)
@@ -452,7 +375,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     }
     if (!verdict.limbs.fronds) {
         if (!stems) stems = find_round_stems(samples.points, &progress);
-        keep_stems(*stems, samples.points, cells, shapes, paths, verdict, progress);
+        keep_stems(*stems, samples.points, cells, shapes, *paths, verdict, progress);
     }
     const auto& [cell_logits, threshold, leaf, other, limbs] = verdict;
     result.hidden_share = limbs.hidden_share;
