@@ -26,6 +26,8 @@ constexpr size_t kCellsPerChunk = 512;
 constexpr double kHostReach = 2.0;        // of the spacing of foliage_twigs.h: from a leaf to its wood
 constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
+// A whole wood that was taken for one tree would have tens of millions; few of them become leaves.
+constexpr double kMostSprays = 1e6;
 
 // Leaves where a scan saw them.
 class Follower {
@@ -38,7 +40,11 @@ class Follower {
           usual_(usual_points(foliage)) {
         const ScaledLeaf& size = placer.size;
         per_cell_ = kSpraysPerVolume * foliage.edge * foliage.edge * foliage.edge /
-                    (size.internode * size.leaf_size * size.leaf_size);
+                    (size.internode * size.leaf_size * size.leaf_size) * placer.rules.follow_density;
+        double all = 0.0;
+        for (const FoliageCell& cell : foliage.cells)
+            all += per_cell_ * density(cell);
+        share_ = std::min(1.0, kMostSprays / all);
         if (!foliage.colored) return;
         std::vector<double> shares;
         for (const FoliageCell& cell : foliage.cells)
@@ -48,13 +54,14 @@ class Follower {
         reddest_ = shares[shares.size() - 1 - shares.size() / 20];
     }
 
+    // Of the sprays that fill the crown: those that are placed.
+    double share() const { return share_; }
+
     // The sprays in one cell.
     void fill(const FoliageCell& cell, std::vector<LeafSpot>& spots) const {
         const uint64_t key = hash_seed(placer_.seed, key_of(cell));
         Random random(key, 3);
-        const double density = std::clamp(cell.points / usual_, kLeastDensity, kMostDensity);
-        const double wanted = per_cell_ * density * placer_.rules.follow_density;
-        const auto count = static_cast<uint64_t>(wanted + random.uniform());
+        const auto count = static_cast<uint64_t>(share_ * per_cell_ * density(cell) + random.uniform());
         for (uint64_t k = 0; k < count; k++) {
             const DVec3 p = foliage_.centre(cell) + foliage_.edge * DVec3(random.uniform(-0.5, 0.5),
                                                                           random.uniform(-0.5, 0.5),
@@ -87,6 +94,9 @@ class Follower {
   private:
     static uint64_t key_of(const FoliageCell& cell) {
         return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) | cell.z;
+    }
+    double density(const FoliageCell& cell) const {
+        return std::clamp(cell.points / usual_, kLeastDensity, kMostDensity);
     }
     static double red_share(const FoliageCell& cell) {
         return (static_cast<double>(cell.color[0]) - cell.color[1]) /
@@ -129,6 +139,7 @@ class Follower {
     const NearWood wood_;
     const double usual_;
     double per_cell_ = 0.0;
+    double share_ = 1.0;
     double greenest_ = 0.0, reddest_ = 0.0;
 };
 
@@ -204,6 +215,7 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     const LeafPlacer placer(wood, rules, seed);
     const std::vector<Branch>& branches = placer.list.branches;
     Spots spots;
+    double share = 1.0;
     if (follow < 1.0) {
         const std::vector<uint8_t> snag =
             find_snags(wood, placer.list, kStoutShare * placer.size.maximum_radius);
@@ -214,6 +226,7 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     }
     if (follow > 0.0) {
         const Follower follower(placer, foliage);
+        share = follower.share();
         if (follow >= 1.0)
             gather(branches.size(), kBranchesPerChunk, spots,
                    [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
@@ -224,7 +237,8 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
                    follower.fill(foliage.cells[i], out);
                });
     }
-    const Chosen chosen = limit_count(placer, spots, static_cast<size_t>(rules.maximum_leaves));
+    Chosen chosen = limit_count(placer, spots, static_cast<size_t>(rules.maximum_leaves));
+    chosen.growth /= static_cast<float>(std::sqrt(share));
     leaves.resize(chosen.spots.size());
     parallel_for(leaves.size(), kLeavesPerChunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -35,7 +36,15 @@ constexpr double kThinnest = 0.25;      // of a thick stem's radius
 constexpr double kThinnestInAir = 0.4;  // where no ground tells what stands on it
 constexpr double kCoreContrast = 4.0;   // how much denser it is than the rest
 constexpr size_t kFewestPoints = 4;     // of a slice
-constexpr size_t kMostRound = 16;       // stems among leaves
+
+// The searches for round bark in a plot. Mobile scanners are out by a centimetre or two and see a stem by few
+// points; sharp scanners see it between needles.
+constexpr std::array<RoundStemSearch, 2> kRoundSearches{
+    {{.most = 16, .highest = 0.5}, {.most = 16, .slice = 0.5, .rough = 0.015, .seeds = 150, .highest = 0.5}}};
+constexpr size_t kMostRound = 200;
+constexpr double kStemRoom = 15.0;          // square metres of a plot for each of them
+constexpr double kApartRadii = 2.0;         // of both stems: between two that stand from the ground up
+constexpr double kStandsRoundBelow = 0.06;  // of the height: where the bark of such a stem begins
 
 struct Cluster {
     DVec2 centre{0.0};
@@ -249,6 +258,48 @@ bool of_one_tree(const Stem& a, const Stem& b, double closest, double height) {
     return glm::length(apart) < least || meet(a, b, 0.01 * height, kHighestFork * height);
 }
 
+struct Barked {
+    Stem stem;
+    bool stands = false;  // seen from the ground up
+};
+
+// Thickest first. standing: the points, by their height above the ground.
+std::vector<Barked> find_barked(const std::vector<Vec3>& standing, const std::vector<Vec3>& points,
+                                double height, const Progress* progress) {
+    const std::array<Range, 3> ranges = robust_ranges(standing, progress);
+    const double room =
+        std::min(ranges[0].size() * ranges[2].size() / kStemRoom, static_cast<double>(kMostRound));
+    std::vector<Barked> found;
+    for (RoundStemSearch search : kRoundSearches) {
+        search.most = std::max(search.most, static_cast<size_t>(room));
+        for (const RoundStem& round : find_round_stems(standing, progress, search)) {
+            Barked barked;
+            Stem& stem = barked.stem;
+            const StemRing &low = round.front(), &high = round.back();
+            stem.lean = (high.centre - low.centre) / (high.y - low.y);
+            stem.radius = round[round.size() / 2].radius;
+            if (glm::length(stem.lean) > kMostLean) continue;
+            const DVec2 foot = low.centre - low.y * stem.lean;
+            const std::vector<uint8_t> on = points_on_stems(standing, {round});
+            double base = std::numeric_limits<double>::max();
+            for (uint32_t i = 0; i < points.size(); i++) {
+                if (!on[i]) continue;
+                stem.seed.push_back(i);
+                base = std::min<double>(base, points[i].y - standing[i].y);
+            }
+            stem.foot = {foot.x, base, foot.y};
+            barked.stands = low.y < kStandsRoundBelow * height;
+            found.push_back(std::move(barked));
+        }
+    }
+    if (found.empty()) return found;
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Barked& a, const Barked& b) { return a.stem.radius > b.stem.radius; });
+    const double thick = found[found.size() / 4].stem.radius;
+    std::erase_if(found, [&](const Barked& b) { return b.stem.radius < kThinnest * thick; });
+    return found;
+}
+
 }  // namespace
 
 std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
@@ -304,29 +355,35 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
     std::vector<Vec3> standing(points);
     for (size_t i = 0; i < points.size(); i++)
         standing[i].y = above[i];
-    double thick = 0.0;
-    for (const Stem& stem : stems)
-        thick = std::max(thick, stem.radius);
-    for (const RoundStem& round : find_round_stems(standing, progress, kMostRound)) {
-        Stem stem;
-        const StemRing &low = round.front(), &high = round.back();
-        stem.lean = (high.centre - low.centre) / (high.y - low.y);
-        stem.radius = round[round.size() / 2].radius;
-        if (stem.radius < kThinnest * thick || glm::length(stem.lean) > kMostLean) continue;
-        const DVec2 foot = low.centre - low.y * stem.lean;
-        const std::vector<uint8_t> on = points_on_stems(standing, {round});
-        double base = std::numeric_limits<double>::max();
-        for (uint32_t i = 0; i < points.size(); i++) {
-            if (!on[i]) continue;
-            stem.seed.push_back(i);
-            base = std::min<double>(base, points[i].y - above[i]);
-        }
-        stem.foot = {foot.x, base, foot.y};
-        const bool known = std::any_of(stems.begin(), stems.end(), [&](const Stem& other) {
-            return of_one_tree(other, stem, kClosest, height);
+    std::vector<Barked> found = find_barked(standing, points, height, progress);
+    if (found.empty()) return;
+    // Bark that goes up from the ground says more than what is dense there.
+    std::vector<Stem> all;
+    for (Barked& barked : found) {
+        if (!barked.stands) continue;
+        const auto same = std::find_if(all.begin(), all.end(), [&](const Stem& other) {
+            const DVec3 apart = other.foot - barked.stem.foot;
+            return glm::length(DVec2(apart.x, apart.z)) <
+                   std::max(kApartRadii * (other.radius + barked.stem.radius),
+                            std::min(kClosestMetres, 0.15 * height));
         });
-        if (!known) stems.push_back(std::move(stem));
+        if (same == all.end())
+            all.push_back(std::move(barked.stem));
+        else
+            same->seed.insert(same->seed.end(), barked.stem.seed.begin(), barked.stem.seed.end());
     }
+    const std::vector<Stem> from_ground = all;
+    const auto known = [&](const std::vector<Stem>& others, const Stem& stem) {
+        return std::any_of(others.begin(), others.end(),
+                           [&](const Stem& other) { return of_one_tree(other, stem, kClosest, height); });
+    };
+    for (Stem& stem : stems) {
+        if (!all.empty()) stem.radius = std::min(stem.radius, all.front().radius);
+        if (!known(from_ground, stem)) all.push_back(std::move(stem));
+    }
+    for (Barked& barked : found)
+        if (!barked.stands && !known(all, barked.stem)) all.push_back(std::move(barked.stem));
+    stems = std::move(all);
 }
 
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,

@@ -19,7 +19,6 @@ namespace {
 // As shares of the tree's height.
 constexpr double kSlice = 0.0125;       // thickness of a slice,
 constexpr double kLeastSlice = 0.05;    // in metres at least
-constexpr double kMostSlice = 0.25;     // and at most
 constexpr double kWidest = 1.0 / 30.0;  // radius: trees are 25 to 100 times as high as thick
 constexpr double kThinnest = 1.0 / 500.0;
 constexpr double kLatestStart = 0.4;
@@ -27,15 +26,14 @@ constexpr double kShortest = 0.12;
 // The search for circles.
 constexpr size_t kFewest = 12;       // points of a slice
 constexpr size_t kMostPoints = 200;  // that are looked at, per stem
-constexpr size_t kSeeds = 50;        // points of a slice that circles are tried through
 constexpr int kTrials = 16;          // circles per such point
 constexpr size_t kKept = 2;          // circles of a slice
 constexpr int kSectors = 24;
 constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
 constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
 constexpr double kLeastContrast = 1.0;  // points on the bark, over those as far again outside
-constexpr double kRough = 0.006;        // metres: how far points lie off the circle,
-constexpr double kRoughShare = 0.06;    // and of its radius
+constexpr double kRoughShare =
+    0.06;  // of its radius: how far points lie off the circle, besides the roughness
 // The chains.
 constexpr size_t kMissing = 4;        // slices in a row that may show no circle
 constexpr double kMissed = 0.12;      // what each of them costs; a slice's circle brings its coverage
@@ -63,8 +61,8 @@ struct Slice {
     std::vector<Circle> circles;
 };
 
-double tolerance(double radius) {
-    return kRough + kRoughShare * radius;
+double tolerance(double radius, double rough) {
+    return rough + kRoughShare * radius;
 }
 
 bool circle_through(const DVec2& a, const DVec2& b, const DVec2& c, Circle& circle) {
@@ -79,8 +77,8 @@ bool circle_through(const DVec2& a, const DVec2& b, const DVec2& c, Circle& circ
 }
 
 // Whether bark is on the circle and nothing within; sets its coverage.
-bool is_bark(std::span<const DVec2> points, Circle& circle) {
-    const double off = tolerance(circle.radius);
+bool is_bark(std::span<const DVec2> points, double rough, Circle& circle) {
+    const double off = tolerance(circle.radius, rough);
     const double inner = circle.radius - 2.0 * off, outer = circle.radius + 3.0 * off;
     std::array<uint32_t, kSectors> sectors{};
     size_t on = 0, inside = 0, outside = 0;
@@ -111,9 +109,9 @@ bool is_bark(std::span<const DVec2> points, Circle& circle) {
 }
 
 // Least squares through the points on it (Kasa 1976).
-void refine(std::span<const DVec2> points, Circle& circle) {
+void refine(std::span<const DVec2> points, double rough, Circle& circle) {
     for (int round = 0; round < 3; round++) {
-        const double off = 1.5 * tolerance(circle.radius);
+        const double off = 1.5 * tolerance(circle.radius, rough);
         double n = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, xs = 0.0, ys = 0.0, s = 0.0, x = 0.0, y = 0.0;
         for (const DVec2& p : points) {
             const DVec2 d = p - circle.centre;
@@ -138,7 +136,7 @@ void refine(std::span<const DVec2> points, Circle& circle) {
 
 // points: of a slice, by rising x.
 std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinnest, double widest,
-                                 size_t stems, Random random) {
+                                 const RoundStemSearch& search, Random random) {
     std::vector<Circle> found;
     if (points.size() < kFewest) return found;
     const double range = portable::log(widest / thinnest);
@@ -149,7 +147,7 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
     };
     const auto all_of = [&](const Circle& c) { return beside(c.centre.x, 2.0 * c.radius + 0.1); };
     std::vector<DVec2> close;
-    for (size_t seed = 0; seed < kSeeds * stems; seed++) {
+    for (size_t seed = 0; seed < search.seeds * search.most; seed++) {
         const DVec2 a = points[random.below(static_cast<uint32_t>(points.size()))];
         const double size = thinnest * portable::exp(random.uniform() * range);
         close.clear();
@@ -167,14 +165,16 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
                 continue;
             // Most circles through leaves are known by one point more.
             const DVec2& d = close[random.below(count)];
-            if (std::abs(glm::distance(d, circle.centre) - circle.radius) > tolerance(circle.radius))
+            if (std::abs(glm::distance(d, circle.centre) - circle.radius) >
+                tolerance(circle.radius, search.rough))
                 continue;
-            if (is_bark(all_of(circle), circle)) found.push_back(circle);
+            if (is_bark(all_of(circle), search.rough, circle)) found.push_back(circle);
         }
     }
     for (Circle& circle : found) {
-        refine(all_of(circle), circle);
-        if (circle.radius < thinnest || circle.radius > widest || !is_bark(all_of(circle), circle))
+        refine(all_of(circle), search.rough, circle);
+        if (circle.radius < thinnest || circle.radius > widest ||
+            !is_bark(all_of(circle), search.rough, circle))
             circle.coverage = 0.0;
     }
     std::erase_if(found, [](const Circle& c) { return c.coverage == 0.0; });
@@ -187,7 +187,7 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
                    0.3 * other.radius;
         });
         if (!same) kept.push_back(circle);
-        if (kept.size() == kKept * stems) break;
+        if (kept.size() == kKept * search.most) break;
     }
     return kept;
 }
@@ -286,7 +286,7 @@ void for_points_beside(const std::vector<Vec3>& points, const std::vector<RoundS
 }  // namespace
 
 std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress* progress,
-                                        size_t most) {
+                                        const RoundStemSearch& search) {
     std::vector<RoundStem> stems;
     std::vector<float> heights;
     heights.reserve(points.size());
@@ -296,7 +296,7 @@ std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const P
     const double low = quantile(heights, 0.001), high = quantile(heights, 0.999);
     const double height = high - low;
     if (!(height > 0.0)) return stems;
-    const double thickness = std::clamp(kSlice * height, kLeastSlice, kMostSlice);
+    const double thickness = std::clamp(kSlice * height, kLeastSlice, search.slice);
     const auto count = static_cast<size_t>(height / thickness) + 1;
     if (count > 4096) return stems;
     std::vector<std::vector<DVec2>> members(count);
@@ -310,21 +310,22 @@ std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const P
         for (size_t i = begin; i < end; i++) {
             if (progress) progress->check();
             slices[i].y = low + (static_cast<double>(i) + 0.5) * thickness;
+            if (slices[i].y > low + search.highest * height) continue;
             std::vector<DVec2>& own = members[i];
             // Evenly from all sides: the points are in the order of cells.
-            const size_t every = own.size() / (kMostPoints * most) + 1;
+            const size_t every = own.size() / (kMostPoints * search.most) + 1;
             for (size_t k = 0; k * every < own.size(); k++)
                 own[k] = own[k * every];
             own.resize((own.size() + every - 1) / every);
             std::sort(own.begin(), own.end(),
                       [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, most, Random(1, i));
+            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, search, Random(1, i));
         }
     });
     const auto latest = static_cast<size_t>(kLatestStart * static_cast<double>(count));
     const size_t least =
         std::max(kFewestRings, static_cast<size_t>(kLeastFilled * kShortest * height / thickness));
-    while (stems.size() < most) {
+    while (stems.size() < search.most) {
         const Chain chain = best_chain(slices, latest);
         if (chain.rings.size() < least) break;
         RoundStem stem;

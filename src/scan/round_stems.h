@@ -19,14 +19,21 @@ struct StemRing {
 // From below; slices of the tree in which no bark shows have no ring.
 using RoundStem = std::vector<StemRing>;
 
+struct RoundStemSearch {
+    size_t most = 4;       // stems
+    double slice = 0.25;   // metres: a slice is no thicker
+    double rough = 0.006;  // metres: how far the points lie off the bark, besides a share of its radius
+    size_t seeds = 50;     // per stem and slice: points that circles are tried through
+    double highest = 1.0;  // share of the height that is looked at
+};
+
 // Circles through the arcs of bark that a scanner sees between the leaves, one slice after another
 // (as Olofsson et al. 2014, "Tree stem and height measurements using terrestrial laser scanning and the
 // RANSAC algorithm"), and the chains of them that go up with little change (Viterbi). A chain is a stem where
 // it begins in the lower part of the tree and is long enough: among leaves alone circles follow no line.
-// At most `most` of them, the thickest first; none where no bark shows. points: metres, Y up, distinct, in
-// canonical order.
+// The thickest first; none where no bark shows. points: metres, Y up, distinct, in canonical order.
 std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const Progress* progress,
-                                        size_t most = 4);
+                                        const RoundStemSearch& search = {});
 
 // By point: 1 for what lies on or in one of the stems.
 std::vector<uint8_t> points_on_stems(const std::vector<Vec3>& points, const std::vector<RoundStem>& stems);

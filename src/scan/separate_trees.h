@@ -41,7 +41,8 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
 // The stems alone; exposed for separate_trees().
 std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
                              double spacing, bool on_ground, const Progress* progress);
-// Those whose round bark shows among the leaves of a thicket (round_stems.h), where none is known yet.
+// Adds those whose round bark is seen (round_stems.h), and puts them in the place of `stems` that are dense
+// there for another reason, such as bushes or two stems side by side.
 void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
                      std::vector<Stem>& stems, const Progress* progress);
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,

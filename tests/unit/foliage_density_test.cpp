@@ -171,6 +171,27 @@ TEST(Leaves, AreAsManyAsTheScanIsDense) {
     EXPECT_GT(few, 50.0);
 }
 
+// A whole wood that was scanned as one tree has room for tens of millions; too many to place them all.
+TEST(Leaves, CoverAHugeCrownAlikeHoweverMany) {
+    const Tree tree = test::random_tree(4, 400);
+    const DVec3 place = tree.node(tree.nodes_of_kind(NodeKind::kLeaf).front()).position;
+    const Foliage foliage = gather_foliage(ball(place, 4.0, 60000, 5), {});
+    LeafRules rules = leaf_preset("generic");
+    std::vector<double> areas;
+    for (const double internode : {0.03, 0.003, 0.002}) {
+        rules.internode = internode;
+        const std::vector<LeafPlacement> leaves = place_leaves(tree, rules, 1, foliage);
+        EXPECT_LE(leaves.size(), static_cast<size_t>(rules.maximum_leaves)) << internode;
+        EXPECT_GT(leaves.size() + 3, static_cast<size_t>(rules.maximum_leaves)) << internode;
+        double area = 0.0;
+        for (const LeafPlacement& leaf : leaves)
+            area += static_cast<double>(leaf.size) * leaf.size;
+        areas.push_back(area * internode);
+    }
+    EXPECT_NEAR(areas[1] / areas[0], 1.0, 0.05);
+    EXPECT_NEAR(areas[2] / areas[0], 1.0, 0.05);
+}
+
 TEST(Leaves, TakeTheirHueFromTheScan) {
     const Tree tree = test::random_tree(4, 400);
     const DVec3 place = tree.node(tree.nodes_of_kind(NodeKind::kLeaf).front()).position;
