@@ -173,6 +173,9 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
     SkeletonOptions skeleton_options = options.skeleton;
     skeleton_options.one_stem = skeleton_options.one_stem || told.fronds;
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
+    // Bushes around a stem of a plot may stand lower.
+    const PickReport& pick = result.clean.pick;
+    if (!pick.trees.empty()) skeleton_options.foot = result.cloud.frame.to_tree(pick.trees[pick.taken].foot);
     SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, skeleton_options, &growing);
     growing.check();
     append(result.warnings, skeleton.warnings);

@@ -86,7 +86,8 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
         result.warnings.push_back(fine_voxel_warning(fitting_voxel));
     const FloodGrid grid(points, result.voxel, gridding);
     gridding.check();
-    const RootGuess root = find_root(grid.means, grid.graph, local_scale(grid.graph, result.voxel), gridding);
+    const RootGuess root =
+        find_root(grid.means, grid.graph, local_scale(grid.graph, result.voxel), options.foot, gridding);
     clock.stop("Voxels", grid.size());
 
     SubProgress flooding(listener, 0.4, 0.8);

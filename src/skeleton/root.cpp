@@ -12,13 +12,15 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLyingRatio = 0.55;    // height over width below which there may be no upright trunk
-constexpr double kUpright = 0.7;        // the least sine of such a trunk's slope at its foot,
-constexpr double kFootShare = 0.1;      // and of the height: how far up the foot may be
-constexpr double kFaceShare = 0.02;     // of the diagonal: what belongs to a branch's cut face
-constexpr double kGroupShare = 0.002;   // of the points: a smaller group is no trunk
-constexpr size_t kGroupLeast = 6;       // points
-constexpr double kSlabShare = 0.006;    // of the height: the slice that counts as the base
+constexpr double kLyingRatio = 0.55;   // height over width below which there may be no upright trunk
+constexpr double kUpright = 0.7;       // the least sine of such a trunk's slope at its foot,
+constexpr double kFootShare = 0.1;     // and of the height: how far up the foot may be
+constexpr double kFaceShare = 0.02;    // of the diagonal: what belongs to a branch's cut face
+constexpr double kGroupShare = 0.002;  // of the points: a smaller group is no trunk
+constexpr size_t kGroupLeast = 6;      // points
+constexpr double kSlabShare = 0.006;   // of the height: the slice that counts as the base
+constexpr double kFootReach = 0.03;  // of the height: what lies so far from a known foot belongs to its stem,
+constexpr double kFootAbove = 0.1;   // and so far above or below
 constexpr double kStemGapShare = 0.12;  // of the height: stems further from the base are other trees
 
 // The group of linked points of each vertex: the smallest vertex in it.
@@ -55,10 +57,36 @@ RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t
     return root;
 }
 
+// The lowest slab of the stem that stands there; without seeds where none does.
+RootGuess root_at_foot(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood, const DVec3& foot,
+                       double height) {
+    const auto beside = [&](size_t v) {
+        return wood[v] && std::abs(points[v].y - foot.y) < kFootAbove * height &&
+               portable::hypot(points[v].x - foot.x, points[v].z - foot.z) < kFootReach * height;
+    };
+    RootGuess root;
+    std::vector<float> heights;
+    for (size_t v = 0; v < points.size(); v++)
+        if (beside(v)) heights.push_back(points[v].y);
+    if (heights.size() < kGroupLeast) return root;
+    std::nth_element(heights.begin(), heights.begin() + kGroupLeast - 1, heights.end());
+    const double base = *std::min_element(heights.begin(), heights.begin() + kGroupLeast);
+    const double top = std::max<double>(base + kSlabShare * height, heights[kGroupLeast - 1]);
+    DVec3 sum(0.0);
+    for (size_t v = 0; v < points.size(); v++) {
+        if (!beside(v) || points[v].y > top) continue;
+        root.seeds.push_back({static_cast<uint32_t>(v), points[v].y - base});
+        sum += DVec3(points[v]);
+    }
+    root.position = sum / static_cast<double>(root.seeds.size());
+    root.position.y = base;
+    return root;
+}
+
 }  // namespace
 
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                    Progress& progress) {
+                    const std::optional<DVec3>& foot, Progress& progress) {
     const std::vector<uint32_t> group = linked_groups(graph, scale);
     std::vector<size_t> members(points.size(), 0);
     std::vector<float> heights(points.size());
@@ -78,6 +106,10 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         if (wood[v]) bounds.add(DVec3(points[v]));
     }
     const DVec3 size = bounds.size();
+    if (foot) {
+        RootGuess root = root_at_foot(points, wood, *foot, size.y);
+        if (!root.seeds.empty()) return root;
+    }
     if (size.y < kLyingRatio * std::max(size.x, size.z)) {
         std::vector<Vec3> of_wood;
         for (size_t v = 0; v < points.size(); v++)

@@ -2,6 +2,7 @@
 // voxel-flood one (papers/002, chapter 5).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct SkeletonOptions {
     double minimum_branch = 0.0;     // shorter end branches are noise; 0 automatic
     double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
     bool one_stem = false;           // a palm: what branches off its stem is left out
+    std::optional<DVec3> foot;       // where the stem stands, where that is known; metres, as the cloud
     double noise = 0.0;              // of the points, at least, where it is known (standard deviation)
     bool fit_radii = true;           // measure radii where the points allow it
     uint64_t seed = 1;               // of the robust fits

@@ -121,7 +121,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.55, "Shortest paths");
     progress.check();
-    const RootGuess root = find_root(points, graph, first_scale, progress);
+    const RootGuess root = find_root(points, graph, first_scale, options.foot, progress);
     progress.check();
     double extent = 0.0;
     for (const Vec3& p : points)
