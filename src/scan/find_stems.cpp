@@ -37,10 +37,10 @@ constexpr double kThinnestInAir = 0.4;  // where no ground tells what stands on 
 constexpr double kCoreContrast = 4.0;   // how much denser it is than the rest
 constexpr size_t kFewestPoints = 4;     // of a slice
 
-// The searches for round bark in a plot. Mobile scanners are out by a centimetre or two and see a stem by few
-// points; sharp scanners see it between needles.
-constexpr std::array<RoundStemSearch, 2> kRoundSearches{
-    {{.most = 16, .highest = 0.5}, {.most = 16, .slice = 0.5, .rough = 0.015, .seeds = 150, .highest = 0.5}}};
+// The searches for round bark in a plot: between needles, and by a mobile scanner.
+constexpr std::array<RoundStemSearch, 2> kRoundSearches{{{}, kRoughBark}};
+constexpr size_t kFewestRound = 16;
+constexpr double kRoundUpTo = 0.5;  // of the height
 constexpr size_t kMostRound = 200;
 constexpr double kStemRoom = 15.0;          // square metres of a plot for each of them
 constexpr double kApartRadii = 2.0;         // of both stems: between two that stand from the ground up
@@ -271,7 +271,8 @@ std::vector<Barked> find_barked(const std::vector<Vec3>& standing, const std::ve
         std::min(ranges[0].size() * ranges[2].size() / kStemRoom, static_cast<double>(kMostRound));
     std::vector<Barked> found;
     for (RoundStemSearch search : kRoundSearches) {
-        search.most = std::max(search.most, static_cast<size_t>(room));
+        search.most = std::max(kFewestRound, static_cast<size_t>(room));
+        search.highest = kRoundUpTo;
         for (const RoundStem& round : find_round_stems(standing, progress, search)) {
             Barked barked;
             Stem& stem = barked.stem;

@@ -27,6 +27,9 @@ struct RoundStemSearch {
     double highest = 1.0;  // share of the height that is looked at
 };
 
+// Mobile scanners are out by a centimetre or two, and see a stem by few points.
+inline constexpr RoundStemSearch kRoughBark{.slice = 0.5, .rough = 0.015, .seeds = 150};
+
 // Circles through the arcs of bark that a scanner sees between the leaves, one slice after another
 // (as Olofsson et al. 2014, "Tree stem and height measurements using terrestrial laser scanning and the
 // RANSAC algorithm"), and the chains of them that go up with little change (Viterbi). A chain is a stem where

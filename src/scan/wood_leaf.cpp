@@ -82,6 +82,8 @@ constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 
 // Half of the points of bark that noise blurs lie further than 0.67 of its standard deviation off.
 constexpr double kSharp = 0.35;
+// Sharp bark, and that of a mobile scanner.
+constexpr std::array<RoundStemSearch, 2> kBarkSearches{{{}, kRoughBark}};
 
 constexpr double kMuchHidden = 0.3;
 constexpr size_t kVotes = 20000;     // cells, at most, that the branches are judged by
@@ -314,12 +316,14 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     }
     if (resolved) result.noise = blur_of(samples.points, progress);
     std::optional<std::vector<RoundStem>> stems;
-    if (result.noise > 0.0) {
-        // Dense leaves look like blur, but not where bark shows between them.
-        stems = find_round_stems(samples.points, &progress);
+    // Dense leaves look like blur, but not where bark shows between them.
+    for (const RoundStemSearch& search : kBarkSearches) {
+        if (!(result.noise > 0.0)) break;
+        std::vector<RoundStem> found = find_round_stems(samples.points, &progress, search);
         const double most = 2.0 * result.noise;
-        if (!stems->empty() && spread_on_stems(samples.points, *stems, most) < kSharp * result.noise)
+        if (!found.empty() && spread_on_stems(samples.points, found, most) < kSharp * result.noise)
             result.noise = 0.0;
+        if (!stems || stems->empty()) stems = std::move(found);
     }
     if (result.noise > 0.0 && may_be_leaves_not_blur(looks)) {
         look_closer();

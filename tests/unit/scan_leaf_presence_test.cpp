@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "error.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
 #include "scan/read_cloud.h"
@@ -95,6 +96,26 @@ TEST(LeafPresence, LeavesAroundTheFootAreNoBlur) {
         const WoodLeaf told = tell_wood_from_leaves(turned(whole, degrees));
         EXPECT_GT(told.leaf_share, 0.3) << degrees << " degrees";
         EXPECT_EQ(told.noise, 0.0) << degrees << " degrees";
+    }
+}
+
+TEST(LeafPresence, TheBarkThatAMobileScannerSeesIsNoBlur) {
+    const std::string folder = scan_test::scans_folder();
+    if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    PointCloud plot;
+    try {
+        plot = upright_scan("spanner_MLS_plot.laz");
+    } catch (const Error& error) {
+        GTEST_SKIP() << error.what();  // LAZ needs a library that is not everywhere
+    }
+    for (const size_t number : {1, 2, 6, 13}) {
+        PointCloud tree = plot;
+        CleanOptions options;
+        options.pick.number = number;
+        clean_cloud(tree, options);
+        const WoodLeaf told = tell_wood_from_leaves(tree);
+        EXPECT_GT(told.leaf_share, 0.7) << number;
+        EXPECT_EQ(told.noise, 0.0) << number;
     }
 }
 
