@@ -26,14 +26,13 @@ constexpr double kShortest = 0.12;
 // The search for circles.
 constexpr size_t kFewest = 12;       // points of a slice
 constexpr size_t kMostPoints = 200;  // that are looked at, per stem
-constexpr int kTrials = 16;          // circles per such point
-constexpr size_t kKept = 2;          // circles of a slice
+constexpr int kTrials = 16;          // circles per point that they are tried through
+constexpr size_t kKept = 2;          // circles of a slice, per stem
 constexpr int kSectors = 24;
 constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
 constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
 constexpr double kLeastContrast = 1.0;  // points on the bark, over those as far again outside
-constexpr double kRoughShare =
-    0.06;  // of its radius: how far points lie off the circle, besides the roughness
+constexpr double kRoughShare = 0.06;  // of its radius: that points lie off the circle, besides the roughness
 // The chains.
 constexpr size_t kMissing = 4;        // slices in a row that may show no circle
 constexpr double kMissed = 0.12;      // what each of them costs; a slice's circle brings its coverage

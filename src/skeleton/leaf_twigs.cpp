@@ -126,6 +126,14 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
     const double threshold = std::min(kMostChance, kSlope * (kNoneFrom - wood / length));
     if (!(threshold > 0.0)) return {};
 
+    // A tree is no lower for want of wood that is seen: the way to its top stays.
+    NodeId top = tree.root();
+    for (const NodeId id : order)
+        if (tree.node(id).position.y > tree.node(top).position.y) top = id;
+    std::vector<uint8_t> stays(chances.size(), 0);
+    for (NodeId id = top; id != kNoNode; id = tree.node(id).parent)
+        stays[id] = 1;
+
     // What keeping a subtree is worth, at best.
     std::vector<double> worth(chances.size(), 0.0);
     for (size_t i = order.size(); i-- > 1;) {
@@ -139,7 +147,7 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
     for (size_t i = 1; i < order.size(); i++) {
         const NodeId id = order[i];
         const bool below = dropped[tree.node(id).parent] != 0;
-        if (!below && (tree.node(id).is_trunk() || worth[id] > 0.0)) continue;
+        if (!below && (tree.node(id).is_trunk() || stays[id] != 0 || worth[id] > 0.0)) continue;
         dropped[id] = 1;
         result.length += length_of(id);
         if (!below) tops.push_back(id);

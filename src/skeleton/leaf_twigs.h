@@ -19,7 +19,8 @@ struct DroppedTwigs {
 // the cloud, and how much wood it carries, as the points that many shortest paths pass are wood in LeWoS
 // (Wang, Momo Takoudjou and Casella 2020) and TLSeparation (Vicari et al. 2019). Whole subtrees whose length
 // is less likely wood, in sum, than a threshold go; of those that stay, nothing else changes. The threshold
-// falls to none where the skeleton as a whole looks like wood, and the trunk always stays.
+// falls to none where the skeleton as a whole looks like wood; the trunk and the way to the tree's top always
+// stay.
 // points: the scan, in the tree's frame (metres). leafiness: by point, the logit of being leaf at even odds,
 // or NaN where it was not looked at.
 // Neither the order of the points nor the number of threads changes anything. O(points log nodes). Throws

@@ -75,14 +75,15 @@ TEST(LeafTwigs, ABareTreeKeepsItsTwigs) {
     }
 }
 
-// A stem with two branches, each with a twig.
+// A stem with two branches, each with a twig. The one to the left, in leaf, ends at left_top; the other
+// at 2.6.
 struct Sample {
     Tree tree;
     std::vector<Vec3> points;
     std::vector<float> leafiness;
 };
 
-Sample two_branches() {
+Sample two_branches(double left_top = 2.5) {
     Sample sample;
     Tree& tree = sample.tree;
     NodeId at = tree.add_root(DVec3(0.0), 0.1, kTrunkFlag);
@@ -102,25 +103,26 @@ Sample two_branches() {
     for (const double side : {-1.0, 1.0}) {
         const float leafiness = side < 0.0 ? 2.0F : -3.0F;
         const NodeId middle = grow(at, {side, 2.5, 0.0}, 0.01, leafiness, 0);
-        grow(middle, {2.0 * side, 2.5, 0.0}, 0.005, leafiness, 0);
-        grow(middle, {side, 3.5, 0.0}, 0.005, 2.0F, 0);
+        grow(middle, {2.0 * side, side < 0.0 ? left_top : 2.6, 0.0}, 0.005, leafiness, 0);
+        grow(middle, {side, 2.5, 1.0}, 0.005, 2.0F, 0);
     }
     // Leaves all around, so that little of the skeleton looks like wood.
-    grow(at, {0.0, 3.0, 2.0}, 0.01, 2.5F, 0);
-    grow(at, {0.0, 3.0, -2.0}, 0.01, 2.5F, 0);
+    grow(at, {0.0, 2.0, 2.2}, 0.01, 2.5F, 0);
+    grow(at, {0.0, 2.0, -2.2}, 0.01, 2.5F, 0);
     return sample;
 }
 
 TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
     Sample sample = two_branches();
-    const double length = 2.0 + 2.0 * (2.0 + std::sqrt(1.25)) + 2.0 * std::sqrt(5.0);
+    const double kept = 2.0 + std::sqrt(1.25) + std::sqrt(1.01), gone = 3.0 + std::sqrt(1.25) + 4.4;
     const DroppedTwigs dropped =
         drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     ASSERT_EQ(sample.tree.size(), 4U);
     for (const NodeId id : sample.tree.depth_first())
         EXPECT_GE(sample.tree.node(id).position.x, 0.0);
-    EXPECT_NEAR(dropped.length, length - 3.0 - std::sqrt(1.25), 1e-9);
+    EXPECT_NEAR(dropped.length, gone, 1e-9);
+    EXPECT_NEAR(measure(sample.tree).total_length, kept, 1e-9);
     ASSERT_EQ(dropped.leaf.size(), sample.points.size());
     size_t leaves = 0;
     for (size_t i = 0; i < sample.points.size(); i++) {
@@ -133,6 +135,15 @@ TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
         }
     }
     EXPECT_GT(leaves, 1000U);
+}
+
+// A tall conifer's leader was dropped with the needles around it, and the tree was five metres too low.
+TEST(LeafTwigs, TheWayToTheTopStays) {
+    Sample sample = two_branches(4.0);
+    drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, SubProgress(nullptr, 0.0, 1.0));
+    ASSERT_FALSE(sample.tree.check());
+    EXPECT_EQ(sample.tree.size(), 6U);
+    EXPECT_NEAR(sample.tree.bounds().max.y, 4.0, 0.01);
 }
 
 TEST(LeafTwigs, TheOrderOfThePointsAndTheThreadsChangeNothing) {
