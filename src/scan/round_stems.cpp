@@ -28,6 +28,7 @@ constexpr size_t kFewest = 12;       // points of a slice
 constexpr size_t kMostPoints = 200;  // that are looked at, per stem
 constexpr int kTrials = 16;          // circles per point that they are tried through
 constexpr size_t kKept = 2;          // circles of a slice, per stem
+constexpr size_t kSeedsPerCheck = 256;
 constexpr int kSectors = 24;
 constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
 constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
@@ -133,9 +134,9 @@ void refine(std::span<const DVec2> points, double rough, Circle& circle) {
     }
 }
 
-// points: of a slice, by rising x.
+// By rising x. points: of a slice, likewise.
 std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinnest, double widest,
-                                 const RoundStemSearch& search, Random random) {
+                                 const RoundStemSearch& search, Random random, const Progress* progress) {
     std::vector<Circle> found;
     if (points.size() < kFewest) return found;
     const double range = portable::log(widest / thinnest);
@@ -147,6 +148,7 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
     const auto all_of = [&](const Circle& c) { return beside(c.centre.x, 2.0 * c.radius + 0.1); };
     std::vector<DVec2> close;
     for (size_t seed = 0; seed < search.seeds * search.most; seed++) {
+        if (progress && seed % kSeedsPerCheck == 0) progress->check();
         const DVec2 a = points[random.below(static_cast<uint32_t>(points.size()))];
         const double size = thinnest * portable::exp(random.uniform() * range);
         close.clear();
@@ -188,12 +190,20 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
         if (!same) kept.push_back(circle);
         if (kept.size() == kKept * search.most) break;
     }
+    std::sort(kept.begin(), kept.end(), [](const Circle& a, const Circle& b) {
+        return a.centre.x < b.centre.x || (a.centre.x == b.centre.x && a.centre.y < b.centre.y);
+    });
     return kept;
+}
+
+// How far from each other the centres of a stem's circles may lie.
+double most_drift(double radius, double rise) {
+    return kDrift * rise + kDriftShare * radius;
 }
 
 // What it costs to go from one circle to another further up; nothing where no stem does.
 std::optional<double> step_cost(const Circle& low, const Circle& high, double rise) {
-    const double drift = glm::distance(low.centre, high.centre) / (kDrift * rise + kDriftShare * low.radius);
+    const double drift = glm::distance(low.centre, high.centre) / most_drift(low.radius, rise);
     const double growth = high.radius / low.radius;
     if (drift > 1.0 || growth < kThinner || growth > kThicker) return std::nullopt;
     return 0.1 * drift;
@@ -220,14 +230,22 @@ Chain best_chain(const std::vector<Slice>& slices, size_t latest) {
             const Circle& circle = slices[i].circles[k];
             State& state = states[i][k];
             state.score = i <= latest ? 0.0 : -std::numeric_limits<double>::infinity();
-            for (size_t j = i > kMissing + 1 ? i - kMissing - 1 : 0; j < i; j++)
-                for (size_t l = 0; l < slices[j].circles.size(); l++) {
-                    const auto cost = step_cost(slices[j].circles[l], circle, slices[i].y - slices[j].y);
+            for (size_t j = i > kMissing + 1 ? i - kMissing - 1 : 0; j < i; j++) {
+                const std::vector<Circle>& lower = slices[j].circles;
+                const double rise = slices[i].y - slices[j].y;
+                // A stem is hardly thicker below than kThinner says.
+                const double reach = most_drift(circle.radius / kThinner, rise);
+                auto l = std::lower_bound(lower.begin(), lower.end(), circle.centre.x - reach,
+                                          [](const Circle& c, double x) { return c.centre.x < x; });
+                for (; l != lower.end() && l->centre.x <= circle.centre.x + reach; ++l) {
+                    const auto cost = step_cost(*l, circle, rise);
                     if (!cost) continue;
+                    const auto at = static_cast<size_t>(l - lower.begin());
                     const double score =
-                        states[j][l].score - *cost - kMissed * static_cast<double>(i - j - 1);
-                    if (score > state.score) state = {score, static_cast<ptrdiff_t>(j), l};
+                        states[j][at].score - *cost - kMissed * static_cast<double>(i - j - 1);
+                    if (score > state.score) state = {score, static_cast<ptrdiff_t>(j), at};
                 }
+            }
             state.score += circle.coverage;
             if (state.score > best.score) {
                 best.score = state.score;
@@ -318,13 +336,15 @@ std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const P
             own.resize((own.size() + every - 1) / every);
             std::sort(own.begin(), own.end(),
                       [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-            slices[i].circles = find_circles(own, kThinnest * height, kWidest * height, search, Random(1, i));
+            slices[i].circles =
+                find_circles(own, kThinnest * height, kWidest * height, search, Random(1, i), progress);
         }
     });
     const auto latest = static_cast<size_t>(kLatestStart * static_cast<double>(count));
     const size_t least =
         std::max(kFewestRings, static_cast<size_t>(kLeastFilled * kShortest * height / thickness));
     while (stems.size() < search.most) {
+        if (progress) progress->check();
         const Chain chain = best_chain(slices, latest);
         if (chain.rings.size() < least) break;
         RoundStem stem;
