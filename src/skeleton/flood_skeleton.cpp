@@ -122,7 +122,7 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
         for (int32_t& limb : places.limb)
             if (limb >= static_cast<int32_t>(made.limbs.size())) limb = -1;
         for (int pass = 0; pass < kPasses; pass++) {
-            refine_axes(made.axes, made.limbs, places, points, fitting);
+            refine_axes(made.axes, made.limbs, places, points, fitting, options.noise);
             infer_radii(made.axes, made.limbs);
         }
         if (!root.lying) limit_foot(made.axes.front());

@@ -9,6 +9,7 @@
 
 #include "geometry/bounds.h"
 #include "geometry/parallel.h"
+#include "skeleton/one_sided.h"
 #include "skeleton/radii.h"
 
 namespace treerec {
@@ -155,7 +156,8 @@ struct Scratch {
     std::vector<std::pair<int, Sample>> found;
     std::vector<size_t> begin, fill;
     std::vector<Sample> samples;
-    std::vector<float> values;
+    std::vector<float> values, across;
+    std::vector<Vec2> offsets;
     std::vector<uint8_t> round;
     std::vector<DVec3> shift;
 };
@@ -166,7 +168,7 @@ class LimbRefiner {
     LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
                 std::span<const int32_t> sides, const std::vector<Bounds>& bases, const PointPlaces& places,
                 std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
-                Scratch& scratch)
+                double least_noise, Scratch& scratch)
         : axes_(axes),
           limbs_(limbs),
           limb_(limbs[index]),
@@ -176,6 +178,7 @@ class LimbRefiner {
           own_points_(own_points),
           points_(points),
           noise_(noise),
+          section_noise_(noise > 0.0 ? std::max(noise, least_noise) : 0.0),
           line_(axes[index]),
           count_(static_cast<int>(line_.size())),
           scratch_(scratch) {}
@@ -343,6 +346,13 @@ class LimbRefiner {
         return static_cast<double>(std::count(seen.begin(), seen.end(), true)) / 8.0;
     }
 
+    double seen_radius(size_t begin, size_t end, double median) const {
+        scratch_.offsets.clear();
+        for (size_t s = begin; s < end; s++)
+            scratch_.offsets.push_back(samples_[s].distance * Vec2(samples_[s].x, samples_[s].y));
+        return radius_across(scratch_.offsets, median, section_noise_, scratch_.across);
+    }
+
     // Where the points surround the axis at one distance, that is the radius, even if they are too few or too
     // noisy for a circle of their own. A station that none of its neighbours confirms is an accident.
     void believe_round(std::vector<Station>& result) const {
@@ -369,7 +379,8 @@ class LimbRefiner {
         values_.clear();
         for (size_t s = begin; s < end; s++)
             values_.push_back(samples_[s].distance);
-        const double middle = median_of(values_);
+        const double median = median_of(values_);
+        const double middle = station.measured ? median : seen_radius(begin, end, median);
         const double radius = station.measured ? station.radius : middle;
         for (float& value : values_)
             value = std::abs(value - static_cast<float>(radius));
@@ -405,6 +416,7 @@ class LimbRefiner {
     std::span<const int32_t> own_points_;
     const std::vector<Vec3>& points_;
     double noise_;
+    double section_noise_;  // 0 where nothing is known
     const std::vector<Station>& line_;
     int count_;
     Scratch& scratch_;
@@ -430,7 +442,8 @@ std::vector<Bounds> bark_of_bases(const std::vector<std::vector<Station>>& axes,
 }  // namespace
 
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress) {
+                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress,
+                 double least_noise) {
     Members own_points(places.limb, limbs.size());
     std::vector<int32_t> parent(limbs.size());
     for (size_t l = 0; l < limbs.size(); l++)
@@ -450,7 +463,7 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
                         return std::pair(limbs[a].attach, a) < std::pair(limbs[b].attach, b);
                     });
                 next[l] = LimbRefiner(l, axes, limbs, own_sides, bases, places, own_points.of(l), points,
-                                      noise, scratch)
+                                      noise, least_noise, scratch)
                               .run();
             }
         });

@@ -18,11 +18,13 @@ struct PointPlaces {
 // than to the limbs it grows from and carries: Gauss-Newton steps on the distances to the surface, with
 // Tukey's biweights (Holland and Welsch 1977) and a ridge that keeps what the points do not tell, over
 // windows about as long as the limb is thick. Measured radii become those of the fit, unmeasured ones the
-// points' median distance to the axis; `scatter` is the median deviation from either. Points that surround an
-// unmeasured station at one distance are bark, and it counts as measured too. axes: from fit_axes(), with
-// infer_radii() behind it. The first station of the first limb stays, as do both ends of bridges. Throws
-// Cancelled on request.
+// points' median distance to the axis, or what one side of the bark tells (radius_across()); `scatter` is the
+// median deviation from either. Points that surround an unmeasured station at one distance are bark, and it
+// counts as measured too. axes: from fit_axes(), with infer_radii() behind it. The first station of the first
+// limb stays, as do both ends of bridges. least_noise: metres, the points' standard deviation where more is
+// known than the axes show. Throws Cancelled on request.
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress);
+                 const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress,
+                 double least_noise = 0.0);
 
 }  // namespace treerec

@@ -85,6 +85,17 @@ std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& a
     return {text.data()};
 }
 
+// The places of the points that measures are taken from.
+PointPlaces places_of_sample(const ThinnedCloud& thinned, PointPlaces& places) {
+    if (thinned.sample.empty()) return std::move(places);
+    PointPlaces own;
+    for (const uint32_t point : thinned.cube) {
+        own.limb.push_back(places.limb[point]);
+        own.station.push_back(places.station[point]);
+    }
+    return own;
+}
+
 }  // namespace
 
 SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options, Progress* listener) {
@@ -97,7 +108,10 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     const bool floods = options.method == SkeletonMethod::kFlood;
     if (floods && options.voxel > 0.0 && options.spacing <= 0.0)
         result.spacing = std::min(result.spacing, options.voxel / kVoxelSpacings);
-    const std::vector<Vec3> points = thin_points(cloud.positions, result.spacing, progress);
+    const ThinnedCloud thinned =
+        floods ? ThinnedCloud{thin_points(cloud.positions, result.spacing, progress), {}, {}}
+               : thin_with_sample(cloud.positions, result.spacing, progress);
+    const std::vector<Vec3>& points = thinned.points;
     if (points.size() < kLeastPoints)
         throw Error(
             "The cloud has only " + std::to_string(points.size()) + " points more than " +
@@ -179,13 +193,13 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     twig_options.minimum_branch = limb_options.minimum_branch;
     twig_options.least_escape = std::max(kTwigEscape, kNoiseEscape * std::max(noise_of(axes), options.noise));
     if (options.one_stem) twig_options.least_escape = std::numeric_limits<double>::max();
-    const PointPlaces places =
+    PointPlaces places =
         add_twigs(points, graph, first_scale, paths, slices, twig_options, limbs, axes, progress);
     clock.stop("Twigs", limbs.size());
 
     progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
-    refine_axes(axes, limbs, places, points, progress);
+    refine_axes(axes, limbs, places_of_sample(thinned, places), thinned.measured(), progress, options.noise);
     seat_root(limbs, axes);
     if (!root.lying) limit_foot(axes.front());
     infer_radii(axes, limbs, true);

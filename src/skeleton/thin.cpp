@@ -1,20 +1,27 @@
 #include "skeleton/thin.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "geometry/random.h"
 
 namespace treerec {
 
 namespace {
 
 constexpr size_t kCellsPerTask = 1024;
+constexpr uint64_t kBlock = 4;    // cells along the edge of a block, a power of 2: wider than noise
+constexpr size_t kSampled = 2;    // points that are sampled per cell, at most
+constexpr double kCrowded = 1.1;  // points per cell in the mean: of fewer, one per cell tells the same
 
 bool finite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -51,11 +58,9 @@ CellLayout safe_layout(const Bounds& bounds, double spacing) {
     return {bounds.min, std::max({spacing, least, std::numeric_limits<double>::min()})};
 }
 
-// The one of `members` nearest to the mean of the distinct ones. members: gets reordered.
-Vec3 middle_of(std::vector<Vec3>& members) {
-    if (members.size() == 1) return members.front();
-    std::sort(members.begin(), members.end(), before);
-    members.erase(std::unique(members.begin(), members.end()), members.end());
+// Which of the members is nearest to their mean.
+size_t middle_of(std::span<const Vec3> members) {
+    if (members.size() == 1) return 0;
     DVec3 mean(0.0);
     for (const Vec3& p : members)
         mean += DVec3(p);
@@ -70,35 +75,119 @@ Vec3 middle_of(std::vector<Vec3>& members) {
             best = i;
         }
     }
-    return members[best];
+    return best;
 }
 
-}  // namespace
+// The distinct points of a cell, sorted, to the end of `out`.
+void append_distinct(const std::vector<Vec3>& points, std::span<const uint32_t> cell,
+                     std::vector<Vec3>& out) {
+    const auto begin = static_cast<std::ptrdiff_t>(out.size());
+    for (const uint32_t i : cell)
+        out.push_back(points[i]);
+    if (cell.size() == 1) return;
+    std::sort(out.begin() + begin, out.end(), before);
+    out.erase(std::unique(out.begin() + begin, out.end()), out.end());
+}
 
-std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress) {
+// A cell of a grid and the block that it is in.
+struct BlockCell {
+    uint64_t block = 0;
+    uint32_t cell = 0;
+};
+
+std::vector<BlockCell> cells_by_block(const CellGrid& grid) {
+    constexpr uint64_t kWithin = kBlock - 1;
+    constexpr uint64_t kMask = ~(kWithin | kWithin << CellLayout::kBits | kWithin << (2 * CellLayout::kBits));
+    std::vector<BlockCell> cells(grid.size());
+    for (uint32_t c = 0; c < grid.size(); c++)
+        cells[c] = {grid.keys[c] & kMask, c};
+    std::sort(cells.begin(), cells.end(), [](const BlockCell& a, const BlockCell& b) {
+        return std::pair(a.block, a.cell) < std::pair(b.block, b.cell);
+    });
+    return cells;
+}
+
+// Of each block a number of points that goes by its cells: one of each of so many runs along these.
+void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, ThinnedCloud& out,
+                 Progress& progress) {
+    const std::vector<BlockCell> cells = cells_by_block(grid);
+    std::vector<ThinnedCloud> parts((cells.size() + kCellsPerTask - 1) / kCellsPerTask);
+    parallel_for(cells.size(), kCellsPerTask, [&](size_t begin, size_t end) {
+        progress.check();
+        ThinnedCloud& part = parts[begin / kCellsPerTask];
+        std::vector<Vec3> members;
+        std::vector<uint32_t> cell_of;
+        // A task does the blocks that begin in it.
+        while (begin > 0 && begin < end && cells[begin].block == cells[begin - 1].block)
+            begin++;
+        while (begin < end) {
+            const uint64_t block = cells[begin].block;
+            members.clear();
+            cell_of.clear();
+            size_t next = begin;
+            for (; next < cells.size() && cells[next].block == block; next++) {
+                append_distinct(points, grid.in_cell(cells[next].cell), members);
+                cell_of.resize(members.size(), cells[next].cell);
+            }
+            const size_t runs = std::min(members.size(), kSampled * (next - begin));
+            uint64_t chance = block;
+            for (size_t run = 0; run < runs; run++) {
+                const size_t from = run * members.size() / runs;
+                const size_t to = (run + 1) * members.size() / runs;
+                chance = hash_seed(chance, run);
+                const size_t chosen = from + chance % (to - from);
+                part.sample.push_back(members[chosen]);
+                part.cube.push_back(cell_of[chosen]);
+            }
+            begin = next;
+        }
+    });
+    for (const ThinnedCloud& part : parts) {
+        out.sample.insert(out.sample.end(), part.sample.begin(), part.sample.end());
+        out.cube.insert(out.cube.end(), part.cube.begin(), part.cube.end());
+    }
+}
+
+ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled, Progress& progress) {
     progress.check();
+    ThinnedCloud out;
     size_t count = 0;
     const Bounds bounds = finite_bounds(points, count);
-    if (count == 0) return {};
+    if (count == 0) return out;
     if (count < points.size()) {
         std::vector<Vec3> good;
         good.reserve(count);
         std::copy_if(points.begin(), points.end(), std::back_inserter(good), finite);
-        return thin_points(good, spacing, progress);
+        return thin(good, spacing, sampled, progress);
     }
     const CellGrid grid(points, safe_layout(bounds, spacing), &progress);
-    std::vector<Vec3> thinned(grid.size());
+    out.points.resize(grid.size());
+    std::atomic<size_t> distinct = 0;
     parallel_for(grid.size(), kCellsPerTask, [&](size_t begin, size_t end) {
         progress.check();
         std::vector<Vec3> members;
+        size_t found = 0;
         for (size_t c = begin; c < end; c++) {
             members.clear();
-            for (const uint32_t i : grid.in_cell(c))
-                members.push_back(points[i]);
-            thinned[c] = middle_of(members);
+            append_distinct(points, grid.in_cell(c), members);
+            out.points[c] = members[middle_of(members)];
+            found += members.size();
         }
+        distinct += found;
     });
-    return thinned;
+    if (sampled && static_cast<double>(distinct) >= kCrowded * static_cast<double>(grid.size()))
+        take_sample(points, grid, out, progress);
+    return out;
+}
+
+}  // namespace
+
+ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress) {
+    return thin(points, spacing, true, progress);
+}
+
+std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress) {
+    return thin(points, spacing, false, progress).points;
 }
 
 double automatic_spacing(const std::vector<Vec3>& points, const Progress* progress) {

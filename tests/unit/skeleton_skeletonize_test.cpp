@@ -355,5 +355,23 @@ TEST(Skeletonize, StopsWhenAsked) {
     }
 }
 
+// Thinning to an even density leaves too large a part of the points that noise put beside the wood.
+TEST(Skeletonize, NoiseInADenseScanDoesNotMakeWoodThicker) {
+    Random random(7);
+    PointCloud cloud;
+    add_cone(cloud, random, DVec3(0.0), DVec3(0.0, 2.0, 0.0), 0.05, 0.05, 0.003, 0.01);
+    SkeletonOptions options;
+    options.spacing = 0.016;
+    const SkeletonResult result = skeletonize(cloud, options);
+    std::vector<double> radii;
+    for (NodeId id : result.tree.depth_first()) {
+        const Node& node = result.tree.node(id);
+        if (node.is_trunk() && node.position.y > 0.3 && node.position.y < 1.7) radii.push_back(node.radius);
+    }
+    ASSERT_FALSE(radii.empty());
+    std::sort(radii.begin(), radii.end());
+    EXPECT_NEAR(radii[radii.size() / 2], 0.05, 0.0015);
+}
+
 }  // namespace
 }  // namespace treerec

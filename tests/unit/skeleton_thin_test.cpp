@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -47,6 +48,57 @@ TEST(ThinPoints, DoesNotMindOrderRepetitionOrNaN) {
     points.emplace_back(std::nanf(""), 0.0f, 0.0f);
     points.emplace_back(0.0f, INFINITY, 0.0f);
     EXPECT_EQ(thin_points(points, 0.7, progress), first);
+}
+
+// How far points lie from the y axis, as a root of the mean square.
+double spread_of(const std::vector<Vec3>& points) {
+    double sum = 0.0;
+    for (const Vec3& p : points)
+        sum += static_cast<double>(p.x) * p.x + static_cast<double>(p.z) * p.z;
+    return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+std::vector<Vec3> noisy_twig(uint64_t seed, int count, double noise) {
+    Random random(seed);
+    std::vector<Vec3> points;
+    for (int i = 0; i < count; i++)
+        points.emplace_back(random.normal() * noise, random.uniform(0.0, 1.0), random.normal() * noise);
+    return points;
+}
+
+TEST(ThinPoints, TheSampleIsAsDenseAsTheCloud) {
+    SubProgress progress(nullptr, 0, 1);
+    const std::vector<Vec3> points = noisy_twig(4, 40000, 0.01);
+    const ThinnedCloud thinned = thin_with_sample(points, 0.012, progress);
+    ASSERT_EQ(thinned.sample.size(), thinned.cube.size());
+    EXPECT_LE(thinned.sample.size(), 2 * thinned.points.size());
+    EXPECT_NEAR(spread_of(thinned.sample), spread_of(points), 0.07 * spread_of(points));
+    EXPECT_GT(spread_of(thinned.points), 1.3 * spread_of(points));
+    for (size_t i = 0; i < thinned.sample.size(); i++) {
+        ASSERT_LT(thinned.cube[i], thinned.points.size());
+        EXPECT_LT(glm::distance(thinned.sample[i], thinned.points[thinned.cube[i]]), 0.012 * std::sqrt(3.0));
+    }
+}
+
+TEST(ThinPoints, TheSampleDoesNotMindOrderRepetitionOrNaN) {
+    SubProgress progress(nullptr, 0, 1);
+    std::vector<Vec3> points = noisy_twig(5, 8000, 0.01);
+    const ThinnedCloud first = thin_with_sample(points, 0.015, progress);
+    ASSERT_FALSE(first.sample.empty());
+    std::reverse(points.begin(), points.end());
+    points.insert(points.end(), points.begin(), points.begin() + 5000);
+    points.emplace_back(0.0f, std::nanf(""), 0.0f);
+    const ThinnedCloud second = thin_with_sample(points, 0.015, progress);
+    EXPECT_EQ(second.points, first.points);
+    EXPECT_EQ(second.sample, first.sample);
+    EXPECT_EQ(second.cube, first.cube);
+}
+
+TEST(ThinPoints, ASparseCloudNeedsNoSample) {
+    SubProgress progress(nullptr, 0, 1);
+    const ThinnedCloud thinned = thin_with_sample(random_points(6, 2000), 0.01, progress);
+    EXPECT_TRUE(thinned.sample.empty());
+    EXPECT_EQ(&thinned.measured(), &thinned.points);
 }
 
 TEST(AutomaticSpacing, BoundsThePointsKept) {
