@@ -12,7 +12,6 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kMostSamples = 400000;
 constexpr size_t kBlock = size_t{1} << 20;  // points between two looks at the progress
 // What is said where more than this share of the points goes.
 constexpr double kRemarkable = 0.02;
@@ -21,7 +20,9 @@ constexpr double kRemarkable = 0.02;
 class Cleaning {
   public:
     Cleaning(PointCloud& cloud, CleanReport& report, const Progress* progress)
-        : cloud_(cloud), report_(report), samples_(take_samples(cloud.positions, kMostSamples, progress)) {
+        : cloud_(cloud),
+          report_(report),
+          samples_(take_samples(cloud.positions, samples_for(cloud.positions, progress), progress)) {
         weights_.resize(samples_.points.size());
         for (size_t i = 0; i < samples_.of_point.size(); i++) {
             if (progress && i % kBlock == 0) progress->check();

@@ -29,6 +29,8 @@ constexpr size_t kMostPoints = 200;  // that are looked at, per stem
 constexpr int kTrials = 16;          // circles per point that they are tried through
 constexpr size_t kKept = 2;          // circles of a slice, per stem
 constexpr size_t kSeedsPerCheck = 256;
+constexpr double kRow = 4.0;       // times the widest stem's radius: the depth of a row
+constexpr double kCorners = 1.42;  // a circle about a square reaches so much further than it
 constexpr int kSectors = 24;
 constexpr int kLeastSectors = 6;        // a quarter of the bark is seen
 constexpr double kMostInside = 0.15;    // of the points on the bark: a scanner sees none within wood
@@ -76,31 +78,95 @@ bool circle_through(const DVec2& a, const DVec2& b, const DVec2& c, Circle& circ
     return true;
 }
 
+// A slice's points where a wood is deep: in rows along x, so that few of them are looked at.
+class Rows {
+  public:
+    // points: by rising x, which each row keeps. depth: of a row, metres.
+    Rows(const std::vector<DVec2>& points, double depth) : depth_(depth) {
+        low_ = points.front().y;
+        double high = low_;
+        for (const DVec2& p : points) {
+            low_ = std::min(low_, p.y);
+            high = std::max(high, p.y);
+        }
+        rows_.resize(static_cast<size_t>(std::min((high - low_) / depth_, kMostRows - 1.0)) + 1);
+        for (const DVec2& p : points)
+            rows_[row_at(p.y)].push_back(p);
+    }
+
+    // Calls body(points) for each row that reaches into the square about `centre`: those no further off along
+    // x, by rising x.
+    template <typename Body>
+    void visit(const DVec2& centre, double reach, const Body& body) const {
+        const auto less = [](const DVec2& p, double at) { return p.x < at; };
+        for (size_t r = row_at(centre.y - reach); r <= row_at(centre.y + reach); r++) {
+            const auto begin = std::lower_bound(rows_[r].begin(), rows_[r].end(), centre.x - reach, less);
+            body(std::span(begin, std::lower_bound(begin, rows_[r].end(), centre.x + reach, less)));
+        }
+    }
+
+    // The points no further than `reach` from the centre, in the order of the slice.
+    void find(const DVec2& centre, double reach, std::vector<DVec2>& out) const {
+        out.clear();
+        visit(centre, reach, [&](std::span<const DVec2> row) {
+            const auto before = static_cast<ptrdiff_t>(out.size());
+            for (const DVec2& p : row) {
+                const DVec2 d = p - centre;
+                if (glm::dot(d, d) < reach * reach) out.push_back(p);
+            }
+            std::inplace_merge(
+                out.begin(), out.begin() + before, out.end(),
+                [](const DVec2& a, const DVec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+        });
+    }
+
+  private:
+    static constexpr double kMostRows = 4096.0;
+
+    size_t row_at(double y) const {
+        const double row = (y - low_) / depth_;
+        return row > 0.0 ? std::min(static_cast<size_t>(std::min(row, kMostRows)), rows_.size() - 1) : 0;
+    }
+
+    double depth_, low_;
+    std::vector<std::vector<DVec2>> rows_;
+};
+
+double reach_of(const Circle& circle) {
+    return 2.0 * circle.radius + 0.1;
+}
+
 // Whether bark is on the circle and nothing within; sets its coverage.
-bool is_bark(std::span<const DVec2> points, double rough, Circle& circle) {
+bool is_bark(const Rows& points, double rough, Circle& circle) {
     const double off = tolerance(circle.radius, rough);
-    const double inner = circle.radius - 2.0 * off, outer = circle.radius + 3.0 * off;
+    const auto square_of = [](double distance) { return distance > 0.0 ? distance * distance : 0.0; };
+    const double inner = square_of(circle.radius - 2.0 * off), outer = square_of(circle.radius + 3.0 * off);
+    const double low = square_of(circle.radius - off), high = square_of(circle.radius + off);
+    // Most circles fail at these counts, and quickly.
+    uint32_t on = 0, inside = 0, outside = 0;
+    points.visit(circle.centre, reach_of(circle), [&](std::span<const DVec2> row) {
+        for (const DVec2& p : row) {
+            const DVec2 d = p - circle.centre;
+            const double square = glm::dot(d, d);
+            on += static_cast<uint32_t>(square >= low) & static_cast<uint32_t>(square <= high);
+            inside += static_cast<uint32_t>(square < inner);
+            outside += static_cast<uint32_t>(square > high) & static_cast<uint32_t>(square <= outer);
+        }
+    });
+    if (on < kFewest || static_cast<double>(inside) > kMostInside * static_cast<double>(on)) return false;
+    if (static_cast<double>(on) < kLeastContrast * static_cast<double>(outside)) return false;
     std::array<uint32_t, kSectors> sectors{};
-    size_t on = 0, inside = 0, outside = 0;
-    for (const DVec2& p : points) {
-        const DVec2 d = p - circle.centre;
-        const double square = glm::dot(d, d);
-        if (square > outer * outer) continue;
-        const double distance = std::sqrt(square);
-        if (std::abs(distance - circle.radius) <= off) {
-            on++;
+    points.visit(circle.centre, reach_of(circle), [&](std::span<const DVec2> row) {
+        for (const DVec2& p : row) {
+            const DVec2 d = p - circle.centre;
+            const double square = glm::dot(d, d);
+            if (square < low || square > high || square == 0.0) continue;
             // Around a square instead of the circle: no sine is needed to count sectors.
             const double share = d.y / (std::abs(d.x) + std::abs(d.y));
             const double turn = (d.x >= 0.0 ? 1.0 + share : 3.0 - share) * 0.25 * kSectors;
             sectors[static_cast<size_t>(turn) % kSectors]++;
-        } else if (distance < inner) {
-            inside++;
-        } else if (distance > circle.radius) {
-            outside++;
         }
-    }
-    if (on < kFewest || static_cast<double>(inside) > kMostInside * static_cast<double>(on)) return false;
-    if (static_cast<double>(on) < kLeastContrast * static_cast<double>(outside)) return false;
+    });
     // A sector counts where it holds a fair part of what one would, were the points spread evenly.
     const double fair = 0.25 * static_cast<double>(on) / kSectors;
     const auto covered = std::count_if(sectors.begin(), sectors.end(), [&](uint32_t n) { return n > fair; });
@@ -139,23 +205,14 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
                                  const RoundStemSearch& search, Random random, const Progress* progress) {
     std::vector<Circle> found;
     if (points.size() < kFewest) return found;
+    const Rows rows(points, kRow * widest);
     const double range = portable::log(widest / thinnest);
-    const auto beside = [&](double x, double reach) {
-        const auto less = [](const DVec2& p, double at) { return p.x < at; };
-        const auto begin = std::lower_bound(points.begin(), points.end(), x - reach, less);
-        return std::span(begin, std::lower_bound(begin, points.end(), x + reach, less));
-    };
-    const auto all_of = [&](const Circle& c) { return beside(c.centre.x, 2.0 * c.radius + 0.1); };
     std::vector<DVec2> close;
     for (size_t seed = 0; seed < search.seeds * search.most; seed++) {
         if (progress && seed % kSeedsPerCheck == 0) progress->check();
         const DVec2 a = points[random.below(static_cast<uint32_t>(points.size()))];
         const double size = thinnest * portable::exp(random.uniform() * range);
-        close.clear();
-        for (const DVec2& p : beside(a.x, 1.5 * size)) {
-            const DVec2 d = p - a;
-            if (glm::dot(d, d) < 2.25 * size * size) close.push_back(p);
-        }
+        rows.find(a, 1.5 * size, close);
         if (close.size() < kFewest) continue;
         for (int trial = 0; trial < kTrials; trial++) {
             const auto count = static_cast<uint32_t>(close.size());
@@ -169,13 +226,13 @@ std::vector<Circle> find_circles(const std::vector<DVec2>& points, double thinne
             if (std::abs(glm::distance(d, circle.centre) - circle.radius) >
                 tolerance(circle.radius, search.rough))
                 continue;
-            if (is_bark(all_of(circle), search.rough, circle)) found.push_back(circle);
+            if (is_bark(rows, search.rough, circle)) found.push_back(circle);
         }
     }
     for (Circle& circle : found) {
-        refine(all_of(circle), search.rough, circle);
-        if (circle.radius < thinnest || circle.radius > widest ||
-            !is_bark(all_of(circle), search.rough, circle))
+        rows.find(circle.centre, kCorners * reach_of(circle), close);
+        refine(close, search.rough, circle);
+        if (circle.radius < thinnest || circle.radius > widest || !is_bark(rows, search.rough, circle))
             circle.coverage = 0.0;
     }
     std::erase_if(found, [](const Circle& c) { return c.coverage == 0.0; });

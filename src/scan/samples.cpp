@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kFinestCells = 16384.0;  // along the extent: next to no two points share one
 constexpr size_t kCellsPerTask = 8192;
+constexpr size_t kSamplesOfTree = 400000;
+constexpr double kMostSamples = 3e6;
 
 DVec3 low_corner(const std::array<Range, 3>& ranges) {
     return {ranges[0].low, ranges[1].low, ranges[2].low};
@@ -43,6 +45,14 @@ Samples distinct_points(const std::vector<Vec3>& positions, CellGrid& grid) {
 }
 
 }  // namespace
+
+size_t samples_for(const std::vector<Vec3>& positions, const Progress* progress) {
+    if (positions.size() <= kSamplesOfTree) return kSamplesOfTree;
+    const std::array<Range, 3> ranges = robust_ranges(positions, progress);
+    const double height = std::max(ranges[1].size(), 1e-6);
+    const double squares = std::max(1.0, ranges[0].size() * ranges[2].size() / (height * height));
+    return static_cast<size_t>(std::min(squares * kSamplesOfTree, kMostSamples));
+}
 
 Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Progress* progress) {
     const std::array<Range, 3> ranges = robust_ranges(positions, progress);

@@ -19,6 +19,10 @@ struct Samples {
     std::array<Range, 3> ranges;     // robust_ranges() of the cloud
 };
 
+// How many samples show each tree of a cloud as well as if it stood alone: 400,000 for each square of ground
+// as wide as the cloud is high, but no more than 3 million. positions: metres, Y up.
+size_t samples_for(const std::vector<Vec3>& positions, const Progress* progress = nullptr);
+
 // Every distinct point, or one point per grid cell where there would be more than `limit`.
 Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Progress* progress);
 

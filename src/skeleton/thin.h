@@ -30,7 +30,7 @@ std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, P
 
 // The spacing to use when the user gives none: 1/2000 of the cloud's diagonal, between 1 mm and 2 cm, and
 // coarser where the cloud would keep more than kMostPoints.
-inline constexpr size_t kMostPoints = 120000;
+inline constexpr size_t kMostPoints = 400000;
 double automatic_spacing(const std::vector<Vec3>& points, const Progress* progress = nullptr);
 
 }  // namespace treerec

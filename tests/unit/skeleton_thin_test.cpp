@@ -103,7 +103,7 @@ TEST(ThinPoints, ASparseCloudNeedsNoSample) {
 
 TEST(AutomaticSpacing, BoundsThePointsKept) {
     SubProgress progress(nullptr, 0, 1);
-    const std::vector<Vec3> points = random_points(3, 400000);
+    const std::vector<Vec3> points = random_points(3, 3 * static_cast<int>(kMostPoints));
     const double spacing = automatic_spacing(points);
     const size_t kept = thin_points(points, spacing, progress).size();
     EXPECT_LE(kept, kMostPoints);
