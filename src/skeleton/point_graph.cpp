@@ -20,7 +20,12 @@ constexpr float kStrayFactor = 2.5f;  // times the neighbours' spacing, at most
 constexpr float kReachFactor = 2.0f;
 constexpr float kReachCap = 12.0f;  // times the cloud's median: no edge longer is ever surface
 
-PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge>& edges) {
+PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge>& edges,
+                    const Progress* progress = nullptr) {
+    const auto check = [&] {
+        if (progress) progress->check();
+    };
+    check();
     PointGraph graph;
     graph.begin.assign(points.size() + 1, 0);
     for (const auto& [a, b] : edges) {
@@ -29,6 +34,7 @@ PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge
     }
     for (size_t v = 0; v < points.size(); v++)
         graph.begin[v + 1] += graph.begin[v];
+    check();
     graph.neighbour.resize(2 * edges.size());
     graph.length.resize(2 * edges.size());
     std::vector<uint32_t> fill(graph.begin.begin(), graph.begin.end() - 1);
@@ -37,6 +43,7 @@ PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge
         graph.neighbour[fill[b]++] = a;
     }
     parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        check();
         for (size_t v = begin; v < end; v++) {
             std::sort(graph.neighbour.begin() + graph.begin[v], graph.neighbour.begin() + graph.begin[v + 1]);
             for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++)
@@ -55,6 +62,7 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
     const std::vector<uint32_t> nearest = tree.nearest_of_all(near, progress);
     std::vector<std::vector<PointEdge>> parts((points.size() + kGrain - 1) / kGrain);
     parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        progress.check();
         std::vector<PointEdge>& part = parts[begin / kGrain];
         part.reserve((end - begin) * kNeighbours * 2 / 3);
         for (size_t v = begin; v < end; v++)
@@ -71,14 +79,16 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
     edges.reserve(points.size() * kNeighbours * 2 / 3);
     for (const std::vector<PointEdge>& part : parts)
         edges.insert(edges.end(), part.begin(), part.end());
+    progress.check();
     Groups groups(points.size());
     groups.join_all([&](uint32_t v, const auto& link) {
+        if (v % kGrain == 0) progress.check();
         for (size_t i = 0; i < near; i++)
             link(nearest[v * near + i]);
     });
     bridge_parts(points, tree, std::move(groups), edges, progress);
 
-    return graph_of(points, edges);
+    return graph_of(points, edges, &progress);
 }
 
 std::optional<uint32_t> find_edge(const PointGraph& graph, const PointEdge& edge) {
@@ -103,10 +113,11 @@ void LocalScale::set_spacing(std::vector<float> values) {
         reach[v] = kReachFactor * spacing[v];
 }
 
-LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
+LocalScale local_scale(const PointGraph& graph, double thinning_spacing, const Progress* progress) {
     const size_t count = graph.size();
     std::vector<float> spacing(count);
     parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
         for (size_t v = begin; v < end; v++) {
             std::array<float, kScaleNeighbour> shortest;
             shortest.fill(std::numeric_limits<float>::max());
@@ -128,6 +139,7 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing) {
     std::vector<float> smooth(count);
     for (int round = 0; round < kScaleSmoothings; round++) {
         parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+            if (progress) progress->check();
             for (size_t v = begin; v < end; v++) {
                 float sum = spacing[v];
                 float weight = 1.0f;

@@ -44,7 +44,7 @@ struct LocalScale {
     void set_spacing(std::vector<float> values);
 };
 
-LocalScale local_scale(const PointGraph& graph, double thinning_spacing);
+LocalScale local_scale(const PointGraph& graph, double thinning_spacing, const Progress* progress = nullptr);
 
 // The gap length of an edge between a and b.
 inline float edge_reach(const LocalScale& scale, uint32_t a, uint32_t b) {

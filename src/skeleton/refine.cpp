@@ -36,6 +36,7 @@ constexpr double kRoundCoverage = 0.62;  // of the directions
 constexpr double kRoundDensity = 4.0;    // points in a length of one radius
 constexpr double kAboveNoise = 2.5;      // standard deviations
 constexpr double kAlike = 0.25;
+constexpr size_t kPointsPerCheck = 8192;
 constexpr double kThinTwig = 0.003;  // metres
 constexpr double kThinnest = 0.001;  // metres
 constexpr double kRounding = 1e-6;   // metres, more than that of what is compared with a box
@@ -152,6 +153,9 @@ struct Members {
 
 // What limbs refined one after another take turns with.
 struct Scratch {
+    explicit Scratch(const Progress& p) : progress(p) {}
+
+    const Progress& progress;
     std::vector<std::array<DVec3, 2>> frame;
     std::vector<std::pair<int, Sample>> found;
     std::vector<size_t> begin, fill;
@@ -290,8 +294,11 @@ class LimbRefiner {
     void collect() {
         std::vector<std::pair<int, Sample>>& found = scratch_.found;
         found.clear();
-        for (const int32_t v : own_points_)
+        size_t looked = 0;
+        for (const int32_t v : own_points_) {
+            if (++looked % kPointsPerCheck == 0) scratch_.progress.check();
             add_point(static_cast<uint32_t>(v), places_.station[v], found);
+        }
         begin_.assign(line_.size() + 1, 0);
         for (const auto& [station, sample] : found)
             begin_[station + 1]++;
@@ -454,7 +461,7 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
         const std::vector<Bounds> bases = bark_of_bases(axes, limbs);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
-            Scratch scratch;
+            Scratch scratch(progress);
             for (size_t l = from; l < to; l++) {
                 progress.check();
                 const std::span<int32_t> own_sides = sides.of(l);

@@ -130,7 +130,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     SubProgress linking(listener, 0.1, 0.55);
     PointGraph graph = neighbour_graph(points, linking);
-    const LocalScale first_scale = local_scale(graph, result.spacing);
+    const LocalScale first_scale = local_scale(graph, result.spacing, &progress);
     clock.stop("Neighbours", graph.neighbour.size() / 2);
 
     progress.update(0.55, "Shortest paths");
@@ -167,7 +167,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     progress.update(0.7, "Branches");
 
-    const Slices slices = cut_slices(points, graph, scale, paths, root.position);
+    const Slices slices = cut_slices(points, graph, scale, paths, root.position, progress);
     progress.check();
     std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
     clock.stop("Branches", limbs.size());

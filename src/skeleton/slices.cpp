@@ -15,13 +15,17 @@ constexpr double kGapFactor = 3.0;  // reaches: a longer step is a gap in the sc
 constexpr float kBesideReach = 2.0f;  // reaches: slices of one stem that the scan parts are no further apart
 constexpr double kThickness = 2.0;    // slice thickness in local point spacings
 constexpr size_t kSlicesPerTask = 256;
+constexpr size_t kVerticesPerCheck = 65536;
 
 // The level of each vertex: the path length from the root in units of the local slice thickness. An edge
 // across a gap always ends on a new level.
-std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& scale, const PathTree& paths) {
+std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& scale, const PathTree& paths,
+                                   const Progress& progress) {
     std::vector<double> measure(graph.size(), 0.0);
     std::vector<int32_t> level(graph.size(), 0);
+    size_t done = 0;
     for (const uint32_t v : paths.order) {
+        if (done++ % kVerticesPerCheck == 0) progress.check();
         const int32_t p = paths.parent[v];
         if (p < 0) {
             measure[v] = paths.along[v] / (kThickness * scale.spacing[v]);
@@ -40,10 +44,11 @@ std::vector<int32_t> vertex_levels(const PointGraph& graph, const LocalScale& sc
 
 // Fills `beside`: a link is an edge not much longer than the local reach. All else is filled.
 void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scale,
-                 const std::vector<uint32_t>& slice_of) {
+                 const std::vector<uint32_t>& slice_of, const Progress& progress) {
     using Pair = std::pair<uint32_t, uint32_t>;
     std::vector<std::vector<Pair>> found((slices.size() + kSlicesPerTask - 1) / kSlicesPerTask);
     parallel_for(slices.size(), kSlicesPerTask, [&](size_t first, size_t last) {
+        progress.check();
         std::vector<uint32_t> others;
         for (uint32_t a = static_cast<uint32_t>(first); a < last; a++) {
             others.clear();
@@ -66,6 +71,7 @@ void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scal
     std::vector<Pair> pairs;
     for (const std::vector<Pair>& some : found)
         pairs.insert(pairs.end(), some.begin(), some.end());
+    progress.check();
     slices.beside_begin.assign(slices.size() + 1, 0);
     for (const auto& [a, b] : pairs) {
         slices.beside_begin[a + 1]++;
@@ -84,11 +90,12 @@ void find_beside(Slices& slices, const PointGraph& graph, const LocalScale& scal
 }  // namespace
 
 Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                  const PathTree& paths, const DVec3& root) {
+                  const PathTree& paths, const DVec3& root, const Progress& progress) {
     const size_t count = graph.size();
-    const std::vector<int32_t> level = vertex_levels(graph, scale, paths);
+    const std::vector<int32_t> level = vertex_levels(graph, scale, paths, progress);
     Groups groups(count);
     groups.join_all([&](uint32_t v, const auto& link) {
+        if (v % kVerticesPerCheck == 0) progress.check();
         for (uint32_t e = graph.begin[v], end = graph.begin[v + 1]; e < end; e++) {
             const uint32_t n = graph.neighbour[e];
             if (n > v) break;  // they ascend
@@ -96,6 +103,7 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
         }
     });
 
+    progress.check();
     // Number the groups by level, then by their smallest vertex. Slice 0 is the root itself and has no
     // points.
     std::vector<uint32_t> leaders;
@@ -103,12 +111,14 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
         if (groups.find(v) == v) leaders.push_back(v);
     std::stable_sort(leaders.begin(), leaders.end(),
                      [&](uint32_t a, uint32_t b) { return level[a] < level[b]; });
+    progress.check();
     std::vector<uint32_t> slice_of(count);
     for (uint32_t s = 0; s < leaders.size(); s++)
         slice_of[leaders[s]] = s + 1;
     for (uint32_t v = 0; v < count; v++)
         slice_of[v] = slice_of[groups.find(v)];
 
+    progress.check();
     Slices slices;
     const size_t slice_count = leaders.size() + 1;
     slices.begin.assign(slice_count + 1, 0);
@@ -126,6 +136,7 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
     slices.bridged.assign(slice_count, 0);
     slices.centre.assign(slice_count, root);
     parallel_for(slice_count, kSlicesPerTask, [&](size_t first, size_t last) {
+        progress.check();
         std::vector<uint32_t> votes;
         for (size_t s = std::max<size_t>(first, 1); s < last; s++) {
             DVec3 sum(0.0);
@@ -154,7 +165,7 @@ Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, cons
             slices.bridged[s] = !linked;
         }
     });
-    find_beside(slices, graph, scale, slice_of);
+    find_beside(slices, graph, scale, slice_of, progress);
     return slices;
 }
 

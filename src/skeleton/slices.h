@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "progress.h"
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
 
@@ -36,7 +37,8 @@ struct Slices {
 // them pair by pair; taking whole level sets of the path length, as Verroust and Lazarus 2000 do, needs no
 // order and no angle threshold). The thickness of a slice follows the local spacing of the points. A slice
 // hangs on the slice that most of its paths come from. root: the tree's base point, the centre of slice 0.
+// Throws Cancelled.
 Slices cut_slices(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                  const PathTree& paths, const DVec3& root);
+                  const PathTree& paths, const DVec3& root, const Progress& progress);
 
 }  // namespace treerec

@@ -97,13 +97,14 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
     axis_options.confirmations = kConfirmations;
     for (const double factor : kTrials) {
         const LocalScale trial = scaled(factor);
-        const Slices slices = cut_slices(points, graph, trial, paths, root);
+        const Slices slices = cut_slices(points, graph, trial, paths, root, progress);
         progress.check();
         std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs);
         const std::vector<std::vector<Station>> axes =
             fit_axes(limbs, slices, points, trial, axis_options, progress);
         std::vector<Belief> beliefs(limbs.size());
         for (size_t l = 0; l < limbs.size(); l++) {
+            progress.check();
             const int32_t parent = limbs[l].parent;
             beliefs[l] = believed_radii(axes[l], parent < 0 ? 0.0 : beliefs[parent].limit[limbs[l].attach]);
             const std::vector<double>& radius = beliefs[l].radius;

@@ -12,6 +12,7 @@
 #include "geometry/cell_grid.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "geometry/radix_sort.h"
 #include "geometry/random.h"
 
 namespace treerec {
@@ -21,6 +22,7 @@ namespace {
 constexpr size_t kCellsPerTask = 1024;
 constexpr uint64_t kBlock = 4;    // cells along the edge of a block, a power of 2: wider than noise
 constexpr size_t kSampled = 2;    // points that are sampled per cell, at most
+constexpr double kPlace = 1e-4;   // metres: points so close are one
 constexpr double kCrowded = 1.1;  // points per cell in the mean: of fewer, one per cell tells the same
 
 bool finite(const Vec3& p) {
@@ -89,28 +91,21 @@ void append_distinct(const std::vector<Vec3>& points, std::span<const uint32_t> 
     out.erase(std::unique(out.begin() + begin, out.end()), out.end());
 }
 
-// A cell of a grid and the block that it is in.
-struct BlockCell {
-    uint64_t block = 0;
-    uint32_t cell = 0;
-};
-
-std::vector<BlockCell> cells_by_block(const CellGrid& grid) {
+// The grid's cells, by the blocks that they are in: those are the keys.
+std::vector<KeyedIndex> cells_by_block(const CellGrid& grid, const Progress& progress) {
     constexpr uint64_t kWithin = kBlock - 1;
     constexpr uint64_t kMask = ~(kWithin | kWithin << CellLayout::kBits | kWithin << (2 * CellLayout::kBits));
-    std::vector<BlockCell> cells(grid.size());
+    std::vector<KeyedIndex> cells(grid.size());
     for (uint32_t c = 0; c < grid.size(); c++)
         cells[c] = {grid.keys[c] & kMask, c};
-    std::sort(cells.begin(), cells.end(), [](const BlockCell& a, const BlockCell& b) {
-        return std::pair(a.block, a.cell) < std::pair(b.block, b.cell);
-    });
+    radix_sort(cells, &progress);
     return cells;
 }
 
 // Of each block a number of points that goes by its cells: one of each of so many runs along these.
 void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, ThinnedCloud& out,
                  Progress& progress) {
-    const std::vector<BlockCell> cells = cells_by_block(grid);
+    const std::vector<KeyedIndex> cells = cells_by_block(grid, progress);
     std::vector<ThinnedCloud> parts((cells.size() + kCellsPerTask - 1) / kCellsPerTask);
     parallel_for(cells.size(), kCellsPerTask, [&](size_t begin, size_t end) {
         progress.check();
@@ -118,16 +113,16 @@ void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, ThinnedC
         std::vector<Vec3> members;
         std::vector<uint32_t> cell_of;
         // A task does the blocks that begin in it.
-        while (begin > 0 && begin < end && cells[begin].block == cells[begin - 1].block)
+        while (begin > 0 && begin < end && cells[begin].key == cells[begin - 1].key)
             begin++;
         while (begin < end) {
-            const uint64_t block = cells[begin].block;
+            const uint64_t block = cells[begin].key;
             members.clear();
             cell_of.clear();
             size_t next = begin;
-            for (; next < cells.size() && cells[next].block == block; next++) {
-                append_distinct(points, grid.in_cell(cells[next].cell), members);
-                cell_of.resize(members.size(), cells[next].cell);
+            for (; next < cells.size() && cells[next].key == block; next++) {
+                append_distinct(points, grid.in_cell(cells[next].index), members);
+                cell_of.resize(members.size(), cells[next].index);
             }
             const size_t runs = std::min(members.size(), kSampled * (next - begin));
             uint64_t chance = block;
@@ -199,25 +194,28 @@ double automatic_spacing(const std::vector<Vec3>& points, const Progress* progre
     if (finite_count < points.size())
         std::copy_if(points.begin(), points.end(), std::back_inserter(good), finite);
     const std::vector<Vec3>& counted = good.empty() ? points : good;
+    size_t most = kMostPoints;
+    if (finite_count > kOneOf * kMostPoints)
+        most = std::max(most, guess_cells(counted, safe_layout(bounds, kPlace), progress) / kOneOf);
     // The count falls with some power of the spacing: 2 for a dense surface, next to 0 where the points are
     // far apart already. Two counts tell the power.
-    constexpr double kWanted = 0.99 * kMostPoints;
+    const double wanted = 0.99 * static_cast<double>(most);
     double power = 2.0;
     double last_spacing = 0.0;
     double last_count = 0.0;
     for (;;) {
         const double count =
             static_cast<double>(guess_cells(counted, safe_layout(bounds, spacing), progress));
-        if (count <= kWanted) break;
+        if (count <= wanted) break;
         if (last_count > count)
             power = portable::log(last_count / count) / portable::log(spacing / last_spacing);
         last_spacing = spacing;
         last_count = count;
-        const double excess = count / kWanted;
+        const double excess = count / wanted;
         spacing *= std::clamp(portable::pow(excess, 1.0 / std::clamp(power, 0.2, 3.0)), 1.01,
                               excess > 4.0 ? 2.0 : 1.3);
     }
-    while (count_cells(counted, safe_layout(bounds, spacing), kMostPoints, progress) > kMostPoints)
+    while (count_cells(counted, safe_layout(bounds, spacing), most, progress) > most)
         spacing *= 1.02;
     return spacing;
 }

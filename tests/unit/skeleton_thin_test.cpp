@@ -104,10 +104,20 @@ TEST(ThinPoints, ASparseCloudNeedsNoSample) {
 TEST(AutomaticSpacing, BoundsThePointsKept) {
     SubProgress progress(nullptr, 0, 1);
     const std::vector<Vec3> points = random_points(3, 3 * static_cast<int>(kMostPoints));
-    const double spacing = automatic_spacing(points);
-    const size_t kept = thin_points(points, spacing, progress).size();
+    const size_t kept = thin_points(points, automatic_spacing(points), progress).size();
     EXPECT_LE(kept, kMostPoints);
     EXPECT_GT(kept, kMostPoints / 4);
+}
+
+TEST(AutomaticSpacing, KeepsAShareOfAVeryLargeCloud) {
+    SubProgress progress(nullptr, 0, 1);
+    std::vector<Vec3> points = random_points(4, 8 * static_cast<int>(kMostPoints));
+    const double spacing = automatic_spacing(points);
+    const size_t kept = thin_points(points, spacing, progress).size();
+    EXPECT_LE(kept, points.size() / 5);
+    EXPECT_GT(kept, kMostPoints);
+    points.insert(points.end(), points.begin(), points.begin() + static_cast<ptrdiff_t>(kMostPoints));
+    EXPECT_EQ(automatic_spacing(points), spacing);
 }
 
 }  // namespace
