@@ -15,6 +15,11 @@ namespace {
 constexpr int kMostNeighbours = 64;
 // A point's neighbour distance must be this many times that of its neighbours.
 constexpr double kLocalContrast = 2.5;
+// Of a scan that has so many points, what lies so many times the typical distance apart is dust, however
+// sparse all around it is: a thousandth of a large scan's points are many, and lie near enough to each other
+// to look like sparse twigs. (Of a small scan, twigs may be as sparse.)
+constexpr size_t kManyPoints = 200000;
+constexpr double kDust = 25.0;
 constexpr size_t kTypical = 512;  // points that tell the typical distance
 constexpr double kReach = 0.75;   // of the limit: the cells in which a point is looked for company
 constexpr size_t kPointsPerTask = 512;
@@ -124,7 +129,9 @@ std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::a
         values.clear();
         for (size_t n = 0; n < count; n++)
             values.push_back(neighbours.distance(nearest[w * count + n]));
-        goes[which[w]] = neighbours.distance(which[w]) > kLocalContrast * quantile(values, 0.5);
+        const double distance = neighbours.distance(which[w]);
+        goes[which[w]] = distance > kLocalContrast * quantile(values, 0.5) ||
+                         (points.size() >= kManyPoints && distance > kDust * median);
     }
     return goes;
 }
