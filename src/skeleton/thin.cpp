@@ -1,10 +1,10 @@
 #include "skeleton/thin.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -20,8 +20,13 @@ namespace treerec {
 namespace {
 
 constexpr size_t kCellsPerTask = 1024;
-constexpr uint64_t kBlock = 4;    // cells along the edge of a block, a power of 2: wider than noise
-constexpr size_t kSampled = 2;    // points that are sampled per cell, at most
+constexpr uint64_t kBlock = 4;          // cells along the edge of a block, a power of 2: wider than noise
+constexpr size_t kSampled = 2;          // points that are sampled per cell, at most
+constexpr uint64_t kSurroundings = 64;  // cells along the edge of the block a stray is compared with
+constexpr double kStrayShare = 0.05;    // of the points about it that there are about most
+// More of them are no stray: that side of a stem, perhaps, that only the farthest station saw.
+constexpr double kMostAboutAStray = 12.0;
+constexpr uint32_t kNowhere = std::numeric_limits<uint32_t>::max();
 constexpr double kPlace = 1e-4;   // metres: points so close are one
 constexpr double kCrowded = 1.1;  // points per cell in the mean: of fewer, one per cell tells the same
 
@@ -91,21 +96,53 @@ void append_distinct(const std::vector<Vec3>& points, std::span<const uint32_t> 
     out.erase(std::unique(out.begin() + begin, out.end()), out.end());
 }
 
-// The grid's cells, by the blocks that they are in: those are the keys.
-std::vector<KeyedIndex> cells_by_block(const CellGrid& grid, const Progress& progress) {
-    constexpr uint64_t kWithin = kBlock - 1;
-    constexpr uint64_t kMask = ~(kWithin | kWithin << CellLayout::kBits | kWithin << (2 * CellLayout::kBits));
+// The grid's cells, by the blocks of so many (a power of 2) to each side that they are in: those are the
+// keys.
+std::vector<KeyedIndex> cells_by_block(const CellGrid& grid, uint64_t edge, const Progress& progress) {
+    const uint64_t within = edge - 1;
+    const uint64_t mask = ~(within | within << CellLayout::kBits | within << (2 * CellLayout::kBits));
     std::vector<KeyedIndex> cells(grid.size());
     for (uint32_t c = 0; c < grid.size(); c++)
-        cells[c] = {grid.keys[c] & kMask, c};
+        cells[c] = {grid.keys[c] & mask, c};
     radix_sort(cells, &progress);
     return cells;
 }
 
+// By cell: 1 where far fewer points lie about it than about most points near it, as those of beams do that an
+// edge split between what is before and what is behind. held: by cell, distinct points.
+std::vector<uint8_t> find_strays(const CellGrid& grid, const std::vector<uint32_t>& held,
+                                 const Progress& progress) {
+    std::vector<uint64_t> before(grid.size() + 1, 0);
+    for (size_t c = 0; c < grid.size(); c++)
+        before[c + 1] = before[c] + held[c];
+    progress.check();
+    std::vector<uint32_t> around(grid.size(), 0);
+    grid.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
+        around[c] += static_cast<uint32_t>(before[last] - before[first]);
+    });
+    progress.check();
+    const std::vector<KeyedIndex> cells = cells_by_block(grid, kSurroundings, progress);
+    std::vector<uint8_t> stray(grid.size(), 0);
+    for (size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
+        double points = 0.0, sum = 0.0;
+        for (; end < cells.size() && cells[end].key == cells[begin].key; end++) {
+            const uint32_t c = cells[end].index;
+            points += held[c];
+            sum += static_cast<double>(held[c]) * around[c];
+        }
+        const double limit = std::min(kStrayShare * sum / points, kMostAboutAStray);
+        for (size_t i = begin; i < end; i++)
+            stray[cells[i].index] = around[cells[i].index] <= limit ? 1 : 0;
+    }
+    return stray;
+}
+
 // Of each block a number of points that goes by its cells: one of each of so many runs along these.
-void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, ThinnedCloud& out,
-                 Progress& progress) {
-    const std::vector<KeyedIndex> cells = cells_by_block(grid, progress);
+// place: by cell, where its point lies in out.points, or kNowhere.
+void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, const std::vector<uint32_t>& place,
+                 ThinnedCloud& out, Progress& progress) {
+    std::vector<KeyedIndex> cells = cells_by_block(grid, kBlock, progress);
+    std::erase_if(cells, [&](const KeyedIndex& cell) { return place[cell.index] == kNowhere; });
     std::vector<ThinnedCloud> parts((cells.size() + kCellsPerTask - 1) / kCellsPerTask);
     parallel_for(cells.size(), kCellsPerTask, [&](size_t begin, size_t end) {
         progress.check();
@@ -122,7 +159,7 @@ void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, ThinnedC
             size_t next = begin;
             for (; next < cells.size() && cells[next].key == block; next++) {
                 append_distinct(points, grid.in_cell(cells[next].index), members);
-                cell_of.resize(members.size(), cells[next].index);
+                cell_of.resize(members.size(), place[cells[next].index]);
             }
             const size_t runs = std::min(members.size(), kSampled * (next - begin));
             uint64_t chance = block;
@@ -157,21 +194,29 @@ ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled,
     }
     const CellGrid grid(points, safe_layout(bounds, spacing), &progress);
     out.points.resize(grid.size());
-    std::atomic<size_t> distinct = 0;
+    std::vector<uint32_t> held(grid.size());
     parallel_for(grid.size(), kCellsPerTask, [&](size_t begin, size_t end) {
         progress.check();
         std::vector<Vec3> members;
-        size_t found = 0;
         for (size_t c = begin; c < end; c++) {
             members.clear();
             append_distinct(points, grid.in_cell(c), members);
             out.points[c] = members[middle_of(members)];
-            found += members.size();
+            held[c] = static_cast<uint32_t>(members.size());
         }
-        distinct += found;
     });
-    if (sampled && static_cast<double>(distinct) >= kCrowded * static_cast<double>(grid.size()))
-        take_sample(points, grid, out, progress);
+    const auto distinct = static_cast<double>(std::accumulate(held.begin(), held.end(), uint64_t{0}));
+    if (!sampled || distinct < kCrowded * static_cast<double>(grid.size())) return out;
+    const std::vector<uint8_t> stray = find_strays(grid, held, progress);
+    std::vector<uint32_t> place(grid.size(), kNowhere);
+    uint32_t kept = 0;
+    for (size_t c = 0; c < grid.size(); c++) {
+        if (stray[c] != 0) continue;
+        out.points[kept] = out.points[c];
+        place[c] = kept++;
+    }
+    out.points.resize(kept);
+    take_sample(points, grid, place, out, progress);
     return out;
 }
 

@@ -21,11 +21,12 @@ struct ThinnedCloud {
     const std::vector<Vec3>& measured() const { return sample.empty() ? points : sample; }
 };
 
-// The result depends neither on the order of the points nor on repeated points. Points that are not finite
-// are dropped.
+// Where cubes hold many points, those that far fewer lie about than about most near them are strays and left
+// out. The result depends neither on the order of the points nor on repeated points. Points that are not
+// finite are dropped.
 ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress);
 
-// The same without the sample.
+// The same without the sample, strays included.
 std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress);
 
 // The spacing to use when the user gives none: 1/2000 of the cloud's diagonal, between 1 mm and 2 cm, and

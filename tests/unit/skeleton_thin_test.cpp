@@ -94,6 +94,59 @@ TEST(ThinPoints, TheSampleDoesNotMindOrderRepetitionOrNaN) {
     EXPECT_EQ(second.cube, first.cube);
 }
 
+// Beams that an edge splits between a stem and what is behind it: sparse, but not alone.
+TEST(ThinPoints, StraysBesideDenseWoodGoAndSparseTwigsStay) {
+    SubProgress progress(nullptr, 0, 1);
+    Random random(8);
+    std::vector<Vec3> points;
+    const auto add_ring = [&](float x, float radius, int count) {
+        for (int i = 0; i < count; i++) {
+            const double turn = random.uniform(0.0, 6.2831853);
+            points.emplace_back(x + radius * std::cos(turn), random.uniform(0.0, 1.0),
+                                radius * std::sin(turn));
+        }
+    };
+    add_ring(0.0f, 0.1f, 120000);
+    const size_t stem = points.size();
+    add_ring(0.3f, 0.004f, 1500);  // a third as dense
+    const size_t wood = points.size();
+    for (int i = 0; i < 300; i++)
+        points.emplace_back(0.1, random.uniform(0.0, 1.0), random.uniform(0.15, 0.45));
+    const ThinnedCloud thinned = thin_with_sample(points, 0.01, progress);
+    std::set<std::tuple<float, float, float>> kept;
+    for (const Vec3& p : thinned.points)
+        kept.insert({p.x, p.y, p.z});
+    const auto count = [&](size_t from, size_t to) {
+        return std::count_if(points.begin() + static_cast<ptrdiff_t>(from),
+                             points.begin() + static_cast<ptrdiff_t>(to), [&](const Vec3& p) {
+                                 return kept.count({p.x, p.y, p.z}) > 0;
+                             });
+    };
+    EXPECT_GT(count(0, stem), 6000);
+    EXPECT_GT(count(stem, wood), 100);
+    EXPECT_LT(count(wood, points.size()), 30);
+    for (const uint32_t cube : thinned.cube)
+        ASSERT_LT(cube, thinned.points.size());
+}
+
+TEST(ThinPoints, TheSideOfAStemThatOneFarStationSawStays) {
+    SubProgress progress(nullptr, 0, 1);
+    Random random(9);
+    std::vector<Vec3> points;
+    const auto add_half = [&](double turn, int count) {
+        for (int i = 0; i < count; i++) {
+            const double angle = turn + random.uniform(0.0, 3.14159);
+            points.emplace_back(0.1 * std::cos(angle), random.uniform(0.0, 1.0), 0.1 * std::sin(angle));
+        }
+    };
+    add_half(0.0, 400000);
+    add_half(3.14159, 16000);
+    const ThinnedCloud thinned = thin_with_sample(points, 0.01, progress);
+    const auto far =
+        std::count_if(thinned.points.begin(), thinned.points.end(), [](const Vec3& p) { return p.z < 0.0f; });
+    EXPECT_GT(far, 3000);
+}
+
 TEST(ThinPoints, ASparseCloudNeedsNoSample) {
     SubProgress progress(nullptr, 0, 1);
     const ThinnedCloud thinned = thin_with_sample(random_points(6, 2000), 0.01, progress);
