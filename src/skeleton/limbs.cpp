@@ -41,7 +41,8 @@ struct SliceShape {
     double thickness(size_t slice) const { return std::max(known[slice], thin); }
 };
 
-SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale) {
+SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
+                          const Progress& progress) {
     const size_t count = slices.size();
     SliceShape shape;
     shape.radius.assign(count, 0.0);
@@ -59,6 +60,7 @@ SliceShape measure_slices(const Slices& slices, const std::vector<Vec3>& points,
     shape.thin = kThinWood * *fine;
     std::vector<double> steps(count, 0.0);  // metres to the parent
     parallel_for(count, kSlicesPerTask, [&](size_t first, size_t last) {
+        progress.check();
         for (size_t s = std::max<size_t>(first, 1); s < last; s++) {
             for (const uint32_t v : slices.points_of(s)) {
                 shape.radius[s] += glm::distance(DVec3(points[v]), slices.centre[s]);
@@ -196,10 +198,11 @@ struct Fit {
 class LimbFinder {
   public:
     LimbFinder(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
-               const LimbOptions& options)
+               const LimbOptions& options, const Progress& progress)
         : slices_(slices),
           options_(options),
-          shape_(measure_slices(slices, points, scale)),
+          progress_(progress),
+          shape_(measure_slices(slices, points, scale, progress)),
           owner_(slices.size(), -1),
           owner_station_(slices.size(), 0) {}
 
@@ -210,6 +213,7 @@ class LimbFinder {
         while (!waiting_.empty()) {
             const Candidate candidate = waiting_.top();
             waiting_.pop();
+            progress_.check();
             place(candidate);
         }
         return std::move(limbs_);
@@ -412,6 +416,7 @@ class LimbFinder {
 
     const Slices& slices_;
     const LimbOptions& options_;
+    const Progress& progress_;
     SliceShape shape_;
     std::vector<Limb> limbs_;
     std::vector<LimbAxis> axes_;
@@ -424,8 +429,8 @@ class LimbFinder {
 }  // namespace
 
 std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
-                             const LimbOptions& options) {
-    return LimbFinder(slices, points, scale, options).run();
+                             const LimbOptions& options, const Progress& progress) {
+    return LimbFinder(slices, points, scale, options, progress).run();
 }
 
 }  // namespace treerec

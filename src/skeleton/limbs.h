@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "progress.h"
 #include "skeleton/slices.h"
 
 namespace treerec {
@@ -34,6 +35,6 @@ struct LimbOptions {
 // leaves its parent and touches it again further on is no branch, for wood has no loops: it is another side
 // of the same stem, and is merged with the parent's slices.
 std::vector<Limb> find_limbs(const Slices& slices, const std::vector<Vec3>& points, const LocalScale& scale,
-                             const LimbOptions& options);
+                             const LimbOptions& options, const Progress& progress);
 
 }  // namespace treerec

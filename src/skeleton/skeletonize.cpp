@@ -169,7 +169,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
 
     const Slices slices = cut_slices(points, graph, scale, paths, root.position, progress);
     progress.check();
-    std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options);
+    std::vector<Limb> limbs = find_limbs(slices, points, scale, limb_options, progress);
     clock.stop("Branches", limbs.size());
 
     progress.update(0.8, "Radii");

@@ -99,7 +99,7 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
         const LocalScale trial = scaled(factor);
         const Slices slices = cut_slices(points, graph, trial, paths, root, progress);
         progress.check();
-        std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs);
+        std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs, progress);
         const std::vector<std::vector<Station>> axes =
             fit_axes(limbs, slices, points, trial, axis_options, progress);
         std::vector<Belief> beliefs(limbs.size());

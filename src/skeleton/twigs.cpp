@@ -32,12 +32,13 @@ class TwigFinder {
         field_.nearest.assign(points.size(), -1);
     }
 
-    void take_slices(const Slices& slices) {
+    void take_slices(const Slices& slices, const Progress& progress) {
         auto take = [&](int32_t slice, int32_t limb, int32_t at) {
             for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
                 claim(v, bark_.on_limb(limb, at, DVec3(points_[v])));
         };
         parallel_for(limbs_.size(), 16, [&](size_t begin, size_t end) {
+            progress.check();
             for (size_t l = begin; l < end; l++) {
                 const Limb& limb = limbs_[l];
                 const int32_t index = static_cast<int32_t>(l);
@@ -49,7 +50,7 @@ class TwigFinder {
                     take(limb.absorbed[a], index, limb.absorbed_at[a]);
             }
         });
-        find_others();
+        find_others(progress);
         while (field_.foot_end + 1 < static_cast<int32_t>(axes_[0].size()) &&
                glm::distance(axes_[0][field_.foot_end].position, axes_[0][0].position) <
                    kFoot * axes_[0][0].radius)
@@ -63,8 +64,9 @@ class TwigFinder {
     }
 
     // Around a fork, a slice of one limb has points on the bark of another.
-    void find_others() {
+    void find_others(const Progress& progress) {
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
+            progress.check();
             uint32_t hint = 0;
             for (size_t v = begin; v < end; v++) {
                 if (field_.limb[v] >= 0) continue;
@@ -172,7 +174,7 @@ PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, 
                       const PathTree& paths, const Slices& slices, const TwigOptions& options,
                       std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress) {
     TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
-    finder.take_slices(slices);
+    finder.take_slices(slices, progress);
     finder.run(progress);
     finder.take_blur(progress);
     return std::move(finder).places();
