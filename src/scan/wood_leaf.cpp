@@ -86,8 +86,8 @@ constexpr double kSharp = 0.35;
 constexpr std::array<RoundStemSearch, 2> kBarkSearches{{{}, kRoughBark}};
 
 constexpr double kMuchHidden = 0.3;
-constexpr size_t kVotes = 20000;     // cells, at most, that the branches are judged by
-constexpr double kNearlyAll = 0.93;  // of the points are leaves: what wood there is was guessed
+constexpr size_t kVotes = 20000;    // cells, at most, that the branches are judged by
+constexpr double kNearlyAll = 0.9;  // of the points are leaves: what wood there is was guessed
 
 float logit_by_shape(const CellShape* shapes, const CellPath& path) {
     float sum = kBias + sum_of_terms(shapes, kShapeTerms);
@@ -407,8 +407,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         leaves += is_leaf;
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
-    if (told_by_shape && !result.by_colour && !result.fronds && result.leaf_share < kNearlyAll)
-        add_leafiness();
+    if (told_by_shape && !result.fronds && result.leaf_share < kNearlyAll) add_leafiness();
     if (result.hidden_share > kMuchHidden)
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +

@@ -1,12 +1,12 @@
 #include "skeleton/leaf_twigs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fidelity/segment_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
-#include "tree/branches.h"
 
 namespace treerec {
 
@@ -18,23 +18,18 @@ constexpr double kThickest = 0.05;  // that of thicker wood counting as this
 constexpr double kSteps = 1024.0;   // of a logit: sums over whole numbers do not feel the points' order
 constexpr double kAllPoints = 2.0;  // points as leafy as all of them that count for every segment's own
 
-// Fitted by iteratively reweighted least squares to 160 virtual scans in leaf (seven habits, seeds 1 to 5, 40
-// and 80 % of full foliage, noise of 0, 3 and 10 mm, whole and with 60 % hidden): whether a place on the
-// skeleton lies within the larger of 1 cm and the radius of true wood. On seeds 11 to 13 the area under the
-// curve is 0.85 by length. Measured or bridged radius, thickness, order, roundness and density of points add
-// nothing to the F that pruning reaches.
-constexpr double kBias = -0.71;
-constexpr double kOwn = -0.92;           // per unit of the segment's mean logit,
-constexpr double kAll = 0.44;            // of that of all points,
-constexpr double kCarries = 0.19;        // and of ln of the wood beyond the segment, in tree's extents,
-constexpr double kLeastCarried = 0.001;  // and so many more
-// Where hardly any of the skeleton is wood, the best threshold for F is half of the F that is reached
-// (Lipton, Elkan and Naryanaswamy 2014). Where a third is, much more wood is hidden by leaves, and the tree
-// would become too short. Both ends by F and by the error of the length on seeds 11 to 13; seeds 21 to 23
-// gained as much.
-constexpr double kMostChance = 0.2;
-constexpr double kNoneFrom = 0.335;  // of the length is wood, by the sum of chances
-constexpr double kSlope = 1.3;
+// Fitted to the skeletons of virtual scans in leaf (seven habits, seeds 21 and 22, 20 to 90 % of full
+// foliage, 40,000 to 1.5 million points, noise of 1 to 10 mm, up to half hidden): how much of a stretch lies
+// within the larger of 1 cm and the radius of true wood.
+constexpr double kBias = -7.796;
+constexpr std::array<double, 7> kWeights{0.294, -0.525, -0.177, 4.428,
+                                         0.834, 0.782,  -0.242};  // of looks_of()
+constexpr double kLeastCarried = 0.001;                           // tree's extents
+constexpr double kLeastRadius = 1e-4;                             // metres
+// What a stretch has to have, at least: best for F on the same scans, and for the length. Where most points
+// were told to be leaves, much of the wood was missed, and the tree would become too short.
+constexpr double kLeastChance = 0.22;
+constexpr double kManyLeaves = 0.6, kNearlyAllLeaves = 0.9;
 
 // By point the node at the end of the segment on which it lies, or kNoNode.
 class LiesOn {
@@ -73,11 +68,51 @@ class LiesOn {
     std::vector<NodeId> on_;
 };
 
-// By node id, of its segment; 0 for the root.
-std::vector<double> chances_of(const Tree& tree, const std::vector<NodeId>& on,
-                               const std::vector<float>& leafiness) {
-    const auto ids = static_cast<size_t>(tree.id_end());
-    std::vector<int64_t> sums(ids, 0), counts(ids, 0);
+// Wood without a fork, from where it grows out of other wood to the next fork or the tip.
+struct Stretch {
+    NodeId first = kNoNode;  // its lowest segment, by the node at the end
+    NodeId last = kNoNode;
+    double length = 0.0;
+    double carried = 0.0;  // metres of wood of it and beyond it
+    double reach = 0.0;    // metres from its start to the farthest tip
+    int64_t sum = 0;       // of its points' logits, in steps
+    int64_t voices = 0;    // so many points
+};
+
+struct Stretches {
+    std::vector<Stretch> all;      // parents first
+    std::vector<int32_t> of_node;  // by node id; -1 for the root
+    double mean_logit = 0.0;       // of all points
+};
+
+Stretches find_stretches(const Tree& tree, const std::vector<NodeId>& order, const std::vector<NodeId>& on,
+                         const std::vector<float>& leafiness) {
+    Stretches found;
+    found.of_node.assign(static_cast<size_t>(tree.id_end()), -1);
+    for (const NodeId id : order) {
+        if (id == tree.root()) continue;
+        const NodeId parent = tree.node(id).parent;
+        const NodeId sibling = tree.node(parent).first_child;
+        const bool alone = sibling == id && tree.node(id).next_sibling == kNoNode;
+        if (parent == tree.root() || !alone) {
+            found.of_node[id] = static_cast<int32_t>(found.all.size());
+            found.all.push_back({id, id});
+        } else {
+            found.of_node[id] = found.of_node[parent];
+        }
+        Stretch& stretch = found.all[found.of_node[id]];
+        stretch.last = id;
+        stretch.length += glm::distance(tree.node(id).position, tree.node(parent).position);
+    }
+    for (size_t s = found.all.size(); s-- > 0;) {
+        Stretch& stretch = found.all[s];
+        stretch.carried += stretch.length;
+        stretch.reach += stretch.length;
+        const int32_t below = found.of_node[tree.node(stretch.first).parent];
+        if (below < 0) continue;
+        found.all[below].carried += stretch.carried;
+        found.all[below].reach = std::max(found.all[below].reach, stretch.reach);
+    }
     int64_t sum = 0, voices = 0;
     for (size_t i = 0; i < on.size(); i++) {
         if (std::isnan(leafiness[i])) continue;
@@ -85,78 +120,92 @@ std::vector<double> chances_of(const Tree& tree, const std::vector<NodeId>& on,
         sum += logit;
         voices++;
         if (on[i] == kNoNode) continue;
-        sums[on[i]] += logit;
-        counts[on[i]]++;
+        found.all[found.of_node[on[i]]].sum += logit;
+        found.all[found.of_node[on[i]]].voices++;
     }
-    const double all =
+    found.mean_logit =
         static_cast<double>(sum) / (kSteps * static_cast<double>(std::max<int64_t>(1, voices)));
-    const std::vector<double> carried = subtree_lengths(tree);
-    const DVec3 size = tree.bounds().size();
-    const double extent = std::max({size.x, size.y, size.z});
-    std::vector<double> chances(ids, 0.0);
-    for (const NodeId id : tree.depth_first()) {
-        if (id == tree.root()) continue;
-        const double own = (static_cast<double>(sums[id]) / kSteps + kAllPoints * all) /
-                           (static_cast<double>(counts[id]) + kAllPoints);
-        const double logit =
-            kBias + kOwn * own + kAll * all + kCarries * portable::log(carried[id] / extent + kLeastCarried);
-        chances[id] = 1.0 / (1.0 + portable::exp(-logit));
-    }
-    return chances;
+    return found;
+}
+
+// What tells whether a stretch is wood: how much it carries, how leafy its points and all points are, how
+// straight it is and how straight on it grows, how long it reaches by its radius, and in metres (twigs as
+// short as leaves, where there are leaves, are their stalks and edges).
+std::array<double, 7> looks_of(const Stretch& stretch, const Tree& tree, double extent, double mean_logit) {
+    const Node& start = tree.node(tree.node(stretch.first).parent);
+    const DVec3 chord = tree.node(stretch.last).position - start.position;
+    DVec3 before = chord;
+    if (start.parent != kNoNode) before = start.position - tree.node(start.parent).position;
+    const double reach = std::max(stretch.reach, kLeastRadius);
+    return {portable::log(stretch.carried / extent + kLeastCarried),
+            (static_cast<double>(stretch.sum) / kSteps + kAllPoints * mean_logit) /
+                (static_cast<double>(stretch.voices) + kAllPoints),
+            mean_logit,
+            glm::length(chord) / std::max(stretch.length, kLeastRadius),
+            glm::dot(normalized_or(chord, DVec3(0.0)), normalized_or(before, DVec3(0.0))),
+            portable::log(reach / (tree.node(stretch.first).radius + kLeastRadius)),
+            portable::log(reach) * mean_logit};
+}
+
+double chance_of(const std::array<double, 7>& looks) {
+    double logit = kBias;
+    for (size_t i = 0; i < looks.size(); i++)
+        logit += kWeights[i] * looks[i];
+    return 1.0 / (1.0 + portable::exp(-logit));
 }
 
 }  // namespace
 
 DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const std::vector<float>& leafiness,
-                             const Progress& progress) {
-    if (tree.size() < 2 || points.empty()) return {};
+                             double leaf_share, const Progress& progress) {
+    const double least_chance =
+        kLeastChance *
+        std::clamp((kNearlyAllLeaves - leaf_share) / (kNearlyAllLeaves - kManyLeaves), 0.0, 1.0);
+    if (tree.size() < 2 || points.empty() || !(least_chance > 0.0)) return {};
     LiesOn places(points, tree);
     places.find([&](size_t i) { return !std::isnan(leafiness[i]); }, progress);
     const std::vector<NodeId>& on = places.on();
-    const std::vector<double> chances = chances_of(tree, on, leafiness);
     const std::vector<NodeId> order = tree.depth_first();
-    const auto length_of = [&](NodeId id) {
-        return glm::distance(tree.node(id).position, tree.node(tree.node(id).parent).position);
-    };
-    double length = 0.0, wood = 0.0;
-    for (size_t i = 1; i < order.size(); i++) {
-        length += length_of(order[i]);
-        wood += chances[order[i]] * length_of(order[i]);
-    }
-    const double threshold = std::min(kMostChance, kSlope * (kNoneFrom - wood / length));
-    if (!(threshold > 0.0)) return {};
+    const Stretches stretches = find_stretches(tree, order, on, leafiness);
+    const std::vector<Stretch>& all = stretches.all;
+    progress.check();
 
-    // A tree is no lower for want of wood that is seen: the way to its top stays.
+    // A tree is no lower for want of wood that is seen: the way to its top stays. So does the trunk.
     NodeId top = tree.root();
     for (const NodeId id : order)
         if (tree.node(id).position.y > tree.node(top).position.y) top = id;
-    std::vector<uint8_t> stays(chances.size(), 0);
-    for (NodeId id = top; id != kNoNode; id = tree.node(id).parent)
-        stays[id] = 1;
+    std::vector<uint8_t> stays(all.size(), 0);
+    for (NodeId id = top; id != tree.root(); id = tree.node(id).parent)
+        stays[stretches.of_node[id]] = 1;
+    for (const NodeId id : order)
+        if (id != tree.root() && tree.node(id).is_trunk()) stays[stretches.of_node[id]] = 1;
 
-    // What keeping a subtree is worth, at best.
-    std::vector<double> worth(chances.size(), 0.0);
-    for (size_t i = order.size(); i-- > 1;) {
-        const NodeId id = order[i];
-        worth[id] += length_of(id) * (chances[id] - threshold);
-        worth[tree.node(id).parent] += std::max(0.0, worth[id]);
+    // What keeping a stretch and what it carries is worth, at best.
+    const DVec3 size = tree.bounds().size();
+    const double extent = std::max({size.x, size.y, size.z});
+    std::vector<double> worth(all.size(), 0.0);
+    for (size_t s = all.size(); s-- > 0;) {
+        const double chance = chance_of(looks_of(all[s], tree, extent, stretches.mean_logit));
+        worth[s] += all[s].length * (chance - least_chance);
+        const int32_t below = stretches.of_node[tree.node(all[s].first).parent];
+        if (below >= 0) worth[below] += std::max(0.0, worth[s]);
     }
-    std::vector<uint8_t> dropped(chances.size(), 0);
+    std::vector<uint8_t> dropped(all.size(), 0);
     std::vector<NodeId> tops;
     DroppedTwigs result;
-    for (size_t i = 1; i < order.size(); i++) {
-        const NodeId id = order[i];
-        const bool below = dropped[tree.node(id).parent] != 0;
-        if (!below && (tree.node(id).is_trunk() || stays[id] != 0 || worth[id] > 0.0)) continue;
-        dropped[id] = 1;
-        result.length += length_of(id);
-        if (!below) tops.push_back(id);
+    for (size_t s = 0; s < all.size(); s++) {
+        const int32_t below = stretches.of_node[tree.node(all[s].first).parent];
+        const bool fallen = below >= 0 && dropped[below] != 0;
+        if (!fallen && (stays[s] != 0 || worth[s] > 0.0)) continue;
+        dropped[s] = 1;
+        result.length += all[s].length;
+        if (!fallen) tops.push_back(all[s].first);
     }
     if (tops.empty()) return {};
     places.find([&](size_t i) { return std::isnan(leafiness[i]); }, progress);
     result.leaf.resize(points.size());
     for (size_t i = 0; i < points.size(); i++)
-        result.leaf[i] = on[i] != kNoNode && dropped[on[i]] != 0;
+        result.leaf[i] = on[i] != kNoNode && dropped[stretches.of_node[on[i]]] != 0;
     for (const NodeId id : tops)
         tree.remove_subtree(id);
     tree = tree.compacted();

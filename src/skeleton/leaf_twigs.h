@@ -26,6 +26,6 @@ struct DroppedTwigs {
 // Neither the order of the points nor the number of threads changes anything. O(points log nodes). Throws
 // Cancelled, before anything is changed.
 DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const std::vector<float>& leafiness,
-                             const Progress& progress);
+                             double leaf_share, const Progress& progress);
 
 }  // namespace treerec

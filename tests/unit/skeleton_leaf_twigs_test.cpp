@@ -67,6 +67,15 @@ TEST(LeafTwigs, HalfOfTheFoliageIsEnough) {
     }
 }
 
+// Dense scans show leaves as surfaces: their stalks and edges became twigs, and the tree three times as long
+// (851 m; precision was 0.31).
+TEST(LeafTwigs, ADenseScanIsNotFollowedIntoEachLeaf) {
+    const Found found = find_again(Habit::kForked, 0.3, 12, 500000);
+    EXPECT_GT(found.score.match.precision, 0.6);
+    EXPECT_GT(found.score.match.recall, 0.75);
+    EXPECT_LT(std::abs(found.score.length_error), 0.3);
+}
+
 TEST(LeafTwigs, ABareTreeKeepsItsTwigs) {
     for (const Habit habit : {Habit::kBroadleaf, Habit::kConifer, Habit::kBirch}) {
         const Found found = find_again(habit, 0.0, 12, 15000);
@@ -101,14 +110,14 @@ Sample two_branches(double left_top = 2.5) {
     };
     at = grow(at, {0.0, 2.0, 0.0}, 0.1, 2.0F, kTrunkFlag);
     for (const double side : {-1.0, 1.0}) {
-        const float leafiness = side < 0.0 ? 2.0F : -3.0F;
+        const float leafiness = side < 0.0 ? 6.0F : -3.0F;
         const NodeId middle = grow(at, {side, 2.5, 0.0}, 0.01, leafiness, 0);
         grow(middle, {2.0 * side, side < 0.0 ? left_top : 2.6, 0.0}, 0.005, leafiness, 0);
-        grow(middle, {side, 2.5, 1.0}, 0.005, 2.0F, 0);
+        grow(middle, {side, 2.5, 1.0}, 0.005, 6.0F, 0);
     }
     // Leaves all around, so that little of the skeleton looks like wood.
-    grow(at, {0.0, 2.0, 2.2}, 0.01, 2.5F, 0);
-    grow(at, {0.0, 2.0, -2.2}, 0.01, 2.5F, 0);
+    grow(at, {0.0, 2.0, 2.2}, 0.01, 6.5F, 0);
+    grow(at, {0.0, 2.0, -2.2}, 0.01, 6.5F, 0);
     return sample;
 }
 
@@ -116,7 +125,7 @@ TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
     Sample sample = two_branches();
     const double kept = 2.0 + std::sqrt(1.25) + std::sqrt(1.01), gone = 3.0 + std::sqrt(1.25) + 4.4;
     const DroppedTwigs dropped =
-        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, SubProgress(nullptr, 0.0, 1.0));
+        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     ASSERT_EQ(sample.tree.size(), 4U);
     for (const NodeId id : sample.tree.depth_first())
@@ -140,7 +149,7 @@ TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
 // A tall conifer's leader was dropped with the needles around it, and the tree was five metres too low.
 TEST(LeafTwigs, TheWayToTheTopStays) {
     Sample sample = two_branches(4.0);
-    drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, SubProgress(nullptr, 0.0, 1.0));
+    drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     EXPECT_EQ(sample.tree.size(), 6U);
     EXPECT_NEAR(sample.tree.bounds().max.y, 4.0, 0.01);
@@ -151,15 +160,15 @@ TEST(LeafTwigs, TheOrderOfThePointsAndTheThreadsChangeNothing) {
     std::reverse(other.points.begin(), other.points.end());
     std::reverse(other.leafiness.begin(), other.leafiness.end());
     const SubProgress progress(nullptr, 0.0, 1.0);
-    const DroppedTwigs a = drop_leaf_twigs(one.tree, one.points, one.leafiness, progress);
-    DroppedTwigs b = drop_leaf_twigs(other.tree, other.points, other.leafiness, progress);
+    const DroppedTwigs a = drop_leaf_twigs(one.tree, one.points, one.leafiness, 0.0, progress);
+    DroppedTwigs b = drop_leaf_twigs(other.tree, other.points, other.leafiness, 0.0, progress);
     std::reverse(b.leaf.begin(), b.leaf.end());
     EXPECT_EQ(a.leaf, b.leaf);
     EXPECT_EQ(a.length, b.length);
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         Sample again = two_branches();
-        const DroppedTwigs c = drop_leaf_twigs(again.tree, again.points, again.leafiness, progress);
+        const DroppedTwigs c = drop_leaf_twigs(again.tree, again.points, again.leafiness, 0.0, progress);
         EXPECT_EQ(a.leaf, c.leaf);
         EXPECT_EQ(a.length, c.length);
     }
@@ -172,8 +181,8 @@ TEST(LeafTwigs, PointsWithoutAVoiceGoWithTheirBranch) {
     for (size_t i = 0; i < some.leafiness.size(); i++)
         if (i % 3 != 0) some.leafiness[i] = std::numeric_limits<float>::quiet_NaN();
     const SubProgress progress(nullptr, 0.0, 1.0);
-    const DroppedTwigs a = drop_leaf_twigs(all.tree, all.points, all.leafiness, progress);
-    const DroppedTwigs b = drop_leaf_twigs(some.tree, some.points, some.leafiness, progress);
+    const DroppedTwigs a = drop_leaf_twigs(all.tree, all.points, all.leafiness, 0.0, progress);
+    const DroppedTwigs b = drop_leaf_twigs(some.tree, some.points, some.leafiness, 0.0, progress);
     EXPECT_EQ(a.leaf, b.leaf);
     EXPECT_EQ(a.length, b.length);
 }
@@ -184,7 +193,7 @@ TEST(LeafTwigs, WoodStaysWhereTheSkeletonLooksLikeWood) {
     for (float& logit : sample.leafiness)
         logit = -3.0F;
     const DroppedTwigs dropped =
-        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, SubProgress(nullptr, 0.0, 1.0));
+        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
     EXPECT_EQ(dropped.length, 0.0);
     EXPECT_TRUE(dropped.leaf.empty());
     EXPECT_EQ(sample.tree.size(), nodes);
