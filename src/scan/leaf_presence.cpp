@@ -43,6 +43,10 @@ constexpr double kSurelyLush = 3.0;
 // Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
 constexpr double kSparseFilled = 0.37;
 
+// Of blurred bare trees none is as lush as that and fills more than 0.43; leafy ones are at 5.3 and 0.46 or
+// more.
+constexpr double kSurelyFilled = 0.445;
+
 constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to 0.25
 // Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
 constexpr double kBroadPlanarity = 0.4;
@@ -141,6 +145,10 @@ bool is_in_leaf(const CrownLooks& looks, double share, double leafiness) {
     if (share < kLeastShare) return leafiness > kSurelyLush;
     // Of a bare tree's twigs too few points may be left to look like twigs.
     return leafiness > 0.0 || (share >= kSureShare && looks.filled >= kSparseFilled);
+}
+
+bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+    return is_in_leaf(looks, share, leafiness) && leafiness > kSurelyLush && looks.filled > kSurelyFilled;
 }
 
 }  // namespace treerec

@@ -40,5 +40,7 @@ bool looks_like_fronds(const CrownLooks& looks);
 
 // Of a cloud that resolves leaves. share: of leaves, as the logistic rule finds it. leafiness: leaf_rule.h's.
 bool is_in_leaf(const CrownLooks& looks, double share, double leafiness);
+// Likewise beyond the doubts that remain where means of a blurred scan's points are looked at.
+bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness);
 
 }  // namespace treerec

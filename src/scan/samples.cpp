@@ -92,6 +92,29 @@ Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Pro
     return samples;
 }
 
+Samples average_samples(const Samples& samples, double cell, const Progress* progress) {
+    const CellGrid grid(samples.points, {low_corner(samples.ranges), cell}, progress);
+    Samples means;
+    means.ranges = samples.ranges;
+    means.points.resize(grid.size());
+    std::vector<uint32_t> cell_of(samples.points.size());
+    parallel_for(grid.size(), kCellsPerTask, [&](size_t begin, size_t end) {
+        if (progress) progress->check();
+        for (size_t c = begin; c < end; c++) {
+            DVec3 sum(0.0);
+            for (const uint32_t i : grid.in_cell(c)) {
+                sum += DVec3(samples.points[i]);
+                cell_of[i] = static_cast<uint32_t>(c);
+            }
+            means.points[c] = Vec3(sum / static_cast<double>(grid.in_cell(c).size()));
+        }
+    });
+    means.of_point.reserve(samples.of_point.size());
+    for (const uint32_t i : samples.of_point)
+        means.of_point.push_back(cell_of[i]);
+    return means;
+}
+
 std::vector<uint32_t> connected_components(const std::vector<Vec3>& points,
                                            const std::array<Range, 3>& ranges, double cell,
                                            const Progress* progress) {

@@ -85,6 +85,10 @@ constexpr double kSharp = 0.35;
 // Sharp bark, and that of a mobile scanner.
 constexpr std::array<RoundStemSearch, 2> kBarkSearches{{{}, kRoughBark}};
 
+// The mean of so many points, within so many times their noise, is sharp enough.
+constexpr double kFewestInMean = 1.5;
+constexpr double kMeanWidth = 3.0;
+
 constexpr double kMuchHidden = 0.3;
 constexpr size_t kVotes = 20000;    // cells, at most, that the branches are judged by
 constexpr double kNearlyAll = 0.9;  // of the points are leaves: what wood there is was guessed
@@ -274,12 +278,10 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
         verdict.other[v] = verdict.other[v] && surplus[v] < 0;
 }
 
-}  // namespace
-
-WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
-    const SubProgress progress(listener, 0.0, 1.0);
+// averaged: the samples are means of a blurred scan's points, where bare twigs still look leafy.
+WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool averaged,
+                         const Progress& progress) {
     WoodLeaf result;
-    const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
     if (samples.points.size() < kLeastPoints) return result;
     const Cells cells = make_cells(samples.points, progress);
     const size_t count = cells.count();
@@ -350,7 +352,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
             logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    const bool leafy = result.by_colour || (told_by_shape && is_in_leaf(looks, share, lush));
+    const auto& decide = averaged ? is_surely_in_leaf : is_in_leaf;
+    const bool leafy = result.by_colour || (told_by_shape && decide(looks, share, lush));
     // By leaf_rule.h; empty where it finds no leaves at all.
     const auto finer_logits = [&](const LeafLooks& where) {
         if (lush <= 0.0) return std::vector<float>();
@@ -416,6 +419,23 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
         result.warnings.emplace_back(
             "The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.");
     return result;
+}
+
+}  // namespace
+
+WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
+    const SubProgress progress(listener, 0.0, 1.0);
+    const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
+    WoodLeaf result = tell_by_samples(cloud, samples, false, progress);
+    if (!(result.noise > 0.0) || result.foliage) return result;
+    // Many points of a blurred scan together are sharp, and may show leaves.
+    const Samples means = average_samples(samples, kMeanWidth * result.noise, &progress);
+    if (kFewestInMean * static_cast<double>(means.points.size()) > static_cast<double>(samples.points.size()))
+        return result;
+    WoodLeaf sharp = tell_by_samples(cloud, means, true, progress);
+    if (!sharp.foliage || sharp.noise > 0.0) return result;
+    sharp.noise = result.noise;
+    return sharp;
 }
 
 }  // namespace treerec

@@ -24,11 +24,11 @@ struct Found {
     SkeletonScore score;
 };
 
-Found find_again(Habit habit, double leaves, uint64_t seed, size_t points) {
+Found find_again(Habit habit, double leaves, uint64_t seed, size_t points, double noise = 0.003) {
     const Tree truth = grow_tree({habit, 0.0, seed});
     VirtualScanOptions options = scan_options_for(habit);
     options.seed = seed;
-    options.noise = 0.003;
+    options.noise = noise;
     options.leaves = leaves;
     options.points = points;
     PointCloud cloud = scan_tree(truth, options).cloud;
@@ -74,6 +74,22 @@ TEST(LeafTwigs, ADenseScanIsNotFollowedIntoEachLeaf) {
     EXPECT_GT(found.score.match.precision, 0.6);
     EXPECT_GT(found.score.match.recall, 0.75);
     EXPECT_LT(std::abs(found.score.length_error), 0.3);
+}
+
+// Noise of 1 cm is wider than the gaps between so many points: all of it was told to be blurred wood, and the
+// tree was eight times as long.
+TEST(LeafTwigs, ADenseScanInLeafMayBeNoisy) {
+    const Found found = find_again(Habit::kForked, 0.5, 22, 500000, 0.01);
+    EXPECT_GT(found.result.leaf_points, 250000U);
+    EXPECT_GT(found.score.match.precision, 0.5);
+    EXPECT_LT(found.score.length_error, 0.3);
+    EXPECT_GT(found.score.length_error, -0.7);
+}
+
+TEST(LeafTwigs, ANoisyDenseScanWithoutLeavesIsWood) {
+    const Found found = find_again(Habit::kBroadleaf, 0.0, 31, 500000, 0.01);
+    EXPECT_TRUE(found.result.wood.empty());
+    EXPECT_GT(found.score.match.recall, 0.8);
 }
 
 TEST(LeafTwigs, ABareTreeKeepsItsTwigs) {
