@@ -195,8 +195,8 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
 
     clock.restart();
     if (!told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay) {
-        const DroppedTwigs dropped =
-            drop_leaf_twigs(result.tree, result.cloud.positions, told.leafiness, told.leaf_share, growing);
+        const DroppedTwigs dropped = drop_leaf_twigs(result.tree, result.cloud.positions, told.leafiness,
+                                                     {told.leaf_share, told.by_colour}, growing);
         if (!dropped.leaf.empty()) {
             told.foliage = true;
             told.leaf.resize(dropped.leaf.size(), 0);

@@ -141,7 +141,7 @@ TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
     Sample sample = two_branches();
     const double kept = 2.0 + std::sqrt(1.25) + std::sqrt(1.01), gone = 3.0 + std::sqrt(1.25) + 4.4;
     const DroppedTwigs dropped =
-        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
+        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, {}, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     ASSERT_EQ(sample.tree.size(), 4U);
     for (const NodeId id : sample.tree.depth_first())
@@ -165,7 +165,7 @@ TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
 // A tall conifer's leader was dropped with the needles around it, and the tree was five metres too low.
 TEST(LeafTwigs, TheWayToTheTopStays) {
     Sample sample = two_branches(4.0);
-    drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
+    drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, {}, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     EXPECT_EQ(sample.tree.size(), 6U);
     EXPECT_NEAR(sample.tree.bounds().max.y, 4.0, 0.01);
@@ -176,15 +176,15 @@ TEST(LeafTwigs, TheOrderOfThePointsAndTheThreadsChangeNothing) {
     std::reverse(other.points.begin(), other.points.end());
     std::reverse(other.leafiness.begin(), other.leafiness.end());
     const SubProgress progress(nullptr, 0.0, 1.0);
-    const DroppedTwigs a = drop_leaf_twigs(one.tree, one.points, one.leafiness, 0.0, progress);
-    DroppedTwigs b = drop_leaf_twigs(other.tree, other.points, other.leafiness, 0.0, progress);
+    const DroppedTwigs a = drop_leaf_twigs(one.tree, one.points, one.leafiness, {}, progress);
+    DroppedTwigs b = drop_leaf_twigs(other.tree, other.points, other.leafiness, {}, progress);
     std::reverse(b.leaf.begin(), b.leaf.end());
     EXPECT_EQ(a.leaf, b.leaf);
     EXPECT_EQ(a.length, b.length);
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         Sample again = two_branches();
-        const DroppedTwigs c = drop_leaf_twigs(again.tree, again.points, again.leafiness, 0.0, progress);
+        const DroppedTwigs c = drop_leaf_twigs(again.tree, again.points, again.leafiness, {}, progress);
         EXPECT_EQ(a.leaf, c.leaf);
         EXPECT_EQ(a.length, c.length);
     }
@@ -197,8 +197,8 @@ TEST(LeafTwigs, PointsWithoutAVoiceGoWithTheirBranch) {
     for (size_t i = 0; i < some.leafiness.size(); i++)
         if (i % 3 != 0) some.leafiness[i] = std::numeric_limits<float>::quiet_NaN();
     const SubProgress progress(nullptr, 0.0, 1.0);
-    const DroppedTwigs a = drop_leaf_twigs(all.tree, all.points, all.leafiness, 0.0, progress);
-    const DroppedTwigs b = drop_leaf_twigs(some.tree, some.points, some.leafiness, 0.0, progress);
+    const DroppedTwigs a = drop_leaf_twigs(all.tree, all.points, all.leafiness, {}, progress);
+    const DroppedTwigs b = drop_leaf_twigs(some.tree, some.points, some.leafiness, {}, progress);
     EXPECT_EQ(a.leaf, b.leaf);
     EXPECT_EQ(a.length, b.length);
 }
@@ -209,7 +209,7 @@ TEST(LeafTwigs, WoodStaysWhereTheSkeletonLooksLikeWood) {
     for (float& logit : sample.leafiness)
         logit = -3.0F;
     const DroppedTwigs dropped =
-        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, 0.0, SubProgress(nullptr, 0.0, 1.0));
+        drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, {}, SubProgress(nullptr, 0.0, 1.0));
     EXPECT_EQ(dropped.length, 0.0);
     EXPECT_TRUE(dropped.leaf.empty());
     EXPECT_EQ(sample.tree.size(), nodes);
