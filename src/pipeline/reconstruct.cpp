@@ -22,6 +22,7 @@ constexpr double kReadEnd = 0.10;
 constexpr double kOrientEnd = 0.15;
 constexpr double kCleanEnd = 0.30;
 constexpr double kLeavesEnd = 0.40;
+constexpr double kFirstSkeletonEnd = 0.75;  // where leaves may have to be taken out of it
 constexpr double kSkeletonEnd = 0.97;
 constexpr double kCompletedEnd = 0.98;
 
@@ -34,6 +35,10 @@ constexpr double kFrondShare = 0.96;  // of how far fronds reach, slack and all:
 
 // With fewer points of wood the tree is made from the leaves' too.
 constexpr size_t kLeastFollowed = 200;
+
+// Where more than this went that was grown through leaves, as a share of what stayed, the leaves' points have
+// made that crooked and thick.
+constexpr double kMuchDropped = 0.25;
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -63,6 +68,59 @@ void rebase_cloud(PointCloud& cloud, const ScanFrame& frame) {
     for (Vec3& p : cloud.positions)
         p = Vec3(DVec3(p) - base);
     cloud.frame = frame;
+}
+
+// Of what the leaves leave to follow.
+SkeletonResult skeletonize_wood(const Reconstruction& result, const WoodLeaf& told, SkeletonOptions options,
+                                SubProgress& progress) {
+    // Bushes around a stem of a plot may stand lower.
+    const PickReport& pick = result.clean.pick;
+    if (!pick.trees.empty()) options.foot = result.cloud.frame.to_tree(pick.trees[pick.taken].foot);
+    PointCloud followed;
+    if (!told.wood_path.empty()) {
+        followed = result.cloud;
+        followed.keep_only(told.wood_path);
+    }
+    const bool follow = followed.size() >= kLeastFollowed;
+    SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, options, &progress);
+    progress.check();
+    return skeleton;
+}
+
+// Takes back what was grown through leaves, and its points; where they were many, the rest is grown anew
+// without them.
+void take_back_leaves(Reconstruction& result, WoodLeaf& told, const SkeletonOptions& options,
+                      SkeletonResult& skeleton, SubProgress& progress) {
+    StageClock clock(skeleton.stages);
+    LeavesTold leaves{told.leaf_share, told.by_colour};
+    const auto drop = [&] {
+        const DroppedTwigs dropped =
+            drop_leaf_twigs(skeleton.tree, result.cloud.positions, told.leafiness, leaves, progress);
+        if (dropped.leaf.empty()) return 0.0;
+        told.foliage = true;
+        told.leaf.resize(dropped.leaf.size(), 0);
+        if (told.wood_path.empty()) told.wood_path.assign(dropped.leaf.size(), 1);
+        for (size_t i = 0; i < dropped.leaf.size(); i++) {
+            if (!dropped.leaf[i]) continue;
+            told.leaf[i] = 1;
+            told.wood_path[i] = 0;
+        }
+        return dropped.length;
+    };
+    const bool much = drop() > kMuchDropped * measure(skeleton.tree).total_length;
+    clock.stop("Leaf twigs", skeleton.tree.size());
+    const auto left =
+        static_cast<size_t>(std::count(told.wood_path.begin(), told.wood_path.end(), uint8_t{1}));
+    if (!much || told.by_colour || left < kLeastFollowed) return;
+    SkeletonResult anew = skeletonize_wood(result, told, options, progress);
+    if (anew.tree.size() < 2) return;
+    anew.stages.insert(anew.stages.begin(), skeleton.stages.begin(), skeleton.stages.end());
+    skeleton = std::move(anew);
+    rebase_cloud(result.cloud, skeleton.tree.frame());
+    clock.restart();
+    leaves.grown_anew = true;
+    drop();
+    clock.stop("Leaf twigs", skeleton.tree.size());
 }
 
 Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf, const Progress& progress) {
@@ -163,21 +221,19 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
     clock.stop("Leaves", result.cloud.size(), kept);
     telling.check();
 
-    SubProgress growing(progress, kLeavesEnd, kSkeletonEnd);
-    PointCloud followed;
-    if (told.foliage) {
-        followed = result.cloud;
-        followed.keep_only(told.wood_path);
-    }
-    const bool follow = followed.size() >= kLeastFollowed;
+    const bool doubted = !told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay;
+    SubProgress growing(progress, kLeavesEnd, doubted ? kFirstSkeletonEnd : kSkeletonEnd);
     SkeletonOptions skeleton_options = options.skeleton;
     skeleton_options.one_stem = skeleton_options.one_stem || told.fronds;
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
-    // Bushes around a stem of a plot may stand lower.
-    const PickReport& pick = result.clean.pick;
-    if (!pick.trees.empty()) skeleton_options.foot = result.cloud.frame.to_tree(pick.trees[pick.taken].foot);
-    SkeletonResult skeleton = skeletonize(follow ? followed : result.cloud, skeleton_options, &growing);
-    growing.check();
+    SkeletonResult skeleton = skeletonize_wood(result, told, skeleton_options, growing);
+    if (skeleton.tree.size() < 2)
+        throw Error("No tree was found in '" + path + "': nothing in it looks like wood.");
+    rebase_cloud(result.cloud, skeleton.tree.frame());
+    if (doubted) {
+        SubProgress doubting(progress, kFirstSkeletonEnd, kSkeletonEnd);
+        take_back_leaves(result, told, skeleton_options, skeleton, doubting);
+    }
     append(result.warnings, skeleton.warnings);
     result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
     result.spacing = skeleton.spacing;
@@ -189,21 +245,8 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
     result.noise = told.noise;
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);
-    if (result.tree.size() < 2)
-        throw Error("No tree was found in '" + path + "': nothing in it looks like wood.");
-    rebase_cloud(result.cloud, result.tree.frame());
 
     clock.restart();
-    if (!told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay) {
-        const DroppedTwigs dropped = drop_leaf_twigs(result.tree, result.cloud.positions, told.leafiness,
-                                                     {told.leaf_share, told.by_colour}, growing);
-        if (!dropped.leaf.empty()) {
-            told.foliage = true;
-            told.leaf.resize(dropped.leaf.size(), 0);
-            for (size_t i = 0; i < dropped.leaf.size(); i++)
-                told.leaf[i] = told.leaf[i] || dropped.leaf[i];
-        }
-    }
     if (told.foliage) {
         result.foliage = foliage_of(result.cloud, told.leaf, telling);
         result.foliage.reach = told.reach;

@@ -30,6 +30,7 @@ constexpr double kLeastRadius = 1e-4;                                           
 // were told to be leaves, much of the wood was missed, and the tree would become too short.
 constexpr double kLeastChance = 0.22;
 constexpr double kLeastByColour = 0.1;  // colour has told most leaves from the wood
+constexpr double kLeastAnew = 0.8;      // of these, where the worst has gone before
 constexpr double kManyLeaves = 0.8, kNearlyAllLeaves = 0.9;
 
 // By point the node at the end of the segment on which it lies, or kNoNode.
@@ -161,7 +162,8 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
                              const LeavesTold& told, const Progress& progress) {
     const double many =
         std::clamp((kNearlyAllLeaves - told.share) / (kNearlyAllLeaves - kManyLeaves), 0.0, 1.0);
-    const double least_chance = many * (told.by_colour ? kLeastByColour : kLeastChance);
+    const double least_chance =
+        many * (told.by_colour ? kLeastByColour : kLeastChance) * (told.grown_anew ? kLeastAnew : 1.0);
     if (tree.size() < 2 || points.empty() || !(least_chance > 0.0)) return {};
     LiesOn places(points, tree);
     places.find([&](size_t i) { return !std::isnan(leafiness[i]); }, progress);

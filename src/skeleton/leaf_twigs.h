@@ -14,6 +14,7 @@ namespace treerec {
 struct LeavesTold {
     double share = 0.0;  // of all points
     bool by_colour = false;
+    bool grown_anew = false;  // without the points of what was dropped before
 };
 
 struct DroppedTwigs {

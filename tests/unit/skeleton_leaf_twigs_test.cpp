@@ -47,9 +47,9 @@ Found find_again(Habit habit, double leaves, uint64_t seed, size_t points, doubl
 // All of its wood was followed through leaves as well: precision was 0.14, the length five times too much.
 TEST(LeafTwigs, ATreeInLeafIsNotGrownThroughItsLeaves) {
     const Found found = find_again(Habit::kLeaning, 0.8, 11, 51000);
-    EXPECT_GT(found.score.match.precision, 0.3);
+    EXPECT_GT(found.score.match.precision, 0.4);
     EXPECT_GT(found.score.match.f, 0.4);
-    EXPECT_LT(std::abs(found.score.length_error), 0.3);
+    EXPECT_LT(std::abs(found.score.length_error), 0.4);
     // What lay on the wood that went is foliage.
     EXPECT_GT(found.result.leaf_points, 15000U);
     EXPECT_FALSE(found.result.foliage.empty());
@@ -71,9 +71,11 @@ TEST(LeafTwigs, HalfOfTheFoliageIsEnough) {
 // (851 m; precision was 0.31).
 TEST(LeafTwigs, ADenseScanIsNotFollowedIntoEachLeaf) {
     const Found found = find_again(Habit::kForked, 0.3, 12, 500000);
-    EXPECT_GT(found.score.match.precision, 0.6);
+    EXPECT_GT(found.score.match.precision, 0.75);
     EXPECT_GT(found.score.match.recall, 0.75);
-    EXPECT_LT(std::abs(found.score.length_error), 0.3);
+    EXPECT_LT(std::abs(found.score.length_error), 0.2);
+    // Grown anew without the leaves, the rest is no thicker than it was: 0.2 with them.
+    EXPECT_LT(std::abs(found.score.radius_error), 0.15);
 }
 
 // Noise of 1 cm is wider than the gaps between so many points: all of it was told to be blurred wood, and the
