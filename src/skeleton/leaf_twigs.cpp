@@ -30,7 +30,7 @@ constexpr double kLeastRadius = 1e-4;                                           
 // were told to be leaves, much of the wood was missed, and the tree would become too short.
 constexpr double kLeastChance = 0.22;
 constexpr double kLeastByColour = 0.1;  // colour has told most leaves from the wood
-constexpr double kLeastAnew = 0.8;      // of these, where the worst has gone before
+constexpr double kLeastAnew = 0.5;  // of these, where the worst has gone before: else the tree is too short
 constexpr double kManyLeaves = 0.8, kNearlyAllLeaves = 0.9;
 
 // By point the node at the end of the segment on which it lies, or kNoNode.

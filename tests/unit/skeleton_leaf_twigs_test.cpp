@@ -49,7 +49,7 @@ TEST(LeafTwigs, ATreeInLeafIsNotGrownThroughItsLeaves) {
     const Found found = find_again(Habit::kLeaning, 0.8, 11, 51000);
     EXPECT_GT(found.score.match.precision, 0.4);
     EXPECT_GT(found.score.match.f, 0.4);
-    EXPECT_LT(std::abs(found.score.length_error), 0.4);
+    EXPECT_LT(std::abs(found.score.length_error), 0.3);
     // What lay on the wood that went is foliage.
     EXPECT_GT(found.result.leaf_points, 15000U);
     EXPECT_FALSE(found.result.foliage.empty());
@@ -128,14 +128,14 @@ Sample two_branches(double left_top = 2.5) {
     };
     at = grow(at, {0.0, 2.0, 0.0}, 0.1, 2.0F, kTrunkFlag);
     for (const double side : {-1.0, 1.0}) {
-        const float leafiness = side < 0.0 ? 6.0F : -3.0F;
+        const float leafiness = side < 0.0 ? 3.0F : -3.0F;
         const NodeId middle = grow(at, {side, 2.5, 0.0}, 0.01, leafiness, 0);
         grow(middle, {2.0 * side, side < 0.0 ? left_top : 2.6, 0.0}, 0.005, leafiness, 0);
-        grow(middle, {side, 2.5, 1.0}, 0.005, 6.0F, 0);
+        grow(middle, {side, 2.5, 1.0}, 0.005, 3.0F, 0);
     }
     // Leaves all around, so that little of the skeleton looks like wood.
-    grow(at, {0.0, 2.0, 2.2}, 0.01, 6.5F, 0);
-    grow(at, {0.0, 2.0, -2.2}, 0.01, 6.5F, 0);
+    grow(at, {0.0, 2.0, 2.2}, 0.01, 3.5F, 0);
+    grow(at, {0.0, 2.0, -2.2}, 0.01, 3.5F, 0);
     return sample;
 }
 
