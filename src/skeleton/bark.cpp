@@ -49,7 +49,7 @@ struct Bark::Nearest {
     const DVec3 p;
     const std::vector<uint8_t>* except;
     BarkPlace best;
-    uint32_t index = 0;
+    uint32_t index;
     float reach = 0.0f;  // of the node that is looked into
 
     // Pieces that reach so far come no nearer when their middles are farther than this.
@@ -66,7 +66,8 @@ struct Bark::Nearest {
         const double distance = std::sqrt(square_to_segment(p, piece.from, piece.to, t));
         const double radius = piece.from_radius + t * (piece.to_radius - piece.from_radius);
         const double outside = distance - radius;
-        if (outside > best.outside() || (outside == best.outside() && candidate > index)) return;
+        if (outside > best.outside()) return;
+        if (outside == best.outside() && (best.limb < 0 || candidate > index)) return;
         best = {piece.limb, t < 0.5 ? piece.from_station : piece.to_station, distance, radius};
         index = candidate;
     }
@@ -104,6 +105,7 @@ void Bark::add(const Piece& piece) {
     const double reach =
         0.5 * glm::distance(piece.from, piece.to) + std::max(piece.from_radius, piece.to_radius);
     pieces_.push_back(piece);
+    thickest_ = std::max({thickest_, piece.from_radius, piece.to_radius});
     reach_.push_back(static_cast<float>(reach));
 }
 
@@ -118,9 +120,10 @@ BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
     return place;
 }
 
-BarkPlace Bark::nearest(const Vec3& p, uint32_t& hint, const std::vector<uint8_t>* except) const {
-    Nearest nearest{*this, DVec3(p), except, {}};
-    nearest.best.distance = std::numeric_limits<double>::max();
+BarkPlace Bark::nearest(const Vec3& p, double within, uint32_t& hint,
+                        const std::vector<uint8_t>* except) const {
+    Nearest nearest{*this, DVec3(p), except, {}, hint};
+    nearest.best.distance = within;
     if (!tree_) return nearest.best;
     nearest.look_at(hint);
     tree_->search(p, nearest, [&](uint32_t node) {
@@ -154,11 +157,13 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
     std::vector<uint32_t> bears(limbs.size(), 0);
     for (const Limb& limb : limbs)
         if (limb.parent >= 0) bears[limb.parent]++;
+    // All bark farther away is escaped.
+    const double far = required_escape(least_escape, bark.thickest());
     // A place that no limb but `except` explains.
     const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
         uint32_t hint = 0;
         return std::any_of(line.rbegin(), line.rend(), [&](const Station& station) {
-            const BarkPlace place = bark.nearest(Vec3(station.position), hint, &except);
+            const BarkPlace place = bark.nearest(Vec3(station.position), far, hint, &except);
             return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
         });
     };

@@ -32,9 +32,14 @@ class Bark {
     BarkPlace on_limb(int32_t limb, int32_t station, const DVec3& p) const;
 
     // The place of all limbs whose surface is nearest to p, those marked in `except` left aside; limb -1
-    // where none is left. Of equally near ones, that of the first limb. hint: 0, or what an earlier call left
-    // there, best for a place nearby: that makes the search faster and changes nothing else.
-    BarkPlace nearest(const Vec3& p, uint32_t& hint, const std::vector<uint8_t>* except = nullptr) const;
+    // where none is left that is nearer than `within` metres. Of equally near ones, that of the first limb.
+    // hint: 0, or what an earlier call left there, best for a place nearby: that makes the search faster and
+    // changes nothing else.
+    BarkPlace nearest(const Vec3& p, double within, uint32_t& hint,
+                      const std::vector<uint8_t>* except = nullptr) const;
+
+    // Metres, of all limbs.
+    double thickest() const { return thickest_; }
 
     // All limbs, those whose tips are near each other one after another.
     std::vector<int32_t> limbs_by_place() const;
@@ -56,6 +61,7 @@ class Bark {
     const std::vector<Limb>& limbs_;
     const std::vector<std::vector<Station>>& axes_;
     std::vector<Piece> pieces_;
+    double thickest_ = 0.0;
     std::unique_ptr<PointTree> tree_;  // of the pieces' middles
     std::vector<float> reach_;         // by piece: metres that its bark reaches at most from its middle
     std::vector<float> node_reach_;    // by node of tree_: the largest of its pieces

@@ -28,15 +28,18 @@ struct TwigField {
     int32_t foot_end = 0;               // of the first limb: the first station above the foot
     std::vector<int32_t> limb = {};     // by point: the limb whose bark it lies on, -1 for none: a free point
     std::vector<int32_t> station = {};  // and the station there
-    std::vector<float> outside = {};  // by free point: metres from the nearest limb's bark, twigs left aside
-    std::vector<float> surface = {};  // and that limb's radius there
+    // By free point: metres from the nearest limb's bark, twigs left aside, and that limb's radius there;
+    // where it is so far that it needs no escape, infinity and 0.
+    std::vector<float> outside = {};
+    std::vector<float> surface = {};
     std::vector<int32_t> nearest = {};  // by point, -1: scratch
+
+    static constexpr double kMostTolerance = 0.02;
 
     // Metres off the bark: still explained by it.
     double tolerance(uint32_t v) const {
         constexpr double kTolerance = 0.12;  // point spacings
         constexpr double kLeastTolerance = 0.005;
-        constexpr double kMostTolerance = 0.02;
         return std::clamp(kTolerance * scale.spacing[v], kLeastTolerance, kMostTolerance);
     }
 

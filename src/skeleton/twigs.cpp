@@ -1,6 +1,7 @@
 #include "skeleton/twigs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -65,12 +66,17 @@ class TwigFinder {
 
     // Around a fork, a slice of one limb has points on the bark of another.
     void find_others(const Progress& progress) {
+        // What is farther from all bark has escaped it, and lies neither on it nor on the end of a stump.
+        const double thickest = bark_.thickest();
+        const double stump = (std::hypot(kStumpEnd, 1.0 + kBarkRelief) - 1.0) * thickest;
+        const double far = std::max(required_escape(field_.options.least_escape, thickest),
+                                    stump + TwigField::kMostTolerance);
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
             progress.check();
             uint32_t hint = 0;
             for (size_t v = begin; v < end; v++) {
                 if (field_.limb[v] >= 0) continue;
-                const BarkPlace place = bark_.nearest(points_[v], hint);
+                const BarkPlace place = bark_.nearest(points_[v], far, hint);
                 field_.outside[v] = std::numeric_limits<float>::infinity();
                 if (place.limb < 0) continue;
                 claim(static_cast<uint32_t>(v), place);

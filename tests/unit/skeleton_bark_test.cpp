@@ -55,6 +55,16 @@ TEST(Bark, EveryLimbHasOnePlaceInTheOrder) {
     }
 }
 
+TEST(Bark, KnowsItsThickestWood) {
+    Random random(5);
+    const Limbs grown = random_limbs(random);
+    double thickest = 0.0;
+    for (const std::vector<Station>& line : grown.axes)
+        for (const Station& station : line)
+            thickest = std::max(thickest, station.radius);
+    EXPECT_EQ(Bark(grown.limbs, grown.axes).thickest(), thickest);
+}
+
 TEST(Bark, NearestIsThatOfAllPieces) {
     Random random(4);
     for (int trial = 0; trial < 20; trial++) {
@@ -89,8 +99,10 @@ TEST(Bark, NearestIsThatOfAllPieces) {
                 for (size_t i = 1; i < line.size(); i++)
                     look(line[i - 1].position, line[i].position, line[i - 1].radius, line[i].radius);
             }
-            const BarkPlace place = bark.nearest(p, hint, &except);
-            if (std::find(except.begin(), except.end(), 0) == except.end()) {
+            const double within =
+                query % 4 == 0 ? random.uniform(0.0, 0.1) : std::numeric_limits<double>::max();
+            const BarkPlace place = bark.nearest(p, within, hint, &except);
+            if (!(least < within)) {
                 EXPECT_EQ(place.limb, -1);
                 continue;
             }
@@ -100,7 +112,7 @@ TEST(Bark, NearestIsThatOfAllPieces) {
             EXPECT_LT(static_cast<size_t>(place.station), grown.axes[place.limb].size());
             // Whatever the hint.
             uint32_t other = 0;
-            const BarkPlace again = bark.nearest(p, other, &except);
+            const BarkPlace again = bark.nearest(p, within, other, &except);
             EXPECT_EQ(std::pair(again.limb, again.station), std::pair(place.limb, place.station));
         }
     }
