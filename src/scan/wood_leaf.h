@@ -35,10 +35,11 @@ struct WoodLeaf {
 // scans and to real ones that have either leaves or wood alone; the tree's own share of leaves is then found
 // by expectation maximisation (Saerens, Latinne and Decaestecker 2002), and neighbours smooth one another.
 // Where all is as flat as fronds, a palm is looked for, by a finer rule (leaf_rule.h) unless the scan is
-// blurred. Colour counts where it falls into a green and another group (Otsu 1979). A scan without leaves, or
-// too sparse or noisy to show them, is left whole. Round bark that shows between the leaves is a stem
-// (round_stems.h), and what grows around its foot is not followed. The order of the points and the number of
-// threads change nothing.
+// blurred. Colour counts where it falls into a green and another group (leaf_colour.h); where the light has
+// bleached it and shape contradicts it, as in photos, colour alone tells, and all points are followed. A scan
+// without leaves, or too sparse or noisy to show them, is left whole. Round bark that shows between the
+// leaves is a stem (round_stems.h), and what grows around its foot is not followed. The order of the points
+// and the number of threads change nothing.
 WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -24,22 +24,22 @@ PointCloud thinned(const PointCloud& cloud, double share, double fading = 1.0) {
         heights.push_back(p.y);
     const double low = quantile(heights, 0.0), high = quantile(heights, 1.0);
     Random random(4);
-    PointCloud few;
-    few.frame = cloud.frame;
+    std::vector<uint8_t> keep;
     for (const Vec3& p : cloud.positions) {
         const double h = (p.y - low) / (high - low);
-        if (random.uniform() < share / (1.0 + (fading - 1.0) * h)) few.positions.push_back(p);
+        keep.push_back(random.uniform() < share / (1.0 + (fading - 1.0) * h));
     }
+    PointCloud few = cloud;
+    few.keep_only(keep);
     return few;
 }
 
 PointCloud turned(const PointCloud& cloud, double degrees) {
     const double angle = glm::radians(degrees);
-    PointCloud other;
-    other.frame = cloud.frame;
-    for (const Vec3& p : cloud.positions)
-        other.positions.emplace_back(std::cos(angle) * p.x - std::sin(angle) * p.z, p.y,
-                                     std::sin(angle) * p.x + std::cos(angle) * p.z);
+    PointCloud other = cloud;
+    for (Vec3& p : other.positions)
+        p = Vec3(std::cos(angle) * p.x - std::sin(angle) * p.z, p.y,
+                 std::sin(angle) * p.x + std::cos(angle) * p.z);
     return other;
 }
 
