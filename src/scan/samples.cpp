@@ -15,6 +15,7 @@ constexpr double kFinestCells = 16384.0;  // along the extent: next to no two po
 constexpr size_t kCellsPerTask = 8192;
 constexpr size_t kSamplesOfTree = 400000;
 constexpr double kMostSamples = 3e6;
+constexpr double kStepsOfCell = 4096.0;
 
 DVec3 low_corner(const std::array<Range, 3>& ranges) {
     return {ranges[0].low, ranges[1].low, ranges[2].low};
@@ -92,26 +93,32 @@ Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Pro
     return samples;
 }
 
-Samples average_samples(const Samples& samples, double cell, const Progress* progress) {
-    const CellGrid grid(samples.points, {low_corner(samples.ranges), cell}, progress);
+Samples average_points(const std::vector<Vec3>& positions, const std::array<Range, 3>& ranges, double cell,
+                       const Progress* progress) {
+    const DVec3 low = low_corner(ranges);
+    const CellGrid grid(positions, {low, cell}, progress);
+    // Sums of whole steps, so that the order of the points is no matter.
+    const double step = cell / kStepsOfCell;
     Samples means;
-    means.ranges = samples.ranges;
+    means.ranges = ranges;
     means.points.resize(grid.size());
-    std::vector<uint32_t> cell_of(samples.points.size());
+    means.of_point.resize(positions.size());
     parallel_for(grid.size(), kCellsPerTask, [&](size_t begin, size_t end) {
         if (progress) progress->check();
         for (size_t c = begin; c < end; c++) {
-            DVec3 sum(0.0);
+            std::array<int64_t, 3> sum{};
             for (const uint32_t i : grid.in_cell(c)) {
-                sum += DVec3(samples.points[i]);
-                cell_of[i] = static_cast<uint32_t>(c);
+                for (int axis = 0; axis < 3; axis++)
+                    sum[static_cast<size_t>(axis)] +=
+                        static_cast<int64_t>((positions[i][axis] - low[axis]) / step);
+                means.of_point[i] = static_cast<uint32_t>(c);
             }
-            means.points[c] = Vec3(sum / static_cast<double>(grid.in_cell(c).size()));
+            const auto count = static_cast<double>(grid.in_cell(c).size());
+            for (int axis = 0; axis < 3; axis++)
+                means.points[c][axis] = static_cast<float>(
+                    low[axis] + step * static_cast<double>(sum[static_cast<size_t>(axis)]) / count);
         }
     });
-    means.of_point.reserve(samples.of_point.size());
-    for (const uint32_t i : samples.of_point)
-        means.of_point.push_back(cell_of[i]);
     return means;
 }
 

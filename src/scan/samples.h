@@ -26,8 +26,10 @@ size_t samples_for(const std::vector<Vec3>& positions, const Progress* progress 
 // Every distinct point, or one point per grid cell where there would be more than `limit`.
 Samples take_samples(const std::vector<Vec3>& positions, size_t limit, const Progress* progress);
 
-// The means of the samples in each cell of a grid (metres), which evens out noise of less than a cell.
-Samples average_samples(const Samples& samples, double cell, const Progress* progress);
+// The means of the points in each cell of a grid (metres), which evens out noise of less than a cell: the
+// more, the denser the cloud. ranges: robust_ranges() of the points.
+Samples average_points(const std::vector<Vec3>& positions, const std::array<Range, 3>& ranges, double cell,
+                       const Progress* progress);
 
 // Labels the points by connected component, where points in touching cells (26 neighbours) are connected.
 // Labels are 0.. in the order of each component's first point. cell: metres.

@@ -410,7 +410,8 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     WoodLeaf result = tell_by_samples(cloud, samples, false, progress);
     if (!(result.noise > 0.0) || result.foliage) return result;
     // Many points of a blurred scan together are sharp, and may show leaves.
-    const Samples means = average_samples(samples, kMeanWidth * result.noise, &progress);
+    const Samples means =
+        average_points(cloud.positions, samples.ranges, kMeanWidth * result.noise, &progress);
     if (kFewestInMean * static_cast<double>(means.points.size()) > static_cast<double>(samples.points.size()))
         return result;
     WoodLeaf sharp = tell_by_samples(cloud, means, true, progress);

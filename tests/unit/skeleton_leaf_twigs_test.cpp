@@ -88,6 +88,15 @@ TEST(LeafTwigs, ADenseScanInLeafMayBeNoisy) {
     EXPECT_GT(found.score.length_error, -0.7);
 }
 
+// Of so many points a sixth was averaged, which left the noise as wide as a birch's twigs are apart: the tree
+// had 3,270 m of wood, nine times its own.
+TEST(LeafTwigs, AllPointsOfANoisyScanShowItsLeavesTogether) {
+    const Found found = find_again(Habit::kBirch, 0.9, 33, 1500000, 0.01);
+    EXPECT_GT(found.result.leaf_points, 1200000U);
+    EXPECT_LT(found.score.length_error, 0.3);
+    EXPECT_GT(found.score.length_error, -0.7);
+}
+
 TEST(LeafTwigs, ANoisyDenseScanWithoutLeavesIsWood) {
     const Found found = find_again(Habit::kBroadleaf, 0.0, 31, 500000, 0.01);
     EXPECT_TRUE(found.result.wood.empty());
