@@ -47,6 +47,11 @@ constexpr double kSparseFilled = 0.37;
 // more.
 constexpr double kSurelyFilled = 0.445;
 
+// Means of so many points have less than half of their noise: bare trees reach a leafiness of 4.5 then, with
+// noise of 3 cm, and leafy ones with 2 cm are above 6.6. (With 4 points, bare ones reach 8.3.)
+constexpr double kLeastInMean = 5.0;
+constexpr double kOutshining = 5.3;
+
 constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to 0.25
 // Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
 constexpr double kBroadPlanarity = 0.4;
@@ -135,6 +140,14 @@ bool may_be_leaves_not_blur(const CrownLooks& looks) {
 
 bool are_leaves_not_blur(double share, double leafiness) {
     return share < kMostBlurShare && leafiness > kLushNotBlur;
+}
+
+bool may_outshine_blur(const CrownLooks& looks, double points) {
+    return looks.resolution > kLeastResolution && points > kLeastInMean;
+}
+
+bool outshines_blur(double leafiness) {
+    return leafiness > kOutshining;
 }
 
 bool looks_like_fronds(const CrownLooks& looks) {

@@ -38,6 +38,11 @@ bool are_leaves_not_blur(double share, double leafiness);
 // Fronds are flat like no other leaves.
 bool looks_like_fronds(const CrownLooks& looks);
 
+// Where the means of a blurred scan's points lie on no surface either: whether they are sharp enough for the
+// leafiness to tell leaves all the same. points: of the scan, to a mean.
+bool may_outshine_blur(const CrownLooks& looks, double points);
+bool outshines_blur(double leafiness);
+
 // Of a cloud that resolves leaves. share: of leaves, as the logistic rule finds it. leafiness: leaf_rule.h's.
 bool is_in_leaf(const CrownLooks& looks, double share, double leafiness);
 // Likewise beyond the doubts that remain where means of a blurred scan's points are looked at.

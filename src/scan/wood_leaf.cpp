@@ -307,6 +307,11 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         look_closer();
         if (are_leaves_not_blur(share, lush)) result.noise = 0.0;
     }
+    const auto points = static_cast<double>(cloud.size()), means = static_cast<double>(samples.points.size());
+    if (result.noise > 0.0 && averaged && may_outshine_blur(looks, points / means)) {
+        look_closer();
+        if (outshines_blur(lush)) result.noise = 0.0;
+    }
     const bool told_by_shape = resolved && !(result.noise > 0.0);
     // Even blurred, fronds are flat; and their stem may have most of the points.
     const bool frond_like = looks_like_fronds(looks);
