@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 #include "skeleton/bark.h"
 #include "skeleton/twig_growth.h"
 
@@ -68,7 +69,7 @@ class TwigFinder {
     void find_others(const Progress& progress) {
         // What is farther from all bark has escaped it, and lies neither on it nor on the end of a stump.
         const double thickest = bark_.thickest();
-        const double stump = (std::hypot(kStumpEnd, 1.0 + kBarkRelief) - 1.0) * thickest;
+        const double stump = (portable::hypot(kStumpEnd, 1.0 + kBarkRelief) - 1.0) * thickest;
         const double far = std::max(required_escape(field_.options.least_escape, thickest),
                                     stump + TwigField::kMostTolerance);
         parallel_for(points_.size(), 1024, [&](size_t begin, size_t end) {
