@@ -327,7 +327,7 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         green = excess_green(cloud.colors, cell_of_point, count);
         groups = part_greens(green, weights, samples.points, cells.of_point);
     }
-    if (groups.tinted &&
+    if (groups.tinted && !frond_like &&
         agreement(logits, share, green, groups, weights, cells, progress) < kLeastAgreement) {
         tell_by_tint(green, groups, cells, cell_of_point, result, progress);
         return result;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -99,16 +101,21 @@ void bleach(PointCloud& cloud, double left) {
     }
 }
 
-TEST(LeafColour, WhereShapeAgreesLimbsAreToldFromLeavesAsEver) {
+VirtualScan dim_scan(Habit habit, double leaves) {
     GrowOptions grow;
-    grow.habit = Habit::kBirch;
+    grow.habit = habit;
     grow.seed = 3;
-    VirtualScanOptions options = scan_options_for(grow.habit);
+    VirtualScanOptions options = scan_options_for(habit);
     options.points = 60000;
-    options.leaves = 0.3;
+    options.leaves = leaves;
     options.seed = 3;
     VirtualScan made = scan_tree(grow_tree(grow), options);
     bleach(made.cloud, 0.4);
+    return made;
+}
+
+TEST(LeafColour, WhereShapeAgreesLimbsAreToldFromLeavesAsEver) {
+    const VirtualScan made = dim_scan(Habit::kBirch, 0.3);
     const WoodLeaf told = tell_wood_from_leaves(made.cloud);
     ASSERT_TRUE(told.foliage);
     size_t right = 0, known = 0, followed = 0;
@@ -120,6 +127,10 @@ TEST(LeafColour, WhereShapeAgreesLimbsAreToldFromLeavesAsEver) {
     }
     EXPECT_GT(right, 0.75 * known);
     EXPECT_LT(followed, 0.7 * told.leaf.size());
+}
+
+TEST(LeafColour, APalmIsOneInAnyLight) {
+    EXPECT_TRUE(tell_wood_from_leaves(dim_scan(Habit::kPalm, 0.5).cloud).fronds);
 }
 
 // Its stems were taken for leaves and half of its crown for wood: their bark is wavy. Against the sky, leaves
