@@ -6,14 +6,13 @@
 #include "geometry/point_tree.h"
 #include "geometry/quantile.h"
 #include "scan/leaf_cells.h"
+#include "scan/tree_heights.h"
 
 namespace treerec {
 
 namespace {
 
-// The foot, of the height.
-constexpr double kFootLow = 0.02;
-constexpr double kFootHigh = 0.15;
+constexpr double kAround = 1.5 * TreeHeights::kFootTop;  // of the height
 constexpr size_t kLookedAt = 512;
 constexpr size_t kFewest = 50;
 // A piece of a surface is this thin, of its length; points of a cloud without any are about 0.6.
@@ -25,19 +24,13 @@ constexpr double kLeastOnSurface = 0.2;
 }  // namespace
 
 double blur_of(const std::vector<Vec3>& points, const Progress& progress) {
-    std::vector<float> heights;
-    heights.reserve(points.size());
-    for (const Vec3& p : points)
-        heights.push_back(p.y);
-    const double low = quantile(heights, 0.002);
-    const double height = quantile(heights, 0.998) - low;
+    const TreeHeights heights(points);
     progress.check();
     std::vector<Vec3> foot;
     std::vector<Vec3> around;
     for (const Vec3& p : points) {
-        const double h = (p.y - low) / height;
-        if (h < 1.5 * kFootHigh) around.push_back(p);
-        if (h > kFootLow && h < kFootHigh) foot.push_back(p);
+        if (heights.of(p) < kAround) around.push_back(p);
+        if (heights.at_foot(p)) foot.push_back(p);
     }
     if (foot.size() < kFewest || around.size() <= kPieces.back()) return 0.0;
     const PointTree tree(around);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "geometry/quantile.h"
+#include "scan/tree_heights.h"
 
 namespace treerec {
 
@@ -17,11 +18,11 @@ constexpr double kLeastShare = 0.05;
 
 // Where foot and top confirm it: of the orchard's foot 0 to 4 % are of the green group, of its top all; of
 // the feet of scans without leaves 26 % or more.
-constexpr double kLeastTint = 0.03;                              // mean excess green of the green group
-constexpr double kMostOfFoot = 0.12;                             // is green,
-constexpr double kLeastOfTop = 0.7;                              // and of the top
-constexpr double kFootLow = 0.02, kFootHigh = 0.15, kTop = 0.7;  // of the height
-constexpr size_t kFewest = 50;                                   // points of each
+constexpr double kLeastTint = 0.03;   // mean excess green of the green group
+constexpr double kMostOfFoot = 0.12;  // is green,
+constexpr double kLeastOfTop = 0.7;   // and of the top
+constexpr double kTop = 0.7;          // of the height: from there on
+constexpr size_t kFewest = 50;        // points of each
 // Nine tenths of a bare foot's points lie within 0.056 of the height from their middle, those of trees with
 // boughs to the ground within 0.17 and more.
 constexpr double kWidestFoot = 0.09;
@@ -30,21 +31,15 @@ constexpr double kNarrow = 0.9;
 // Whether the foot is as narrow as stems and not green, and the top is green.
 bool rises_from_wood(const std::vector<float>& green, double middle, const std::vector<Vec3>& points,
                      const std::vector<uint32_t>& cell_of_point) {
-    std::vector<float> values;
-    values.reserve(points.size());
-    for (const Vec3& p : points)
-        values.push_back(p.y);
-    const double low = quantile(values, 0.002);
-    const double height = quantile(values, 0.998) - low;
+    const TreeHeights heights(points);
     std::vector<Vec2> foot;
     double foot_greens = 0.0, top = 0.0, top_greens = 0.0;
     for (size_t i = 0; i < points.size(); i++) {
-        const double h = (points[i].y - low) / height;
         const double is_green = green[cell_of_point[i]] > middle ? 1.0 : 0.0;
-        if (h > kFootLow && h < kFootHigh) {
+        if (heights.at_foot(points[i])) {
             foot.emplace_back(points[i].x, points[i].z);
             foot_greens += is_green;
-        } else if (h > kTop) {
+        } else if (heights.of(points[i]) > kTop) {
             top++;
             top_greens += is_green;
         }
@@ -52,6 +47,7 @@ bool rises_from_wood(const std::vector<float>& green, double middle, const std::
     if (foot.size() < kFewest || top < kFewest) return false;
     if (foot_greens > kMostOfFoot * static_cast<double>(foot.size()) || top_greens < kLeastOfTop * top)
         return false;
+    std::vector<float> values;
     Vec2 centre;
     for (int axis = 0; axis < 2; axis++) {
         values.clear();
@@ -62,7 +58,7 @@ bool rises_from_wood(const std::vector<float>& green, double middle, const std::
     values.clear();
     for (const Vec2& p : foot)
         values.push_back(glm::distance(p, centre));
-    return quantile(values, kNarrow) < kWidestFoot * height;
+    return quantile(values, kNarrow) < kWidestFoot * heights.metres();
 }
 
 }  // namespace
