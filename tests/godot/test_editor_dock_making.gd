@@ -138,6 +138,31 @@ func test_baking_writes_a_scene() -> void:
 	_end()
 
 
+# Both threads would wait for each other if each loaded one of them at that moment.
+func test_baking_loads_materials_before_it_leaves_the_main_thread() -> void:
+	_begin(grown_tree(6))
+	var presets: PackedStringArray = []
+	for part: String in ["bark", "leaf"]:
+		presets.append("res://addons/tree_reconstruction/presets/generic_%s.tres" % part)
+	for path: String in presets:
+		check(not ResourceLoader.has_cached(path), "%s was loaded before." % path)
+	_exports().bake_to(folder.path_join("baked.scn"))
+	for path: String in presets:
+		check(ResourceLoader.has_cached(path), "%s is loaded by a worker." % path)
+	await _finish()
+	_end()
+
+
+# A bake asks the renderer for what the main thread alone can answer.
+func test_the_editor_can_be_closed_while_a_tree_is_baked() -> void:
+	_begin(grown_tree(6))
+	_exports().bake_to(folder.path_join("baked.scn"))
+	# So that it is at what can't be cancelled.
+	OS.delay_msec(500)
+	_end()
+	check(_session.jobs.get_running().is_empty(), "It goes on.")
+
+
 func test_an_impostor_needs_a_window() -> void:
 	_begin(grown_tree(6))
 	var path: String = folder.path_join("oak.impostor.res")

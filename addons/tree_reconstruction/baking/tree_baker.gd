@@ -89,6 +89,9 @@ var leaf_material: Material
 ## What is shown of the tree beyond the last level, if it is given: see [TreeImpostorBaker].
 var impostor: TreeImpostor
 
+# Kept, so that loading them again is no work.
+var _loaded: Array[Material] = []
+
 
 ## What was built of a tree, before it becomes nodes.
 class Parts:
@@ -116,6 +119,12 @@ class Parts:
 ## Returns the tree as a scene.
 func bake(tree: TreeReconstruction) -> PackedScene:
 	return make_scene(tree, build(tree))
+
+
+## Loads the materials that [param tree] is baked with. To be called on the main thread before
+## [method build] and the rest run on another one: the engine can lock up if both threads load one.
+func load_materials(tree: TreeReconstruction) -> void:
+	_loaded = [_bark_of(tree), _leaf_of(tree)]
 
 
 ## Builds what [method make_scene] needs. This is the long part, and may run on any thread; it ends

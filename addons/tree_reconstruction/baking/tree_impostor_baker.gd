@@ -123,6 +123,7 @@ func _bake(tree: TreeReconstruction) -> TreeImpostor:
 	baker.collision = false
 	baker.bark_material = bark_material
 	baker.leaf_material = leaf_material
+	baker.load_materials(tree)
 	var parts: TreeBaker.Parts = await _threaded(_build.bind(baker, tree)) as TreeBaker.Parts
 	if parts == null or _cancelled:
 		return null

@@ -106,6 +106,10 @@ func shut_down() -> void:
 		cancel(job)
 	for job: Job in _jobs:
 		if job._task >= 0:
+			# A worker that asks the renderer for something waits until this thread looks.
+			while not WorkerThreadPool.is_task_completed(job._task):
+				RenderingServer.force_sync()
+				OS.delay_msec(1)
 			WorkerThreadPool.wait_for_task_completion(job._task)
 	_jobs.clear()
 	changed.emit()

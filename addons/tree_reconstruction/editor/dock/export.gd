@@ -148,6 +148,7 @@ func _bake(path: String, write: Callable) -> void:
 	baker.bark_material = session.node.bark_material
 	baker.leaf_material = session.node.leaf_material
 	baker.impostor = session.node.impostor
+	baker.load_materials(session.tree)
 	session.jobs.start(
 		tr("Baking %s") % path.get_file(),
 		_bake_and_write.bind(baker, session.tree, path, write),
