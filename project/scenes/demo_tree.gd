@@ -17,11 +17,22 @@ static func load_tree() -> TreeReconstruction:
 		_tree = node.reconstruction
 		node.free()
 	if _tree == null:
-		var grammar: LSystem = LSystem.new()
-		grammar.grammar = LSystem.get_preset("oak")
-		_tree = grammar.grow(1)
-		_tree.leaf_preset = "oak"
+		_tree = grow()
 	return _tree
+
+
+## Makes the scenes that are opened from now on show [param tree].
+static func show_tree(tree: TreeReconstruction) -> void:
+	_tree = tree
+
+
+## The oak.
+static func grow() -> TreeReconstruction:
+	var grammar: LSystem = LSystem.new()
+	grammar.grammar = LSystem.get_preset("oak")
+	var tree: TreeReconstruction = grammar.grow(1)
+	tree.leaf_preset = "oak"
+	return tree
 
 
 static func is_scanned() -> bool:

@@ -3,6 +3,8 @@ extends "./picture_suite.gd"
 
 const WindRest: GDScript = preload("res://addons/tree_reconstruction/editor/viewport/wind_rest.gd")
 const SIZE: Vector2i = Vector2i(240, 240)
+# Two equal pictures may differ in how a pixel was rounded; what moves changes more than 20.
+const ROUNDING: float = 0.1
 
 var _instance: TreeInstance3D
 var _wind: TreeWind
@@ -23,11 +25,15 @@ func _wait(seconds: float) -> void:
 	await tree.create_timer(seconds).timeout
 
 
+func _check_still(change: float, what: String) -> void:
+	check(change < ROUNDING, "%s is %f" % [what, change])
+
+
 func test_still_air_is_still_and_wind_is_not() -> void:
 	await _stage(grown_tree(2))
 	var still: Image = await _picture()
 	await _wait(0.3)
-	check_equal(_change(still, await _picture()), 0.0, "what moved in still air")
+	_check_still(_change(still, await _picture()), "what moved in still air")
 	_wind.strength = 1.0
 	var first: Image = await _picture()
 	check(_change(still, first) > 50.0, "The wind does not bend it.")
@@ -42,7 +48,7 @@ func test_a_wind_without_speed_bends_and_holds() -> void:
 	_wind.strength = 1.0
 	var east: Image = await _picture()
 	await _wait(0.3)
-	check_equal(_change(east, await _picture()), 0.0, "what moved in a wind that stands")
+	_check_still(_change(east, await _picture()), "what moved in a wind that stands")
 	_wind.direction = Vector2(-1.0, 0.0)
 	check(_change(east, await _picture()) > 50.0, "The direction does not matter.")
 	_viewport.free()
@@ -59,7 +65,7 @@ func test_without_a_node_the_project_says_how_it_blows() -> void:
 	_viewport.add_child(wind)
 	first = await _picture()
 	await _wait(0.3)
-	check_equal(_change(first, await _picture()), 0.0, "what moved against the node's will")
+	_check_still(_change(first, await _picture()), "what moved against the node's will")
 	wind.free()
 	first = await _picture()
 	await _wait(0.4)
