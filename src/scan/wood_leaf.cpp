@@ -15,6 +15,7 @@
 #include "scan/leaf_paths.h"
 #include "scan/leaf_presence.h"
 #include "scan/leaf_rule.h"
+#include "scan/lone_trunk.h"
 #include "scan/round_stems.h"
 #include "scan/samples.h"
 #include "scan/shape_terms.h"
@@ -362,7 +363,9 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         for (size_t i = 0; i < cloud.size(); i++)
             result.leafiness[i] = finer[cell_of_point[i]];
     };
-    if (!leafy && !verdict.limbs.fronds) {
+    const bool in_leaf = leafy || verdict.limbs.fronds;
+    if (in_leaf && !result.by_colour && is_lone_trunk(samples.points, progress)) return result;
+    if (!in_leaf) {
         if (told_by_shape) add_leafiness();
         return result;
     }

@@ -7,6 +7,7 @@
 #include "geometry/groups.h"
 #include "geometry/portable_math.h"
 #include "skeleton/base_end.h"
+#include "skeleton/circle_fit.h"
 
 namespace treerec {
 
@@ -22,6 +23,13 @@ constexpr double kSlabShare = 0.006;   // of the height: the slice that counts a
 constexpr double kFootReach = 0.03;  // of the height: what lies so far from a known foot belongs to its stem,
 constexpr double kFootAbove = 0.1;   // and so far above or below
 constexpr double kStemGapShare = 0.12;  // of the height: stems further from the base are other trees
+
+constexpr double kWidestStump = 0.5;    // radius, of the height
+constexpr double kStumpSlab = 0.05;     // of the height: the lowest bark
+constexpr double kStumpRough = 0.08;    // of its radius
+constexpr double kStumpCoverage = 0.6;  // of the circle
+constexpr double kStumpInside = 0.1;    // of the points
+constexpr double kStumpReach = 1.3;     // radii
 
 // The group of linked points of each vertex: the smallest vertex in it.
 std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& scale) {
@@ -55,6 +63,19 @@ RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t
     }
     root.position = sum / static_cast<double>(root.seeds.size());
     return root;
+}
+
+// The bark of a trunk that was cut off low, or scanned that far: wide for its height, but round.
+std::optional<CircleFit> find_stump(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood,
+                                    double base, double height) {
+    std::vector<DVec2> low;
+    for (size_t v = 0; v < points.size(); v++)
+        if (wood[v] && points[v].y <= base + kStumpSlab * height) low.emplace_back(points[v].x, points[v].z);
+    const std::optional<CircleFit> circle = fit_circle(low, kWidestStump * height, Random(1));
+    if (!circle || circle->radius < kStemGapShare * height || circle->spread > kStumpRough * circle->radius ||
+        circle->coverage < kStumpCoverage || circle->inside > kStumpInside)
+        return std::nullopt;
+    return circle;
 }
 
 // The lowest slab of the stem that stands there; without seeds where none does.
@@ -152,13 +173,20 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
     size_t nearest = points.size();
     for (size_t v = 0; v < points.size(); v++)
         if (in_slab(v) && (nearest == points.size() || across(v) < across(nearest))) nearest = v;
-    if (across(nearest) > kStemGapShare * size.y) centre = DVec3(points[nearest]);
+    double reach = kStemGapShare * size.y;
+    if (const std::optional<CircleFit> stump = find_stump(points, wood, base, size.y)) {
+        centre = DVec3(stump->centre.x, base, stump->centre.y);
+        reach = kStumpReach * stump->radius;
+        slab = std::max(slab, kStumpSlab * size.y);
+    } else if (across(nearest) > reach) {
+        centre = DVec3(points[nearest]);
+    }
     centre.y = base;
     // Other stems that stand as low belong to the same root.
     DVec3 sum(0.0);
     for (size_t v = 0; v < points.size(); v++) {
         const DVec3 p(points[v]);
-        if (!in_slab(v) || portable::hypot(p.x - centre.x, p.z - centre.z) > kStemGapShare * size.y) continue;
+        if (!in_slab(v) || portable::hypot(p.x - centre.x, p.z - centre.z) > reach) continue;
         root.seeds.push_back({static_cast<uint32_t>(v), p.y - base});
         sum += p;
     }
