@@ -132,7 +132,11 @@ Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version) {
     data["positions"] = to_bits(positions);
     data["radii"] = to_bits(radii);
     data["flags"] = flags;
-    data["frame"] = to_bits({frame.origin.x, frame.origin.y, frame.origin.z, frame.metres_per_unit});
+    std::vector<double> place{frame.origin.x, frame.origin.y, frame.origin.z, frame.metres_per_unit};
+    if (frame.tilt != DVec3(0.0)) {
+        place.insert(place.end(), {frame.tilt.x, frame.tilt.y, frame.tilt.z});
+    }
+    data["frame"] = to_bits(place);
     data["up_axis"] = treerec::up_axis_name(frame.up);
     return data;
 }
@@ -191,7 +195,7 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
 
     const size_t count = size_t(ids.size());
     if (size_t(parents.size()) != count || positions.size() != 3 * count || radii.size() != count ||
-        size_t(flags.size()) != count || place.size() != 4) {
+        size_t(flags.size()) != count || (place.size() != 4 && place.size() != 7)) {
         throw treerec::Error(
             "The saved tree is damaged: its lists differ in length. Reconstruct the tree again.");
     }
@@ -199,7 +203,11 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     frame.origin = DVec3(place[0], place[1], place[2]);
     frame.metres_per_unit = place[3];
     frame.up = treerec::parse_up_axis(to_std(up));
-    if (!treerec::is_finite(frame.origin) || !std::isfinite(place[3]) || place[3] <= 0.0) {
+    if (place.size() == 7) {
+        frame.tilt = DVec3(place[4], place[5], place[6]);
+    }
+    if (!treerec::is_finite(frame.origin) || !std::isfinite(place[3]) || place[3] <= 0.0 ||
+        !treerec::is_tilt(frame.tilt)) {
         throw treerec::Error(
             "The saved tree is damaged: its place in the scan isn't finite. Reconstruct the tree again.");
     }

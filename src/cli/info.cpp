@@ -30,6 +30,7 @@ void info_of_skeleton(const std::string& path, UpAxis up, bool as_json) {
         all["file"] = path;
         all["kind"] = "skeleton";
         all["up"] = up_axis_name(tree.frame().up);
+        all["tilt_degrees"] = tree.frame().tilt_degrees();
         all["metres_per_unit"] = tree.frame().metres_per_unit;
         all["origin"] = vector_json(tree.frame().origin);
         all.update(json);

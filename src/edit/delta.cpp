@@ -50,13 +50,16 @@ bool same_bits(double a, double b) {
     return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b);
 }
 
+bool same_bits(const DVec3& a, const DVec3& b) {
+    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
 }  // namespace
 
 bool TreeDelta::Whole::operator==(const Whole& other) const {
     return root == other.root && count == other.count && id_end == other.id_end &&
            frame.up == other.frame.up && same_bits(frame.metres_per_unit, other.frame.metres_per_unit) &&
-           same_bits(frame.origin.x, other.frame.origin.x) &&
-           same_bits(frame.origin.y, other.frame.origin.y) && same_bits(frame.origin.z, other.frame.origin.z);
+           same_bits(frame.origin, other.frame.origin) && same_bits(frame.tilt, other.frame.tilt);
 }
 
 TreeDelta::Whole TreeDelta::whole_of(const Tree& tree) {

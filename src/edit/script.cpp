@@ -21,6 +21,7 @@ std::string frame_line(const ScanFrame& frame) {
     append_word(line, "origin", vector_text(frame.origin));
     append_word(line, "unit", number_text(frame.metres_per_unit));
     append_word(line, "up", up_axis_name(frame.up));
+    if (frame.tilt != DVec3(0.0)) append_word(line, "tilt", vector_text(frame.tilt));
     return line;
 }
 
@@ -46,8 +47,14 @@ ScanFrame parse_frame(const CommandLine& line) {
             } catch (const Error&) {
                 throw wrong("one of: x y z -x -y -z");
             }
+        } else if (word.key == "tilt") {
+            const std::optional<std::vector<double>> n = read_numbers(word.value, ',', 3);
+            if (!n || !is_tilt({(*n)[0], (*n)[1], (*n)[2]}))
+                throw wrong("three numbers x,y,z, together less than 1");
+            frame.tilt = {(*n)[0], (*n)[1], (*n)[2]};
         } else {
-            throw CommandError("'frame' takes no '" + word.key + "'; it takes origin unit up.", word.column);
+            throw CommandError("'frame' takes no '" + word.key + "'; it takes origin unit up tilt.",
+                               word.column);
         }
     }
     return frame;

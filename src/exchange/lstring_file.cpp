@@ -46,10 +46,11 @@ class Header {
 };
 
 void read_header(std::string_view line, const std::string& path, ScanFrame& frame, LStringOptions& options) {
-    FileStamp stamp{frame.up, frame.metres_per_unit};
+    FileStamp stamp{frame.up, frame.metres_per_unit, frame.tilt};
     if (!read_stamp(line, stamp, path)) throw Error("'" + path + "', line 1, is damaged.");
     frame.up = stamp.up;
     frame.metres_per_unit = stamp.metres_per_unit;
+    frame.tilt = stamp.tilt;
     Header header(line, path);
     for (std::string_view word = header.word(); !word.empty(); word = header.word()) {
         if (word == "origin")

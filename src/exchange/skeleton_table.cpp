@@ -35,6 +35,7 @@ Tree tree_of(const SkeletonTable& table, const FileStamp& stamp, const std::stri
     ScanFrame frame;
     frame.up = stamp.up;
     frame.metres_per_unit = stamp.metres_per_unit;
+    frame.tilt = stamp.tilt;
     std::vector<DVec3> positions(count);
     std::vector<double> radii(count);
     for (size_t i = 0; i < count; i++)

@@ -43,6 +43,12 @@ std::string stamp_text(const ScanFrame& frame) {
     text += up_axis_name(frame.up);
     text += " metres_per_unit ";
     append_number(text, frame.metres_per_unit);
+    if (frame.tilt == DVec3(0.0)) return text;
+    text += " tilt";
+    for (int axis = 0; axis < 3; axis++) {
+        text += ' ';
+        append_number(text, frame.tilt[axis]);
+    }
     return text;
 }
 
@@ -68,6 +74,14 @@ bool read_stamp(std::string_view comment, FileStamp& stamp, const std::string& p
         throw Error("'" + path + "' is damaged: " + error.what());
     }
     stamp.metres_per_unit = *unit;
+    stamp.tilt = DVec3(0.0);
+    if (words.size() < 7 || words[6] != "tilt") return true;
+    for (size_t axis = 0; axis < 3; axis++) {
+        const std::optional<double> value =
+            7 + axis < words.size() ? parse_number(words[7 + axis]) : std::nullopt;
+        stamp.tilt[static_cast<int>(axis)] = value.value_or(2.0);
+    }
+    if (!is_tilt(stamp.tilt)) throw Error("'" + path + "' is damaged: its tilt is none.");
     return true;
 }
 

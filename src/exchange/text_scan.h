@@ -53,10 +53,12 @@ std::vector<std::string> split_fields(std::string_view line);
 // The place in `fields` of the first of `names` that is there, or -1.
 int find_field(const std::vector<std::string>& fields, std::initializer_list<const char*> names);
 
-// What our own files say in a comment about how they lie in space: "treerec 1 up z metres_per_unit 1".
+// What our own files say in a comment about how they lie in space: "treerec 1 up z metres_per_unit 1", and
+// " tilt x y z" after it where ScanFrame::tilt is not zero.
 struct FileStamp {
     UpAxis up = UpAxis::kZ;
     double metres_per_unit = 1.0;
+    DVec3 tilt{0.0};
 };
 std::string stamp_text(const ScanFrame& frame);
 // Reads a comment's text into `stamp`; false if it is some other comment. Throws Error for a newer version.

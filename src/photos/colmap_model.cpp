@@ -311,7 +311,7 @@ PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, 
     return model;
 }
 
-PhotoModel read_photo_model(const std::string& folder) {
+PhotoModel read_photo_model(const std::string& folder, Progress* progress) {
     for (const bool text : {false, true}) {
         const std::string ending = text ? ".txt" : ".bin";
         const std::filesystem::path cameras = path_of(folder) / ("cameras" + ending);
@@ -320,7 +320,10 @@ PhotoModel read_photo_model(const std::string& folder) {
         if (!std::filesystem::is_regular_file(cameras, failure) ||
             !std::filesystem::is_regular_file(images, failure))
             continue;
-        const FileBytes camera_bytes = read_file(utf8_of(cameras)), image_bytes = read_file(utf8_of(images));
+        SubProgress reading(progress, 0.0, 0.0);
+        const FileBytes camera_bytes = read_file(utf8_of(cameras), &reading),
+                        image_bytes = read_file(utf8_of(images), &reading);
+        reading.check();
         return parse_photo_model(camera_bytes.view(), image_bytes.view(), text, folder);
     }
     throw Error("There is no COLMAP model with cameras in '" + folder +

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "progress.h"
 
 namespace treerec {
 
@@ -51,8 +52,8 @@ struct PhotoModel {
 };
 
 // Reads cameras.bin and images.bin, or else cameras.txt and images.txt, of a folder. Throws Error with a
-// sentence where they are missing, damaged, or name a camera model that is not known here.
-PhotoModel read_photo_model(const std::string& folder);
+// sentence where they are missing, damaged, or name a camera model that is not known here, or Cancelled.
+PhotoModel read_photo_model(const std::string& folder, Progress* progress = nullptr);
 
 // The same from the files' contents. folder: what sentences call it.
 PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, bool text,

@@ -428,8 +428,10 @@ std::string made_how(const Page& page) {
     entry("Points", std::to_string(r.points_read) + " read, " + std::to_string(r.cloud.size()) +
                         " after cleaning, " + std::to_string(r.leaf_points) + " of them leaves");
     entry("Cleaning removed", removed.empty() ? "nothing" : words(removed));
-    entry("Up",
-          std::string(up_axis_name(r.orient.up)) + (r.orient.up_detected ? " (found out)" : " (as told)"));
+    const std::string up = up_axis_name(r.orient.up);
+    entry("Up", r.orient.photos > 0 ? fixed(r.tree.frame().tilt_degrees(), 1) + " degrees from " + up +
+                                          " (by " + std::to_string(r.orient.photos) + " photos)"
+                                    : up + (r.orient.up_detected ? " (found out)" : " (as told)"));
     entry("Scale", fixed(r.orient.metres_per_unit, 4) + " metres per unit" +
                        (r.orient.scale_guessed ? " (a guess)" : ""));
     entry("Thinned to", millimetres(r.spacing) + " mm between points");

@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "pipeline/ask_photos.h"
 #include "scan/check_shape.h"
 #include "scan/thin_cloud.h"
 #include "scan/wood_leaf.h"
@@ -60,6 +61,23 @@ PointCloud read_or_take(const std::string& path, const ReadCloudOptions& options
     // Not of a file that was written to meanwhile.
     if (file && FileStamp::of(path) == file) cache->read = {*file, options, cloud, report};
     return cloud;
+}
+
+// What the user left open, and the photos beside the scan tell.
+void let_photos_tell(const std::string& path, const PointCloud& cloud, ReconstructOptions& options,
+                     std::vector<std::string>& warnings, Progress& progress) {
+    if (options.orient.up) return;
+    const PhotosTell told = ask_photos(path, cloud, progress);
+    append(warnings, told.warnings);
+    if (told.photos > 0) {
+        ScanFrame frame;
+        frame.set_sky(told.sky);
+        options.orient.up = frame.up;
+        options.orient.tilt = frame.tilt;
+        options.orient.photos = told.photos;
+    }
+    if (options.clean.pick.enabled && options.clean.pick.number == 1 && !options.clean.pick.position)
+        options.clean.pick.position = told.subject;
 }
 
 // Moves the cloud into the tree's frame; both have the same axes and unit.
@@ -161,9 +179,10 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     return result;
 }
 
-Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& options,
-                                Progress* progress, ReconstructCache* cache) {
+Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& asked, Progress* progress,
+                                ReconstructCache* cache) {
     Reconstruction result;
+    ReconstructOptions options = asked;
     StageClock clock(result.stages);
     bool kept = false;
 
@@ -177,6 +196,7 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
 
     SubProgress orienting(progress, kReadEnd, kOrientEnd);
     orienting.update(0.0, "Orienting");
+    let_photos_tell(path, result.cloud, options, result.warnings, orienting);
     kept = kept && cache->has_clean(options.orient, options.clean);
     if (cache && !kept) {
         cache->clean.reset();
@@ -296,18 +316,23 @@ void score_reconstruction(Reconstruction& result, const ReconstructOptions& opti
     clock.stop("Score", result.cloud.size());
 }
 
-PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
+PointCloud load_scan(const std::string& path, const ReconstructOptions& asked, const ScanFrame& frame,
                      size_t most, Progress* progress, ReconstructCache* cache) {
     constexpr double kScanRead = 0.4, kScanOriented = 0.5, kScanCleaned = 0.9;
     bool kept = false;
     ReadCloudReport report;
     SubProgress reading(progress, 0.0, kScanRead);
     reading.update(0.0, "Reading");
-    PointCloud cloud = read_or_take(path, options.read, report, &reading, cache, kept);
+    PointCloud cloud = read_or_take(path, asked.read, report, &reading, cache, kept);
     reading.check();
+    // Which of several trees it is. What they say of the way up, and of themselves, is known.
+    ReconstructOptions options = asked;
+    std::vector<std::string> told;
+    let_photos_tell(path, cloud, options, told, reading);
     // The tree knows which way is up and how long a metre is.
     OrientOptions orient;
     orient.up = frame.up;
+    orient.tilt = frame.tilt;
     orient.metres_per_unit = frame.metres_per_unit;
     SubProgress orienting(progress, kScanRead, kScanOriented);
     orienting.update(0.0, "Orienting");

@@ -140,6 +140,8 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["removed"] = removed;
     json["up"] = up_axis_name(result.orient.up);
     json["up_detected"] = result.orient.up_detected;
+    json["up_from_photos"] = result.orient.photos;
+    json["tilt_degrees"] = result.tree.frame().tilt_degrees();
     json["metres_per_unit"] = result.orient.metres_per_unit;
     json["scale_guessed"] = result.orient.scale_guessed;
     json["scale_unknown"] = result.orient.scale_unknown;

@@ -24,7 +24,8 @@ struct ReportDetails {
 //     tree (number; null where a place or no tree was asked for), tree_at [x y z], one_tree, clean}
 //   points_read, points (after cleaning), leaf_points and leaf_share (of these), foliage_cells,
 //   removed {step: points}
-//   up, up_detected, metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
+//   up, up_detected, up_from_photos (whose cameras told it; else 0), tilt_degrees (of the sky from the axis
+//   `up`), metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
 //   its scale), origin [x y z in scan coordinates]
 //   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
 //   taken for one tree), tree_taken (its number in this list, from 1), spacing_m

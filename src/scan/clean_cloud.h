@@ -27,6 +27,8 @@ struct OrientOptions {
     std::optional<double> metres_per_unit = std::nullopt;
     std::optional<double> known_height = std::nullopt;  // metres, of the whole tree
     std::optional<KnownLength> known_length = std::nullopt;
+    DVec3 tilt{0.0};    // with `up`: ScanFrame::tilt
+    size_t photos = 0;  // whose cameras told `up` and `tilt`; 0 where the user did
 
     bool operator==(const OrientOptions&) const = default;
 };
@@ -34,6 +36,7 @@ struct OrientOptions {
 struct OrientReport {
     UpAxis up = UpAxis::kZ;
     bool up_detected = false;
+    size_t photos = 0;  // whose cameras told the way up
     double metres_per_unit = 1.0;
     bool scale_guessed = false;
     bool scale_unknown = false;  // guessed, and a cloud of this kind has no scale of its own

@@ -275,6 +275,9 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
     const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;
+        report.up_detected = options.photos > 0;
+        report.photos = options.photos;
+        cloud.frame.tilt = options.tilt;
     } else {
         const UpGuess guess = detect_up(cloud, ranges, progress);
         report.up = guess.up;

@@ -92,11 +92,17 @@ void set_scale(double height, bool on_map, const OrientOptions& options, OrientR
         const Unit unit = guess_unit(height, on_map);
         report.metres_per_unit = unit.metres;
         report.scale_guessed = true;
-        report.scale_unknown = unit.name.ends_with(" each");
+        report.scale_unknown = unit.name.ends_with(" each") || report.photos > 0;
         if (unit.metres != 1.0) {
             report.warnings.push_back("The cloud is " + short_number(height) +
                                       " units high; they were taken for " + unit.name +
                                       ". Set the scale or one known length by hand if that is wrong.");
+        } else if (report.photos > 0) {
+            report.warnings.push_back(
+                "The cloud was made of photos, which have no scale of their own; its units were taken for "
+                "metres, which makes it " +
+                short_number(height) +
+                " m high. If that is wrong, give the tree's height or one known length.");
         } else if (report.up_detected && report.up != UpAxis::kZ) {
             // Photos give no size; what photogrammetry writes is near 1 or as the user set it.
             report.scale_unknown = true;

@@ -25,6 +25,21 @@ func test_saves_and_loads_as_text_and_binary() -> void:
 		check_equal(read.build_leaf_buffer(), made.build_leaf_buffer(), "the leaves")
 
 
+# Where photos told the way up, it is along none of the scan's axes.
+func test_a_tilted_tree_keeps_its_place_in_the_scan() -> void:
+	var tilt: Quaternion = Quaternion(Vector3(1.0, 0.0, 2.0).normalized(), 0.3)
+	var tilted: Dictionary = skeleton([[-1, 0, 0, 0, 0.1, 1], [0, 0, 1, 0, 0.1, 1]])
+	tilted["up_axis"] = "y"
+	tilted["frame"] = bits(PackedFloat64Array([5.0, 6.0, 7.0, 0.5, tilt.x, tilt.y, tilt.z]))
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = tilted
+	check_equal(made.skeleton, tilted, "what saving writes")
+	var place: PackedFloat64Array = made.get_node_scan_position(1)
+	var wanted: Vector3 = Vector3(5.0, 6.0, 7.0) + tilt.inverse() * Vector3.UP / 0.5
+	check(Vector3(place[0], place[1], place[2]).distance_to(wanted) < 1e-5, "It is at %s." % place)
+	check(made.get_position_in_tree(place).distance_to(Vector3.UP) < 1e-6, "It does not come back.")
+
+
 func test_duplicate_is_independent() -> void:
 	var made: TreeReconstruction = grown_tree(4)
 	var copy: TreeReconstruction = made.duplicate() as TreeReconstruction
@@ -89,6 +104,12 @@ func test_refuses_damaged_skeletons() -> void:
 			frame[place] = number
 			bad["frame"] = bits(frame)
 			spoilt.append(bad)
+	for frame: PackedFloat64Array in [
+		[0.0, 0.0, 0.0, 1.0, 0.1], [0.0, 0.0, 0.0, 1.0, 0.9, 0.9, 0.0]
+	]:
+		var bad: Dictionary = good.duplicate(true)
+		bad["frame"] = bits(frame)
+		spoilt.append(bad)
 	expect_error(".")
 	for bad: Dictionary in spoilt:
 		var made: TreeReconstruction = TreeReconstruction.new()

@@ -190,7 +190,7 @@ TEST(EditScript, LogsReplayToTheSameBytes) {
     for (uint64_t seed = 1; seed <= 60; seed++) {
         Random random(seed);
         Tree tree = seed % 3 ? random_tree(seed, 300) : wild_tree(seed, 150);
-        if (seed % 2) tree.set_frame({{500000.125, 4000000.25, 90.5}, 0.01, UpAxis::kZ});
+        if (seed % 2) tree.set_frame({{500000.125, 4000000.25, 90.5}, 0.01, UpAxis::kZ, {0.1, -0.2, 0.05}});
         const Tree start = tree;
         EditLog log;
         while (log.entries().size() < 12 && tree.size() > 3 && tree.size() < 20000) {
@@ -288,10 +288,13 @@ TEST(EditScript, ErrorsNameLineAndColumnAndChangeNothing) {
               "Line 2, column 14: 'factor' must be a number from 0 to 1000, not 'x'.");
     EXPECT_EQ(error_of("prune\n\n  cut node=9999"), "Line 3, column 3: There is no node 9999 in this tree.");
     EXPECT_EQ(error_of("frame up=w"), "Line 1, column 10: 'up' must be one of: x y z -x -y -z, not 'w'.");
+    EXPECT_EQ(
+        error_of("frame tilt=0.9,0.9,0"),
+        "Line 1, column 12: 'tilt' must be three numbers x,y,z, together less than 1, not '0.9,0.9,0'.");
     EXPECT_EQ(error_of("frame unit=0"),
               "Line 1, column 12: 'unit' must be a positive number of metres, not '0'.");
     EXPECT_EQ(error_of("frame size=2"),
-              "Line 1, column 7: 'frame' takes no 'size'; it takes origin unit up.");
+              "Line 1, column 7: 'frame' takes no 'size'; it takes origin unit up tilt.");
     EXPECT_EQ(error_of("# treerec edit log 2\nprune"),
               "This log was written by a newer version (2; this one reads up to 1). Update to replay it.");
     const std::string newer = "# treerec edit log 2\nsomething new\n";

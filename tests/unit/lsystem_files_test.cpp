@@ -21,6 +21,7 @@ ScanFrame utm_frame() {
     frame.origin = DVec3(500123.4567890123, 5432109.876543, 231.5);
     frame.metres_per_unit = 0.3048;
     frame.up = UpAxis::kZ;
+    frame.tilt = DVec3(0.01, 0.02, -0.13);
     return frame;
 }
 
@@ -30,6 +31,7 @@ void expect_same_in_scan(const Tree& a, const Tree& b) {
     ASSERT_EQ(in_a.size(), in_b.size());
     EXPECT_EQ(a.frame().up, b.frame().up);
     EXPECT_EQ(a.frame().metres_per_unit, b.frame().metres_per_unit);
+    EXPECT_EQ(a.frame().tilt, b.frame().tilt);
     for (size_t i = 0; i < in_a.size(); i++) {
         const Node &x = a.node(in_a[i]), &y = b.node(in_b[i]);
         const double length =

@@ -83,6 +83,7 @@ void expect_same_in_scan(const Tree& a, const Tree& b) {
     }
     EXPECT_EQ(a.frame().up, b.frame().up);
     EXPECT_EQ(a.frame().metres_per_unit, b.frame().metres_per_unit);
+    EXPECT_EQ(a.frame().tilt, b.frame().tilt);
 }
 
 TEST_F(TreeFiles, RoundTripsAtUtmCoordinatesInEveryAxisAndUnit) {
@@ -92,6 +93,7 @@ TEST_F(TreeFiles, RoundTripsAtUtmCoordinatesInEveryAxisAndUnit) {
             ScanFrame frame = utm_frame();
             frame.up = up;
             frame.metres_per_unit = unit;
+            if (seed % 2) frame.tilt = DVec3(0.1, -0.2, 0.03) / static_cast<double>(seed);
             const Tree tree = random_tree(seed, static_cast<int>(1 + 37 * seed), frame);
             write_treefile(path("t.txt"), tree);
             expect_same_in_scan(tree, read_treefile(path("t.txt")));

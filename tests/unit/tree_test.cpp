@@ -285,5 +285,31 @@ TEST(ScanFrame, TurnsBackAndNeverMirrors) {
     EXPECT_THROW(parse_up_axis("up"), Error);
 }
 
+TEST(ScanFrame, TakesAnyDirectionForTheSky) {
+    Random random(1);
+    for (int round = 0; round < 1000; round++) {
+        const DVec3 sky = random.direction();
+        ScanFrame frame{{10, 20, 30}, 0.01};
+        frame.set_sky(random.uniform(0.1, 10.0) * sky);
+        EXPECT_NEAR(glm::distance(frame.turn_to_tree(sky), DVec3(0, 1, 0)), 0.0, 1e-12);
+        const DVec3 a = frame.turn_to_tree({1, 0, 0}), b = frame.turn_to_tree({0, 1, 0}),
+                    c = frame.turn_to_tree({0, 0, 1});
+        EXPECT_NEAR(glm::dot(glm::cross(a, b), c), 1.0, 1e-12);
+        EXPECT_NEAR(glm::distance(frame.to_scan(frame.to_tree({7, -8, 9})), DVec3(7, -8, 9)), 0.0, 1e-11);
+        EXPECT_TRUE(is_tilt(frame.tilt));
+        // The axis is the nearest one.
+        ScanFrame plain = frame;
+        plain.tilt = DVec3(0.0);
+        EXPECT_NEAR(std::cos(glm::radians(frame.tilt_degrees())), plain.turn_to_tree(sky).y, 1e-12);
+        EXPECT_LE(frame.tilt_degrees(), 54.74);
+    }
+    for (const char* name : {"x", "y", "z", "-x", "-y", "-z"}) {
+        ScanFrame axis, found;
+        axis.up = parse_up_axis(name);
+        found.set_sky(axis.turn_to_scan({0, 3, 0}));
+        EXPECT_EQ(found, axis) << name;
+    }
+}
+
 }  // namespace
 }  // namespace treerec

@@ -102,6 +102,12 @@ const PATTERNS: PackedStringArray = [
 		+ " were taken for metres, which makes it %s m high. If that is wrong, give the tree's height or"
 		+ " one known length."
 	),
+	(
+		"The cloud was made of photos, which have no scale of their own; its units were taken for"
+		+ " metres, which makes it %s m high. If that is wrong, give the tree's height or one known"
+		+ " length."
+	),
+	"The photos' cameras were not asked for the way up: %s",
 	"The cloud is %s m high, which is odd for a tree; check the scale and the up axis.",
 	(
 		"The shape does not tell which way is up; %s was taken. If the tree lies or hangs, set the up"

@@ -1,0 +1,28 @@
+// What the places and directions of a model's cameras tell of the scene, before any point is looked at.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "photos/colmap_model.h"
+
+namespace treerec {
+
+// The way to the sky, a unit vector in the model's coordinates. People hold a camera level: the pictures'
+// rows, or the columns of those that were taken upright and stored lying, are all perpendicular to it.
+// points: of the scene; where all pictures were stored lying, the sky is where more of it stands above the
+// cameras than below. Nothing where the pictures do not agree, or all look one way, as in a flight.
+std::optional<DVec3> sky_of(const PhotoModel& model, std::span<const DVec3> points);
+
+// The place that the photos were taken of: nearest to all lines of sight, in the model's coordinates. Nothing
+// where these are nearly parallel, or where it is not before most cameras, as from the middle of a room.
+std::optional<DVec3> subject_of(const PhotoModel& model);
+
+// The folders in which COLMAP, and what follows its habits, leaves the model of a cloud: the cloud's own,
+// sparse/ and sparse/0/ in it and beside it. Those of them with both files of cameras, the nearest first.
+std::vector<std::string> photo_models_beside(const std::string& cloud_path);
+
+}  // namespace treerec
