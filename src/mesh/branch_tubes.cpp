@@ -195,8 +195,9 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     if (tube.foot) stretch_foot(tube.flare, out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
     tube.foot_radius = points.front().radius;
-    tube.round_tip = options.level == 0 && out.back().radius >= kRoundTipRadius;
-    tube.cut = tube.round_tip && out.back().radius >= kCutRadius;
+    // From as far as coarser levels are seen, a thick end still shows.
+    tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
+    tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
     tube.base = branch.attach == kNoNode && !tube.foot;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;

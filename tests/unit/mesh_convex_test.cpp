@@ -156,5 +156,20 @@ TEST(CutFaces, ALogIsClosed) {
     }
 }
 
+// Half a metre thick, an end shows at all levels: a stump that turned into a pencil as one walked away.
+TEST(CutFaces, AThickEndStaysFlatAtAllLevels) {
+    Tree tree;
+    NodeId at = tree.add_root({0, 0, 0}, 0.27, kTrunkFlag);
+    for (int i = 1; i <= 4; i++)
+        at = tree.add_child(at, {0, 0.4 * i, 0}, 0.27, kTrunkFlag);
+    for (int level = 0; level < 4; level++) {
+        const Mesh mesh = build_branch_tubes(tree, {.level = level});
+        float high = 0.0F;
+        for (const Vec3& p : mesh.positions)
+            high = std::max(high, p.y);
+        EXPECT_NEAR(high, 1.6F, 0.01F) << level;
+    }
+}
+
 }  // namespace
 }  // namespace treerec
