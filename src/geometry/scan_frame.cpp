@@ -1,5 +1,6 @@
 #include "geometry/scan_frame.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>

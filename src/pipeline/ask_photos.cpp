@@ -1,5 +1,7 @@
 #include "pipeline/ask_photos.h"
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "error.h"

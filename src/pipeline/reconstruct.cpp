@@ -32,6 +32,9 @@ constexpr double kCompletedEnd = 0.98;
 constexpr double kLeastExplained = 0.25;
 constexpr double kLeastMeasured = 0.01;
 
+// Degrees: what photos tell is out by one or two, and a scene so near to an axis was levelled before.
+constexpr double kSameAxis = 2.0;
+
 constexpr double kFrondShare = 0.96;  // of how far fronds reach, slack and all: they arch
 
 // With fewer points of wood the tree is made from the leaves' too.
@@ -73,7 +76,7 @@ void let_photos_tell(const std::string& path, const PointCloud& cloud, Reconstru
         ScanFrame frame;
         frame.set_sky(told.sky);
         options.orient.up = frame.up;
-        options.orient.tilt = frame.tilt;
+        if (frame.tilt_degrees() > kSameAxis) options.orient.tilt = frame.tilt;
         options.orient.photos = told.photos;
     }
     if (options.clean.pick.enabled && options.clean.pick.number == 1 && !options.clean.pick.position)

@@ -222,6 +222,18 @@ TEST_F(PhotosBeside, SetATreeUpright) {
     }
 }
 
+// Out by a degree, they would tilt what is level.
+TEST_F(PhotosBeside, LeaveALevelledSceneLevel) {
+    turned_ = {};
+    turned_.up = UpAxis::kNegZ;
+    sky_ = turned_.turn_to_scan({0.0, 1.0, 0.0});
+    put_scene(scan_of(5.0, 3), {0.0, 1.6, 0.0}, 6.0);
+    const Reconstruction made = reconstruct_file(folder_.file("dense/fused.ply"), {});
+    EXPECT_EQ(made.orient.photos, 30u);
+    EXPECT_EQ(made.tree.frame().up, UpAxis::kNegZ);
+    EXPECT_EQ(made.tree.frame().tilt, DVec3(0.0));
+}
+
 TEST_F(PhotosBeside, TellWhichTreeTheyWereTakenOf) {
     std::vector<Vec3> both = scan_of(6.0, 3);
     for (const Vec3& p : scan_of(4.0, 4))
