@@ -16,6 +16,10 @@ constexpr double kSteepest = 0.7;      // rise over run of the ground, 35 degree
 constexpr double kLowPart = 0.3;       // of the height: where ground may lie
 constexpr double kLeastFilled = 0.4;   // share of the squares around that hold ground
 constexpr size_t kFewestColumns = 30;  // with ground
+constexpr double kPlant = 0.1;         // of the tree's height: what ends lower is none of it
+constexpr double kGrass = 0.04;        // likewise: as high as it may be
+constexpr size_t kBlades = 4;          // points: fewer, above the grass of a column or alone, are of blades,
+constexpr double kBladeShare = 0.2;    // if they are no more than that share of the column's lower ones
 constexpr int kTrials = 300;           // planes tried
 constexpr size_t kMostTried = 4096;    // low points that they are tried on
 constexpr int kWindow = 4;             // columns to each side that foretell how the ground runs on
@@ -276,15 +280,30 @@ void follow_relief(const std::vector<Vec3>& points, const Columns& columns, Grou
     ground.relief.swap(smooth);
 }
 
-// Marks what grows out of the ground and ends below a tenth of the tree's height.
+// Whether the ground is no steeper around a column than ground is: the underside of a crown may be.
+bool is_walkable(const Ground& ground, int column) {
+    const int x = column % ground.width, z = column / ground.width;
+    const auto relief = [&](int at_x, int at_z) {
+        const int c =
+            std::clamp(at_z, 0, ground.depth - 1) * ground.width + std::clamp(at_x, 0, ground.width - 1);
+        return static_cast<double>(ground.relief[static_cast<size_t>(c)]);
+    };
+    const DVec2 slope =
+        ground.slope +
+        DVec2(relief(x + 1, z) - relief(x - 1, z), relief(x, z + 1) - relief(x, z - 1)) / (2.0 * ground.cell);
+    return glm::length(slope) <= kSteepest;
+}
+
+// Marks what grows out of the ground and ends low, and the tips of blades.
 void find_low_plants(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges,
-                     const Ground& ground, double height, std::vector<uint8_t>& goes) {
+                     const Ground& ground, double height, const std::vector<uint8_t>& open,
+                     std::vector<uint8_t>& goes) {
     const double tolerance = ground.tolerance;
     std::vector<Vec3> low;
     std::vector<size_t> index;
     for (size_t i = 0; i < points.size(); i++) {
         const double above = ground.above(points[i]);
-        if (goes[i] || above < -ground.tolerance || above > 0.1 * height) continue;
+        if (goes[i] || above < -ground.tolerance || above > kPlant * height) continue;
         low.push_back(points[i]);
         index.push_back(i);
     }
@@ -293,16 +312,23 @@ void find_low_plants(const std::vector<Vec3>& points, const std::array<Range, 3>
     struct Plant {
         double foot = std::numeric_limits<double>::max();
         double top = std::numeric_limits<double>::lowest();
+        size_t points = 0;
+        bool open = true;
     };
     std::vector<Plant> plants(*std::max_element(label.begin(), label.end()) + size_t{1});
     for (size_t i = 0; i < low.size(); i++) {
         Plant& plant = plants[label[i]];
         plant.foot = std::min(plant.foot, ground.above(low[i]));
         plant.top = std::max(plant.top, ground.above(low[i]));
+        plant.points++;
+        plant.open = plant.open && open[index[i]];
     }
     for (size_t i = 0; i < low.size(); i++) {
         const Plant& plant = plants[label[i]];
-        if (plant.foot < 2.0 * tolerance && plant.top < 0.1 * height - tolerance) goes[index[i]] = 1;
+        const bool blades =
+            plant.open && (plant.points < kBlades || plant.foot < kGrass * height + tolerance);
+        const bool grows = plant.foot < 2.0 * tolerance || blades;
+        if (grows && plant.top < kPlant * height - tolerance) goes[index[i]] = 1;
     }
 }
 
@@ -363,12 +389,33 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground
             layers[static_cast<size_t>(c)] |= static_cast<uint8_t>(1 << static_cast<int>(layer));
     }
     constexpr uint8_t kAllLayers = (1 << kLayers) - 1;
-    for (size_t i = 0; i < points.size(); i++) {
-        if (std::abs(ground.above(points[i])) > tolerance) continue;
-        const int c = columns.column_of(points[i]);
-        goes[i] = c < 0 || layers[static_cast<size_t>(c)] != kAllLayers;
+    // Grass is thicker than the ground that was found, at its lowest points: where nothing stands above it,
+    // all of it goes.
+    const double grass = std::max(tolerance, kGrass * height);
+    std::vector<uint32_t> lying(has_ground.size()), standing(has_ground.size()), higher(has_ground.size());
+    for (const Vec3& p : points) {
+        const int c = columns.column_of(p);
+        const double above = ground.above(p);
+        if (c >= 0 && above < 2.0 * kPlant * height)
+            (above < grass ? lying : above < kPlant * height ? standing : higher)[static_cast<size_t>(c)]++;
     }
-    find_low_plants(points, ranges, ground, height, goes);
+    const auto is_open = [&](int c) {
+        const size_t k = static_cast<size_t>(c);
+        // A stem that is seen by a few points goes on.
+        const bool blades = standing[k] < kBlades && standing[k] <= kBladeShare * lying[k] && higher[k] == 0;
+        return (standing[k] == 0 || blades) && is_walkable(ground, c);
+    };
+    std::vector<uint8_t> open_columns(has_ground.size());
+    for (size_t c = 0; c < open_columns.size(); c++)
+        open_columns[c] = grass > tolerance && is_open(static_cast<int>(c));
+    std::vector<uint8_t> open(points.size());  // by point: nothing stands in its column
+    for (size_t i = 0; i < points.size(); i++) {
+        const int c = columns.column_of(points[i]);
+        open[i] = c >= 0 && open_columns[static_cast<size_t>(c)];
+        if (std::abs(ground.above(points[i])) > (open[i] ? grass : tolerance)) continue;
+        goes[i] = c < 0 || open[i] || layers[static_cast<size_t>(c)] != kAllLayers;
+    }
+    find_low_plants(points, ranges, ground, height, open, goes);
     return goes;
 }
 

@@ -68,5 +68,32 @@ TEST(LoneTrunk, IsOneStemHoweverShort) {
             }
 }
 
+// Grass as photos show it is thicker than the ground: its lower half was left, and grew twigs.
+TEST(LoneTrunk, StandsInGrass) {
+    const scan_test::Folder folder;
+    for (const size_t count : {2000, 20000})
+        for (const auto& [radius, height] : {std::pair{0.3, 2.0}, {0.25, 3.0}}) {
+            SCOPED_TRACE(std::to_string(count) + " " + std::to_string(radius));
+            Random random(2);
+            PointCloud cloud;
+            cloud.positions = trunk(7, count, radius, height, 0.01);
+            for (size_t i = 0; i < 3 * count; i++) {
+                const double turn = 2.0 * kPi * random.uniform();
+                const double off = std::sqrt(random.uniform(radius * radius, 9.0));
+                const double x = off * std::cos(turn), z = off * std::sin(turn);
+                cloud.positions.emplace_back(x, 0.05 * x + 0.02 * random.normal(), z);
+            }
+            write_cloud(folder.file("trunk.ply"), cloud);
+            ReconstructOptions options;
+            options.orient.up = UpAxis::kY;
+            options.orient.metres_per_unit = 1.0;
+            const Reconstruction made = reconstruct_file(folder.file("trunk.ply"), options);
+            EXPECT_LT(made.cloud.size(), count * 21 / 20);
+            EXPECT_LT(made.measured.volume, 1.2 * kPi * radius * radius * height);
+            EXPECT_NEAR(made.measured.height, height, 0.1 * height);
+            EXPECT_NEAR(made.measured.dbh, 2.0 * radius * (1.0 - 0.13 / height), 0.05);
+        }
+}
+
 }  // namespace
 }  // namespace treerec
