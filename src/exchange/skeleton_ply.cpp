@@ -123,7 +123,7 @@ Tree read_skeleton_ply(const std::string& path, UpAxis up) {
 Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis up) {
     if (!is_ply(bytes)) throw Error("'" + path + "' is no skeleton PLY: it does not start with 'ply'.");
     const PlyHeader header = read_ply_header(bytes, path);
-    FileStamp stamp{up, 1.0, DVec3(0.0)};
+    FileStamp stamp{up, 1.0};
     bool is_ours = false;
     for (const std::string& comment : header.comments)
         is_ours = read_stamp(comment, stamp, path) || is_ours;

@@ -65,7 +65,7 @@ Tree read_swc(const std::string& path, UpAxis up) {
 }
 
 Tree parse_swc(std::string_view bytes, const std::string& path, UpAxis up) {
-    FileStamp stamp{up, 1.0, DVec3(0.0)};
+    FileStamp stamp{up, 1.0};
     SkeletonTable table;
     std::vector<double> parents;
     std::unordered_map<double, NodeId> row_of;  // looked up only, never walked

@@ -123,7 +123,7 @@ Tree read_treefile(const std::string& path, UpAxis up) {
 
 Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up) {
     std::string_view rest = bytes;
-    FileStamp stamp{up, 1.0, DVec3(0.0)};
+    FileStamp stamp{up, 1.0};
     std::optional<TreefileHeader> header;
     SkeletonTable largest;
     size_t line_number = 0;

@@ -39,12 +39,9 @@ struct Seen {
 };
 
 Pose pose_of(const Photo& photo) {
-    const DVec3 u(-photo.rotation[1], -photo.rotation[2], -photo.rotation[3]);
-    const auto back = [&](const DVec3& v) {
-        const DVec3 t = 2.0 * glm::cross(u, v);
-        return v + photo.rotation[0] * t + glm::cross(u, t);
-    };
-    return {back({1, 0, 0}), back({0, 1, 0}), back({0, 0, 1}), -back(photo.translation)};
+    const auto seen = [&](const DVec3& direction) { return photo.to_camera(direction) - photo.translation; };
+    const DMat3 back = glm::transpose(DMat3(seen({1, 0, 0}), seen({0, 1, 0}), seen({0, 0, 1})));
+    return {back[0], back[1], back[2], -(back * photo.translation)};
 }
 
 std::vector<Pose> poses_of(const PhotoModel& model) {

@@ -17,9 +17,10 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kAsked = 4096;      // points of a cloud or a model
-constexpr size_t kLeastShared = 50;  // points of the model that lie in the cloud's box
-constexpr double kNear = 0.01;       // of the box's diagonal: how far half of them may be from the cloud
+constexpr size_t kAsked = 4096;       // points of a cloud or a model
+constexpr size_t kSearched = 200000;  // points of the cloud that these are looked for among
+constexpr size_t kLeastShared = 50;   // points of the model that lie in the cloud's box
+constexpr double kNear = 0.01;        // of the box's diagonal: how far half of them may be from the cloud
 
 // The model's own points, or none.
 std::string points_of(const std::string& folder) {
@@ -43,7 +44,7 @@ bool shares_places(const PointCloud& cloud, const std::string& model_points, Pro
         if (box[0].contains(at.x) && box[1].contains(at.y) && box[2].contains(at.z)) shared.push_back(at);
     }
     if (shared.size() < kLeastShared) return false;
-    const PointTree tree(cloud.positions, &progress);
+    const PointTree tree(some_of(cloud.positions, kSearched, &progress), &progress);
     std::vector<double> distances;
     for (const Vec3& p : shared) {
         uint32_t index = 0;

@@ -319,20 +319,18 @@ void score_reconstruction(Reconstruction& result, const ReconstructOptions& opti
     clock.stop("Score", result.cloud.size());
 }
 
-PointCloud load_scan(const std::string& path, const ReconstructOptions& asked, const ScanFrame& frame,
+PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
                      size_t most, Progress* progress, ReconstructCache* cache) {
     constexpr double kScanRead = 0.4, kScanOriented = 0.5, kScanCleaned = 0.9;
     bool kept = false;
     ReadCloudReport report;
     SubProgress reading(progress, 0.0, kScanRead);
     reading.update(0.0, "Reading");
-    PointCloud cloud = read_or_take(path, asked.read, report, &reading, cache, kept);
+    PointCloud cloud = read_or_take(path, options.read, report, &reading, cache, kept);
     reading.check();
-    // Which of several trees it is. What they say of the way up, and of themselves, is known.
-    ReconstructOptions options = asked;
-    std::vector<std::string> told;
-    let_photos_tell(path, cloud, options, told, reading);
-    // The tree knows which way is up and how long a metre is.
+    // The tree knows where it stands, which way is up and how long a metre is.
+    CleanOptions clean = options.clean;
+    clean.pick.position = frame.origin;
     OrientOptions orient;
     orient.up = frame.up;
     orient.tilt = frame.tilt;
@@ -342,7 +340,7 @@ PointCloud load_scan(const std::string& path, const ReconstructOptions& asked, c
     orient_cloud(cloud, orient, &orienting);
     SubProgress cleaning(progress, kScanOriented, kScanCleaned);
     cleaning.update(0.0, "Cleaning");
-    clean_cloud(cloud, options.clean, &cleaning);
+    clean_cloud(cloud, clean, &cleaning);
     SubProgress thinning(progress, kScanCleaned, 1.0);
     thinning.update(0.0, "Thinning");
     thin_cloud(cloud, most, &thinning);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/circle_fit.h"
 #include "geometry/parallel.h"
-#include "skeleton/circle_fit.h"
 
 namespace treerec {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skeleton/circle_fit.h"
+#include "geometry/circle_fit.h"
 
 namespace treerec {
 

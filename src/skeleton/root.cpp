@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "geometry/bounds.h"
+#include "geometry/circle_fit.h"
 #include "geometry/groups.h"
 #include "geometry/portable_math.h"
 #include "skeleton/base_end.h"
-#include "skeleton/circle_fit.h"
 
 namespace treerec {
 

@@ -58,6 +58,21 @@ func _picture() -> Image:
 	return _viewport.get_texture().get_image()
 
 
+# What the stage looks like once nothing changes any more. The engine draws with a pipeline for all
+# cases until the one for just this is compiled, in the background, and they round differently.
+func _settled() -> Image:
+	var picture: Image = await _picture()
+	var same: int = 0
+	var tries: int = 0
+	while same < 10 and tries < 300:
+		var next: Image = await _picture()
+		same = same + 1 if next.get_data() == picture.get_data() else 0
+		picture = next
+		tries += 1
+	check(same == 10, "The picture does not come to rest.")
+	return picture
+
+
 static func _shows_tree(pixel: Color) -> bool:
 	return pixel.b < pixel.g + 0.15
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "skeleton/circle_fit.h"
+#include "geometry/circle_fit.h"
 
 namespace treerec {
 namespace {

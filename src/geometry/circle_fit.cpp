@@ -1,4 +1,4 @@
-#include "skeleton/circle_fit.h"
+#include "geometry/circle_fit.h"
 
 #include <algorithm>
 #include <array>
