@@ -83,7 +83,8 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
                                 Progress* progress = nullptr, ReconstructCache* cache = nullptr);
 
 // The scan that a tree was made from, as points in the tree's own frame (metres, so that they lie on its
-// bark): read again, cleaned as `options` say with the frame's up axis and unit, and thinned to at most
+// bark): read again, cleaned as `options` say with the frame's way up and unit, of several trees the one that
+// stands at its origin, and thinned to at most
 // `most` points (scan/thin_cloud.h). options: those of read and clean count. cache: may have the file read.
 // Throws Error with a sentence, or Cancelled.
 PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
