@@ -7,6 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 : "${GODOT:?GODOT must name the engine; './dev godot --version' finds one}"
+. tests/tools/own_cache.sh
 mkdir -p docs/captures
 frames=$(mktemp -d)
 trap 'rm -rf "$frames"' EXIT
@@ -15,7 +16,7 @@ for name in "${@:-one_tree scan_and_tree felling}"; do
     for scene in $name; do
         rm -f "$frames"/*
         # A fixed rate: what moves moves by a frame's time in each picture, however long it takes to draw.
-        xvfb-run -a -s '-screen 0 640x360x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
+        own_cache xvfb-run -a -s '-screen 0 640x360x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
             --resolution 640x360 --fixed-fps 12 --script "$PWD/tests/captures/film.gd" -- "$scene" "$frames"
         # A whole picture now and then: what is left out of the others as too faint would add up.
         img2webp -loop 0 -kmin 3 -kmax 6 -lossy -q 62 -m 5 -d 83 "$frames"/*.png -o "docs/captures/$scene.webp"

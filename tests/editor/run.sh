@@ -140,8 +140,10 @@ run_editor() {
     shift
     echo "-- $folder"
     rm -f "$work/port"
+    # Its own (tests/tools/own_cache.sh).
+    mkdir -p "$work/mesa-$folder"
     TREE_EDITOR_TEST=$work TREE_EDITOR_SCENARIOS="$*" XDG_CONFIG_HOME=$work/config XDG_DATA_HOME=$work/data XDG_CACHE_HOME=$work/cache \
-        XDG_RUNTIME_DIR=$work/runtime \
+        XDG_RUNTIME_DIR=$work/runtime MESA_SHADER_CACHE_DIR=$work/mesa-$folder \
         setsid timeout --signal=ABRT --kill-after=10 "$limit" "$GODOT" --rendering-driver opengl3 --audio-driver Dummy --resolution 1600x900 --position 0,0 --verbose \
         --path "$work/project" --editor >"$log" 2>&1 &
     engine=$!

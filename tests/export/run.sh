@@ -5,6 +5,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 . tests/tools/checks.sh
+. tests/tools/own_cache.sh
 
 work=$PWD/build/export
 rm -rf "$work"
@@ -70,7 +71,7 @@ done
 # seen WHAT: how many pixels of the game's pictures did that.
 seen() { sed -n "s/^$1 \([0-9]*\)\$/\1/p" "$work/window.log"; }
 if command -v xvfb-run >/dev/null; then
-    (cd "$work/out" && timeout 120 xvfb-run -a -s '-screen 0 640x640x24' \
+    (cd "$work/out" && own_cache timeout 120 xvfb-run -a -s '-screen 0 640x640x24' \
         ./release.x86_64 --rendering-driver opengl3 --audio-driver Dummy -- --picture "$work/picture.png") >"$work/window.log" 2>&1
     check 'the game shows itself in a window' [ -s "$work/picture.png" ]
     # A screen that nobody sees has no V-Sync, which is a warning.

@@ -27,6 +27,7 @@ func _run() -> void:
 	var folder: String = OS.get_cache_dir().path_join(
 		"treerec_godot_tests_%d" % OS.get_process_id()
 	)
+	print("shader cache: ", OS.get_environment("MESA_SHADER_CACHE_DIR"))
 	OS.add_logger(_errors)
 	for file: String in DirAccess.get_files_at(here):
 		if file.begins_with(prefix) and file.get_extension() == "gd":

@@ -5,6 +5,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 . tests/tools/screen.sh
+. tests/tools/own_cache.sh
 passed=0
 failed=0
 screen=
@@ -21,14 +22,14 @@ trap cleanup EXIT
 run() {
     local title=$1
     shift
-    timeout 1800 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
+    own_cache timeout 1800 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
         >"$logs/$title" 2>&1
 }
 # render TITLE DRIVER METHOD: the tests look into viewports of their own; the window costs less the smaller it is.
 render() {
     run "$1" --rendering-driver "$2" --rendering-method "$3" --resolution 160x120 --audio-driver Dummy -- --rendering
 }
-export -f run render
+export -f run render own_cache
 
 # count TITLE: adds up that run and looks for what the engine says when it ends.
 count() {
@@ -77,5 +78,14 @@ for title in headless Jolt gl_compatibility mobile forward_plus; do
     esac
     count "$title"
 done
+# As many caches as runs, and the user's own is none of them.
+caches=$(sed -n 's/^shader cache: \(..*\)/\1/p' "$logs"/* | sort -u | grep -cvxF "${MESA_SHADER_CACHE_DIR:-none}")
+if [ "$caches" = "$(grep -l '^shader cache:' "$logs"/* | wc -l)" ]; then
+    passed=$((passed + 1))
+    echo "ok      each run had a shader cache of its own"
+else
+    failed=$((failed + 1))
+    echo "FAILED  only $caches runs had a shader cache of their own"
+fi
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
