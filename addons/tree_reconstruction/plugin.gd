@@ -22,20 +22,22 @@ var _session: RefCounted
 var _parts: Array[RefCounted] = []
 # Those that take the viewport's events: they have input(camera, event) and draw_over(overlay).
 var _listeners: Array[RefCounted] = []
-var _export_skip: EditorExportPlugin
+var _game_export: EditorExportPlugin
 
 
 func _enter_tree() -> void:
 	if not ClassDB.class_exists(&"TreeReconstruction"):
-		push_error(
-			(
-				"Tree Reconstruction: the native library did not load. Look for its error message above,"
-				+ " and check that addons/tree_reconstruction/bin/ holds a library for this system."
-			)
+		var sentence: String = (
+			"Tree Reconstruction: the native library did not load. Look for its error message above,"
+			+ " and check that addons/tree_reconstruction/bin/ holds a library for this system."
 		)
+		push_error(sentence)
+		EditorInterface.get_editor_toaster().push_toast(sentence, EditorToaster.SEVERITY_ERROR)
 		return
-	_export_skip = _load("export_skip.gd").new()
-	add_export_plugin(_export_skip)
+	var exporter: GDScript = _load("export/game_export.gd")
+	exporter.call(&"add_setting")
+	_game_export = exporter.new()
+	add_export_plugin(_game_export)
 	_session = _load("session.gd").new(get_undo_redo())
 	for speaker: RefCounted in [_session, _session.local_trees, _session.scan]:
 		speaker.set_translation_domain(DOMAIN)
@@ -80,12 +82,14 @@ func _exit_tree() -> void:
 	_session.view.keep(EditorInterface.get_editor_settings())
 	_session.shut_down()
 	_session = null
-	remove_export_plugin(_export_skip)
-	_export_skip = null
+	remove_export_plugin(_game_export)
+	_game_export = null
 
 
 func _process(_delta: float) -> void:
-	_session.update()
+	# Without the native library there is none.
+	if _session != null:
+		_session.update()
 
 
 func _handles(object: Object) -> bool:

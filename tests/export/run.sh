@@ -64,6 +64,7 @@ for kind in release debug; do
     check "the $kind game runs" grep -q '^digest ' "$work/$kind.log"
     check "the $kind game makes the same bytes as the editor" grep -q "^digest $wanted\$" "$work/$kind.log"
     check "the $kind game grows the same forest as the editor" grep -q "^forest $forest\$" "$work/$kind.log"
+    check "the $kind game knows its scan's name, not on whose disk it lay" grep -q '^source scan.ply$' "$work/$kind.log"
     check "the $kind game has no class of the editor's" grep -q '^editor false$' "$work/$kind.log"
     ! grep -E 'ERROR|WARNING' "$work/$kind.log"
     check "the $kind game says nothing else" [ $? = 0 ]
@@ -84,12 +85,35 @@ if command -v xvfb-run >/dev/null; then
     check 'without the TreeWind all is as it was' [ "$(seen 'moved afterwards')" = 0 ]
 fi
 
+# A library that is missing is told when the game is exported, not when it runs.
+lacking=$work/lacking
+cp -r "$work/game" "$lacking"
+rm "$lacking"/addons/tree_reconstruction/bin/*template_release*
+timeout 300 "$GODOT" --headless --path "$lacking" --export-release Linux "$work/out/lacking.x86_64" >"$work/lacking.log" 2>&1
+[ $? != 124 ]
+check 'an export without its library ends' [ $? = 0 ]
+check 'and says in one sentence which one is missing' \
+    [ "$(grep -c 'has no library for this export (.*linux.*template_release' "$work/lacking.log")" = 1 ]
+# Nor does the editor do anything but say so without its own.
+rm -rf "$lacking/.godot" "$lacking"/addons/tree_reconstruction/bin/*
+timeout 300 "$GODOT" --headless --path "$lacking" --import --quit-after 200 >"$work/lacking.log" 2>&1
+check 'an editor without its library ends' [ $? = 0 ]
+check 'it says once that it did not load' [ "$(grep -c '^ERROR: .*native library did not load' "$work/lacking.log")" = 1 ]
+! grep -E 'SCRIPT ERROR: Invalid' "$work/lacking.log"
+check 'and does nothing else' [ $? = 0 ]
+rm -rf "$lacking" "$work"/out/lacking*
+
 # Nothing of the editor ships.
 strings -n 8 "$work/out/release.pck" >"$work/names"
 ! grep -E 'tree_reconstruction/(editor/.*|plugin)\.(gdc|gd.remap|tscn|po)' "$work/names"
 check 'no script of the editor is in the pack' [ $? = 0 ]
 grep -q 'tree_reconstruction/nodes/tree_instance_3d' "$work/names"
 check 'the node is in the pack' [ $? = 0 ]
+# shipped NAME: how many of the pack's files are pictures or materials of that kind of tree.
+shipped() { grep -oE "tree_reconstruction/(textures|presets)/($1)[a-z_/]*\.(tres|png\.import)" "$work/names" | sort -u | wc -l; }
+check "the pictures of the game's oak are in the pack" [ "$(shipped oak_)" -ge 8 ]
+check 'and those that stand in for missing ones' [ "$(shipped generic_)" -ge 8 ]
+check 'no other pictures are' [ "$(shipped 'maple|birch|palm|spruce|twigs')" = 0 ]
 libraries=$(cd "$work/out" && ls ./*.so)
 check 'only the libraries of the two templates are beside it' \
     [ "$(echo "$libraries" | wc -l)" = 2 ]

@@ -13,6 +13,7 @@ func _ready() -> void:
 	add_child(forest)
 	await forest.finished
 	print("forest ", forest.get_tree_count(), " ", Digest.of_forest(forest))
+	print("source ", tree.reconstruction.provenance.get("source"))
 	print("triangles ", tree.get_triangle_count())
 	print("editor ", ClassDB.class_exists(&"TreeReconstructor"))
 	var arguments: PackedStringArray = OS.get_cmdline_user_args()

@@ -10,7 +10,9 @@ func _initialize() -> void:
 
 func _run() -> void:
 	var maker: TreeReconstructor = TreeReconstructor.new()
-	var made: TreeReconstruction = maker.reconstruct_file(OS.get_cmdline_user_args()[0], {})
+	var made: TreeReconstruction = maker.reconstruct_file(
+		OS.get_cmdline_user_args()[0], {"leaves": "oak"}
+	)
 	if made == null:
 		printerr(maker.get_error_message())
 		quit(1)
