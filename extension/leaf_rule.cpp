@@ -59,6 +59,11 @@ double smooth(double p_low, double p_high, double p_x) {
     return t * t * (3.0 - 2.0 * t);
 }
 
+// How large leaves are in a season, over full ones.
+double unfolded_share(double p_season) {
+    return kBudSize + (1.0 - kBudSize) * smooth(0.0, kUnfolded, p_season);
+}
+
 Color mixed(const Color& p_a, const Color& p_b, double p_t) {
     const float t = float(std::clamp(p_t, 0.0, 1.0));
     return Color(p_a.r + (p_b.r - p_a.r) * t, p_a.g + (p_b.g - p_a.g) * t, p_a.b + (p_b.b - p_a.b) * t,
@@ -164,7 +169,7 @@ treerec::LeafRules LeafRule::get_rules() const {
     rules.internode /= treerec::leaves_per_node(rules);
     if (!evergreen_) {
         rules.standing = 1.0 - smooth(kFirstFall, 1.0, season_);
-        rules.leaf_size *= kBudSize + (1.0 - kBudSize) * smooth(0.0, kUnfolded, season_);
+        rules.leaf_size *= unfolded_share(season_);
     }
     return rules;
 }
@@ -301,7 +306,11 @@ void LeafRule::set_sprig_string(const String& p_string) {
 
 void LeafRule::set_season(double p_season) {
     ERR_FAIL_COND_MSG(!std::isfinite(p_season), "season must be a finite number.");
-    _change([&] { season_ = std::clamp(p_season, 0.0, 1.0); });
+    const double season = std::clamp(p_season, 0.0, 1.0);
+    // What animates it may set the same again and again.
+    if (season != season_) {
+        _change([&] { season_ = season; });
+    }
 }
 
 void LeafRule::set_evergreen(bool p_evergreen) {
@@ -324,6 +333,11 @@ PackedColorArray LeafRule::get_season_tints() const {
 
 double LeafRule::get_standing_share() const {
     return get_rules().standing;
+}
+
+double LeafRule::get_unfolded_share() const {
+    const std::lock_guard lock(mutex_);
+    return evergreen_ ? 1.0 : unfolded_share(season_);
 }
 
 void LeafRule::_validate_property(PropertyInfo& p_property) const {
@@ -361,6 +375,7 @@ void LeafRule::_bind_methods() {
     ClassDB::bind_static_method("LeafRule", D_METHOD("from_preset", "name"), &LeafRule::from_preset);
     ClassDB::bind_method(D_METHOD("get_season_tints"), &LeafRule::get_season_tints);
     ClassDB::bind_method(D_METHOD("get_standing_share"), &LeafRule::get_standing_share);
+    ClassDB::bind_method(D_METHOD("get_unfolded_share"), &LeafRule::get_unfolded_share);
     ClassDB::bind_method(D_METHOD("_take_resources"), &LeafRule::take_resources);
 
     ClassDB::bind_method(D_METHOD("set_enabled", "enabled"), &LeafRule::set_enabled);

@@ -70,6 +70,7 @@ class LeafRule : public godot::Resource {
 
     godot::PackedColorArray get_season_tints() const;
     double get_standing_share() const;
+    double get_unfolded_share() const;
 
     // Heard from the resources in it.
     void take_resources();

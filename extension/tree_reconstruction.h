@@ -22,7 +22,8 @@ class TreeEdit;
 
 namespace treerec {
 class VariantMaker;
-}
+struct JoinedLeaves;
+}  // namespace treerec
 
 // A reconstructed tree: its skeleton, where it comes from, and the rules by which it gets bark and leaves.
 // The builders may run on any thread, also while another thread changes the tree: they see it as it was when
@@ -124,7 +125,8 @@ class TreeReconstruction : public godot::Resource {
 
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
-                                                      const godot::PackedInt32Array& p_budgets) const;
+                                                      const godot::PackedInt32Array& p_budgets,
+                                                      bool p_joined) const;
 
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);
@@ -183,6 +185,7 @@ class TreeReconstruction : public godot::Resource {
     // A node's data, or nothing and an error that names the id.
     std::optional<treerec::Node> _find_node(int p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
+    static godot::Array _to_joined_arrays(const treerec::JoinedLeaves& p_joined);
     std::vector<treerec::LeafPlacement> _place_leaves(const treerec::LeafRules& p_rules, int p_lod) const;
     static void _bind_properties();
     static void _bind_editing();

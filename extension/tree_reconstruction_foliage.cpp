@@ -187,16 +187,19 @@ Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
         const treerec::LeafRules rules = get_leaf_rules();
-        const treerec::JoinedLeaves joined =
-            treerec::join_leaves(_place_leaves(rules, p_lod), treerec::build_leaf_card(rules, p_lod));
-        Array arrays = to_surface_arrays(joined.mesh);
-        if (!arrays.is_empty()) {
-            arrays[Mesh::ARRAY_CUSTOM1] = to_floats(joined.lengthwise);
-            arrays[Mesh::ARRAY_CUSTOM2] = to_floats(joined.across);
-            arrays[Mesh::ARRAY_CUSTOM3] = to_floats(joined.bough);
-        }
-        return arrays;
+        return _to_joined_arrays(
+            treerec::join_leaves(_place_leaves(rules, p_lod), treerec::build_leaf_card(rules, p_lod)));
     });
+}
+
+Array TreeReconstruction::_to_joined_arrays(const treerec::JoinedLeaves& p_joined) {
+    Array arrays = to_surface_arrays(p_joined.mesh);
+    if (!arrays.is_empty()) {
+        arrays[Mesh::ARRAY_CUSTOM1] = to_floats(p_joined.lengthwise);
+        arrays[Mesh::ARRAY_CUSTOM2] = to_floats(p_joined.across);
+        arrays[Mesh::ARRAY_CUSTOM3] = to_floats(p_joined.bough);
+    }
+    return arrays;
 }
 
 std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(const treerec::LeafRules& p_rules,

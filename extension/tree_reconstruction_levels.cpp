@@ -3,13 +3,15 @@
 
 #include "convert.h"
 #include "error.h"
+#include "mesh/joined_leaves.h"
 #include "mesh/leaf_cards.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
 
 TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& p_levels,
-                                                        const PackedInt32Array& p_budgets) const {
+                                                        const PackedInt32Array& p_budgets,
+                                                        bool p_joined) const {
     const TypedArray<Dictionary> none;
     for (const int32_t level : p_levels) {
         ERR_FAIL_COND_V_MSG(level < 0, none,
@@ -30,8 +32,12 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
             const treerec::TreeLevel made = builder.build(p_levels[i], size_t(budget));
             Dictionary level;
             level["bark"] = to_surface_arrays(made.bark);
-            level["leaves"] = to_godot(treerec::leaf_buffer(made.leaves));
-            level["card"] = to_surface_arrays(made.card);
+            if (p_joined) {
+                level["joined_leaves"] = _to_joined_arrays(treerec::join_leaves(made.leaves, made.card));
+            } else {
+                level["leaves"] = to_godot(treerec::leaf_buffer(made.leaves));
+                level["card"] = to_surface_arrays(made.card);
+            }
             level["box"] = box.empty() ? AABB() : AABB(to_godot(box.min), to_godot(box.size()));
             level["triangles"] = int64_t(made.triangle_count());
             level["level"] = made.level;
@@ -43,6 +49,6 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
 }
 
 void TreeReconstruction::_bind_levels() {
-    ClassDB::bind_method(D_METHOD("build_levels", "levels", "budgets"), &TreeReconstruction::build_levels,
-                         DEFVAL(PackedInt32Array()));
+    ClassDB::bind_method(D_METHOD("build_levels", "levels", "budgets", "joined"),
+                         &TreeReconstruction::build_levels, DEFVAL(PackedInt32Array()), DEFVAL(false));
 }

@@ -18,3 +18,40 @@ func test_a_forest_is_made_again_and_again() -> void:
 		await forest.finished
 		check(_summary(await _picture())[0] > 0.002, "No tree is to be seen any longer.")
 	_viewport.free()
+
+
+# In the very frame in which the season is set: leaves turn, fall, and come back.
+func test_leaves_fall_without_another_build() -> void:
+	_open_stage(Vector2i(128, 128))
+	_camera.position = Vector3(0.0, 2.0, 9.0)
+	var forest: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
+	forest.source = grown_tree(3, 120)
+	forest.source.leaf_rule = LeafRule.from_preset("maple")
+	forest.source.leaf_rule.season = 0.4
+	forest.variants = 2
+	forest.levels = 2
+	forest.season_spread = 0.0
+	forest.region_size = Vector2(8.0, 8.0)
+	forest.density = 20.0
+	forest.minimum_distance = 1.5
+	forest.clumping = 0.0
+	_viewport.add_child(forest)
+	await forest.finished
+	var summer: Image = await _picture()
+	forest.source.leaf_rule.season = 0.68
+	var autumn: Image = await _picture()
+	forest.source.leaf_rule.season = 1.0
+	var winter: Image = await _picture()
+	forest.source.leaf_rule.season = 0.4
+	var again: Image = await _picture()
+	check(not forest.is_building(), "It was built again.")
+	var full: float = _summary(summer)[0]
+	check(full > 0.02, "Only %s of the picture is tree." % full)
+	check_near(_summary(autumn)[0], full, 0.1 * full, "what leaves cover in autumn")
+	var green: Color = _summary(summer)[1]
+	var red: Color = _summary(autumn)[1]
+	check(red.r / red.g > 1.2 * green.r / green.g, "They turned from %s to %s." % [green, red])
+	check(_summary(winter)[0] < 0.7 * full, "The leaves have not fallen.")
+	check(_summary(winter)[0] > 0.0, "The trees have gone, too.")
+	check_near(_summary(again)[0], full, 0.02 * full, "what leaves cover at last")
+	_viewport.free()

@@ -299,3 +299,146 @@ func test_felling_leaves_nothing_behind() -> void:
 			before = now
 		elif round_of > 1:
 			check(now <= before, "%d objects stayed." % (now - before))
+
+
+func _shape_count(body: Node) -> int:
+	var count: int = 0
+	for child: Node in body.get_children(true):
+		count += 1 if child is CollisionShape3D and not child.is_queued_for_deletion() else 0
+	return count
+
+
+# Felled wood is saved as it lies, with a scene or alone.
+func test_a_felled_tree_that_was_saved_lies_on_the_ground() -> void:
+	var ground: StaticBody3D = _ground()
+	var world: Node3D = Node3D.new()
+	tree.root.add_child(world)
+	var instance: TreeInstance3D = await _instance(_rails())
+	instance.reparent(world)
+	var body: RigidBody3D = instance.fell(2)
+	var mass: float = body.mass
+	var inertia: Vector3 = body.inertia
+	var shapes: int = _shape_count(body)
+	check(shapes > 0, "It has no shapes.")
+	var alone: PackedScene = PackedScene.new()
+	check_equal(alone.pack(body), OK, "packing it")
+	body.owner = world
+	body.get_child(0).owner = world
+	var scene: PackedScene = PackedScene.new()
+	check_equal(scene.pack(world), OK, "packing the world")
+	var path: String = folder.path_join("felled.scn")
+	check_equal(ResourceSaver.save(scene, path), OK, "saving")
+	world.free()
+	var read: PackedScene = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE)
+	for from: PackedScene in [alone, read]:
+		var again: Node = from.instantiate()
+		tree.root.add_child(again)
+		var lying: RigidBody3D = again as RigidBody3D
+		if lying == null:
+			for child: Node in again.get_children():
+				lying = child as RigidBody3D if child is RigidBody3D else lying
+		lying.linear_velocity = Vector3(0.8, 0.0, 0.5)
+		await tree.process_frame
+		check_equal(_shape_count(lying), shapes, "its shapes")
+		check_equal(lying.mass, mass, "its mass")
+		check(lying.inertia.is_equal_approx(inertia), "Its inertia is %s." % lying.inertia)
+		await _settle(lying.get_child(0) as TreeInstance3D)
+		await _simulate(5.0)
+		check(lying.global_position.y < 0.9, "It stands: %s" % lying.global_position)
+		check(lying.global_position.y > -0.1, "It fell through: %s" % lying.global_position)
+		# In a copy, too; and leaving the scene costs no shape.
+		var copy: RigidBody3D = lying.duplicate() as RigidBody3D
+		tree.root.add_child(copy)
+		await tree.process_frame
+		check_equal(_shape_count(copy), shapes, "shapes of its copy")
+		copy.free()
+		var holder: Node = lying.get_parent()
+		holder.remove_child(lying)
+		holder.add_child(lying)
+		await tree.process_frame
+		check_equal(_shape_count(lying), shapes, "its shapes when it comes back")
+		again.free()
+	ground.free()
+
+
+func test_wood_alone_becomes_a_body() -> void:
+	var instance: TreeInstance3D = await _instance(_rails())
+	instance.transform = Transform3D(Basis(Vector3.UP, 0.4), Vector3(2, 1, 3))
+	var before: Transform3D = instance.global_transform
+	var body: RigidBody3D = instance.make_body(500.0)
+	check(body != null and instance.get_parent() == body, "It is in no body.")
+	check(instance.global_transform.is_equal_approx(before), "It has moved.")
+	check_near(
+		body.mass, instance.reconstruction.weigh(500.0)["mass"], 1e-3 * body.mass, "the mass"
+	)
+	check(_shape_count(body) > 0, "It has no shapes.")
+	await tree.process_frame
+	check(_bodies(instance).is_empty(), "It collides with itself.")
+	check(instance.make_body(1000.0) == body, "There is another body.")
+	check_near(body.mass, instance.reconstruction.weigh(1000.0)["mass"], 1e-3 * body.mass, "twice")
+	body.free()
+
+
+func test_what_cannot_fall_is_said() -> void:
+	var instance: TreeInstance3D = await _instance(_rails())
+	for density: float in [0.0, -1.0, NAN, INF]:
+		expect_error("more than 0 kg")
+		check(instance.fell(2, density) == null, "It fell at %s." % density)
+		check(instance.make_body(density) == null, "It is a body of %s." % density)
+	for id: int in [-1, 999, 1 << 31, (1 << 32) + 2, 1 << 62]:
+		expect_error("node")
+		check(instance.fell(id) == null, "It fell at node %d." % id)
+	for frame: Transform3D in [
+		Transform3D(Basis(), Vector3(NAN, 0, 0)),
+		Transform3D(Basis.from_scale(Vector3.ZERO), Vector3())
+	]:
+		instance.transform = frame
+		expect_error("not finite, or flat")
+		check(instance.fell(2) == null, "It fell at %s." % frame)
+		check(instance.make_body() == null, "It is a body at %s." % frame)
+	instance.transform = Transform3D()
+	instance.reconstruction = null
+	expect_error("Only a tree in a scene")
+	check(instance.fell(2) == null, "Nothing fell.")
+	instance.free()
+	var alone: TreeInstance3D = TreeInstance3D.new()
+	alone.reconstruction = _rails()
+	check(alone.make_body() == null, "It is a body in no scene.")
+	alone.free()
+
+
+# A sapling of 5 cm stops a ball as a tree does, in a forest, too.
+func test_a_sapling_collides() -> void:
+	var made: TreeReconstruction = TreeReconstruction.new()
+	var nodes: Array[Array] = [[-1, 0.0, 0.0, 0.0, 0.028, NODE_TRUNK | NODE_MEASURED]]
+	for i: int in range(1, 9):
+		nodes.append([i - 1, 0.0, 0.4 * i, 0.0, 0.028 - 0.003 * i, NODE_TRUNK])
+	made.skeleton = skeleton(nodes)
+	for kind: TreeInstance3D.CollisionKind in TreeInstance3D.CollisionKind.values():
+		var instance: TreeInstance3D = await _instance(made)
+		instance.collision_kind = kind
+		await _settle(instance)
+		var hit: Object = await _hit(instance, Vector3(3, 1.3, 0), Vector3(-3, 1.3, 0))
+		check(hit is StaticBody3D, "Kind %d: the ray hit %s." % [kind, hit])
+		instance.free()
+	var forest: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
+	forest.source = made
+	forest.variants = 1
+	forest.levels = 1
+	forest.amount = 0.0
+	forest.ages = Vector2.ONE
+	forest.collision = true
+	forest.placement = TreeVariantSpawner3D.Placement.GIVEN
+	forest.transforms = [Transform3D()]
+	tree.root.add_child(forest)
+	await forest.finished
+	for frame: int in 5:
+		await tree.physics_frame
+	var query: PhysicsRayQueryParameters3D = PhysicsRayQueryParameters3D.create(
+		Vector3(3, 1.3, 0), Vector3(-3, 1.3, 0)
+	)
+	var found: Object = forest.get_world_3d().direct_space_state.intersect_ray(query).get(
+		"collider"
+	)
+	check_equal(forest.find_tree_of(found as Node), 0, "which tree of the forest was hit")
+	forest.free()

@@ -1,4 +1,4 @@
-extends "./suite.gd"
+extends "./forest_suite.gd"
 ## Forests of individuals of one tree's kind.
 
 const Scatter := preload("res://addons/tree_reconstruction/nodes/spawning/scatter.gd")
@@ -10,41 +10,6 @@ const Leftovers := preload("res://addons/tree_reconstruction/nodes/spawning/left
 const Materials := preload("res://addons/tree_reconstruction/nodes/spawning/materials.gd")
 const Reading := preload("res://addons/tree_reconstruction/nodes/spawning/reading.gd")
 const NEVER: int = 0x7fffffffffffffff
-
-var _world: Node3D
-
-
-func _forest() -> TreeVariantSpawner3D:
-	var made: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
-	made.source = grown_tree(3, 60)
-	made.variants = 3
-	made.levels = 2
-	made.region_size = Vector2(60.0, 40.0)
-	made.density = 1.0
-	return made
-
-
-func _plant(forest: TreeVariantSpawner3D) -> void:
-	if _world == null:
-		_world = Node3D.new()
-		tree.root.add_child(_world)
-	_world.add_child(forest)
-	await _grown(forest)
-
-
-func _grown(forest: TreeVariantSpawner3D) -> void:
-	var deadline: int = Time.get_ticks_msec() + 20_000
-	# One frame for what was changed to be heard.
-	await tree.process_frame
-	while forest.is_building() and Time.get_ticks_msec() < deadline:
-		await tree.process_frame
-	check(not forest.is_building(), "The forest never ends.")
-
-
-func _clear() -> void:
-	if _world != null:
-		_world.free()
-		_world = null
 
 
 # Of all places and all meshes.
@@ -102,15 +67,6 @@ func test_what_is_drawn_is_every_tree_once_per_level() -> void:
 			around += 1 if part.custom_aabb.has_point(foot + Vector3.UP) else 0
 		check(around > 0, "Tree %d is in no box." % id)
 	_clear()
-
-
-func _parts(forest: TreeVariantSpawner3D) -> Array[MultiMeshInstance3D]:
-	var parts: Array[MultiMeshInstance3D] = []
-	for child: Node in forest.get_children(true):
-		var part: MultiMeshInstance3D = child as MultiMeshInstance3D
-		if part != null and part.visible and not part.is_queued_for_deletion():
-			parts.append(part)
-	return parts
 
 
 func test_trees_keep_their_distance_and_their_region() -> void:
@@ -479,4 +435,41 @@ func test_a_saved_scene_holds_nothing_that_was_built() -> void:
 	again.source = grown_tree(3, 60)
 	await _plant(again)
 	check_equal(again.get_digest(), digest, "the forest read again")
+	_clear()
+
+
+# A dense scan is no heavier in a forest than its height allows, and a light one as fine as it is.
+func test_triangles_keep_to_their_budgets() -> void:
+	var forest: TreeVariantSpawner3D = _forest()
+	forest.source = grown_tree(4, 1500)
+	forest.source.leaf_preset = "oak"
+	forest.variants = 1
+	forest.levels = 3
+	forest.level_budgets = PackedInt32Array([0, 0, 0])
+	await _plant(forest)
+	var own: PackedInt32Array = forest.get_statistics()["triangles"]
+	var highest: float = forest.get_variant(0).get_aabb().end.y
+	forest.level_budgets = PackedInt32Array()
+	await _grown(forest)
+	var usual: PackedInt32Array = forest.get_statistics()["triangles"]
+	for level: int in 3:
+		var most: int = TreeVariantSpawner3D.TreeLevels.budget(highest, level)
+		check(usual[level] <= most, "Level %d has %d of %d." % [level, usual[level], most])
+		check(own[level] > most, "Level %d is too light to tell: %d." % [level, own[level]])
+	forest.level_budgets = PackedInt32Array([5000, 0])
+	await _grown(forest)
+	var chosen: PackedInt32Array = forest.get_statistics()["triangles"]
+	check(chosen[0] <= 5000 and chosen[0] > 2500, "The finest has %d of 5000." % chosen[0])
+	check_equal(chosen[1], own[1], "triangles without a bound")
+	check_equal(chosen[2], usual[2], "triangles of the last")
+	forest.leaves = false
+	forest.level_budgets = PackedInt32Array([600, 600, 600])
+	await _grown(forest)
+	check(forest.get_statistics()["triangles"][0] <= 600, "Bare, it has more.")
+	var bare: ArrayMesh = forest.get_variant_mesh(0)
+	check_equal(bare.get_surface_count(), 1, "surfaces without leaves")
+	# One that can't be kept is said.
+	forest.level_budgets = PackedInt32Array([1, 1, 1])
+	await _grown(forest)
+	check_equal(forest._get_configuration_warnings().size(), 1, "warnings")
 	_clear()

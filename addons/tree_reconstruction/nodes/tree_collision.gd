@@ -5,15 +5,22 @@ extends RefCounted
 ## What the shapes are: see [enum TreeInstance3D.CollisionKind].
 enum Kind { CAPSULES, CONVEX_PARTS, TRUNK_ONLY }
 
+# However young a tree is, wood of so much of its foot's radius is stout for it.
+const _STOUT: float = 0.4
+
 
 ## What [method fill] makes shapes of: at most [param maximum], of wood that is at least [param
-## minimum_radius] metres thick from its middle. It may run on any thread.
+## minimum_radius] metres thick from its middle, or less where all of a tree is thin: its trunk
+## collides in any case. It may run on any thread.
 static func gather(
 	of: TreeReconstruction, kind: int, maximum: int, minimum_radius: float
 ) -> Array[Dictionary]:
+	if of.get_node_count() == 0:
+		return []
+	var least: float = minf(minimum_radius, _STOUT * of.get_node_radius(of.get_root()))
 	if kind == Kind.CAPSULES:
-		return of.build_capsules(maximum, minimum_radius)
-	return of.build_convex_parts(maximum, minimum_radius, kind == Kind.TRUNK_ONLY)
+		return of.build_capsules(maximum, least)
+	return of.build_convex_parts(maximum, least, kind == Kind.TRUNK_ONLY)
 
 
 ## Gives [param body] a shape for each capsule (see [method TreeReconstruction.build_capsules]) or

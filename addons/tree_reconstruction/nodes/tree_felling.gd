@@ -29,11 +29,7 @@ const _TRUNK: int = 1
 
 ## See [method TreeInstance3D.fell].
 static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool) -> RigidBody3D:
-	if tree.reconstruction == null or tree.get_parent() == null:
-		push_error("Only a tree in a scene can be felled.")
-		return null
-	if not density > 0.0:
-		push_error("Wood weighs more than 0 kg per cubic metre; green wood about 800.")
+	if not _can_fall(tree, density):
 		return null
 	var stump: TreeReconstruction = tree.reconstruction.duplicate() as TreeReconstruction
 	var edit: TreeEdit = stump.edit("cut node=%d" % id)
@@ -48,11 +44,14 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 		if property in tree:
 			fallen.set(property, tree.get(property))
 	fallen.wind = false
+	fallen.fallen = true
 	fallen.reconstruction = top
 	var body: RigidBody3D = RigidBody3D.new()
 	body.collision_layer = tree.collision_layer
 	body.collision_mask = tree.collision_mask
 	body.add_child(fallen)
+	# So that it is saved with its body.
+	fallen.owner = body
 	# A piece of what has fallen already: both halves go on as bodies.
 	var holder: RigidBody3D = tree.get_parent() as RigidBody3D
 	var beside: Node3D = holder if holder != null else tree
@@ -60,7 +59,6 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 	if holder != null:
 		place = holder.transform * tree.transform
 	var parts: Array[Dictionary] = _parts_of(fallen)
-	_shorten(parts, top.get_node_position(top.get_root()))
 	_mount(body, fallen, place, parts, density)
 	if holder != null:
 		_share_motion(holder, body)
@@ -76,6 +74,61 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 		tree.update_collision_now()
 	beside.add_sibling(body)
 	return body
+
+
+## See [method TreeInstance3D.make_body].
+static func make_body(tree: TreeInstance3D, density: float) -> RigidBody3D:
+	if not _can_fall(tree, density):
+		return null
+	tree.fallen = true
+	tree.wind = false
+	tree.collision = false
+	tree.update_collision_now()
+	var body: RigidBody3D = tree.get_parent() as RigidBody3D
+	if body != null:
+		_mount(body, tree, body.transform * tree.transform, _parts_of(tree), density)
+		return body
+	body = RigidBody3D.new()
+	body.collision_layer = tree.collision_layer
+	body.collision_mask = tree.collision_mask
+	var place: Transform3D = tree.transform
+	tree.add_sibling(body)
+	tree.owner = null
+	tree.reparent(body, false)
+	tree.owner = body
+	_mount(body, tree, place, _parts_of(tree), density)
+	return body
+
+
+## Gives the body of felled wood its shapes, unless it has some. They are not saved with it.
+static func restore_shapes(tree: TreeInstance3D) -> void:
+	if not tree.is_inside_tree() or tree.reconstruction == null:
+		return
+	var body: RigidBody3D = tree.get_parent() as RigidBody3D
+	if body == null:
+		return
+	for child: Node in body.get_children(true):
+		if child is CollisionShape3D or child is CollisionPolygon3D:
+			return
+	Collision.fill(body, _parts_of(tree), tree.transform)
+
+
+static func _can_fall(tree: TreeInstance3D, density: float) -> bool:
+	if (
+		tree.reconstruction == null
+		or tree.reconstruction.get_node_count() < 2
+		or tree.get_parent() == null
+	):
+		push_error("Only a tree in a scene can be felled.")
+		return false
+	if not (density > 0.0 and is_finite(density)):
+		push_error("Wood weighs more than 0 kg per cubic metre; green wood about 800.")
+		return false
+	var place: Transform3D = tree.transform
+	if not place.is_finite() or absf(place.basis.determinant()) < 1e-9:
+		push_error("The tree can't be felled: its transform is not finite, or flat.")
+		return false
+	return true
 
 
 # Wood that lies has no foot in the ground.
@@ -96,6 +149,8 @@ static func _parts_of(tree: TreeInstance3D) -> Array[Dictionary]:
 	)
 	if parts.is_empty():
 		parts = Collision.gather(of, tree.collision_kind, 1, 0.0)
+	if tree.fallen:
+		_shorten(parts, of.get_node_position(of.get_root()))
 	return parts
 
 

@@ -30,9 +30,8 @@ const BuildJob := preload("tree_build_job.gd")
 const LevelNodes := preload("tree_level_nodes.gd")
 const OwnMaterials := preload("own_materials.gd")
 const Levels := preload("tree_levels.gd")
-const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+const Looks := preload("tree_looks.gd")
 const _WIND_MARGIN: float = 0.25
-const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 # What the leaves and the levels take over from this node.
 const _SHARED: PackedStringArray = [
 	"layers",
@@ -168,6 +167,10 @@ static var threaded: bool = true
 		collision_mask = value
 		_update_body()
 
+## Whether this is wood that was felled: then the [RigidBody3D] that it is a child of gets its
+## shapes when it comes into a scene without any, as after loading.
+@export_storage var fallen: bool = false
+
 var _leaves_node: MultiMeshInstance3D
 # What own_materials.gd draws this node with.
 var _own_material: RefCounted
@@ -200,6 +203,14 @@ func rebuild() -> void:
 ## in kg per cubic metre. Returns [code]null[/code], with an error, where nothing can be cut.
 func fell(id: int, density: float = 800.0, stump_body: bool = false) -> RigidBody3D:
 	return Felling.fell(self, id, density, stump_body)
+
+
+## Puts this tree into a [RigidBody3D] in its place, with the weight, the moments and the shapes of
+## its wood (see [method fell]), and returns that; of a tree that is in one already, the body gets
+## them again. So wood that was saved by itself can fall. [param density] is that of green wood in
+## kg per cubic metre. Returns [code]null[/code], with an error, where there is nothing to fall.
+func make_body(density: float = 800.0) -> RigidBody3D:
+	return Felling.make_body(self, density)
 
 
 ## Gives this tree's body the shapes of its [member reconstruction] as it is now, without waiting
@@ -272,8 +283,15 @@ func _notification(what: int) -> void:
 		NOTIFICATION_ENTER_TREE:
 			set_notify_transform(true)
 			_update_instances()
+			if fallen:
+				# The body can't take children before it is in the scene, too.
+				_restore_shapes.call_deferred()
 		NOTIFICATION_TRANSFORM_CHANGED:
 			_update_instances()
+
+
+func _restore_shapes() -> void:
+	Felling.restore_shapes(self)
 
 
 # The engine asks the script first: so the leaves learn of the properties that they share.
@@ -424,11 +442,8 @@ func _on_levels_built(box: AABB) -> void:
 
 
 func _update_materials() -> void:
-	var part: String = (
-		"blade" if reconstruction != null and reconstruction.are_leaves_single() else "leaf"
-	)
-	var bark: Material = _material_or_preset(bark_material, "bark")
-	var leaf: Material = _material_or_preset(leaf_material, part)
+	var bark: Material = Looks.material_of(reconstruction, bark_material, "bark")
+	var leaf: Material = Looks.material_of(reconstruction, leaf_material, "leaf")
 	if mesh != null and mesh.get_surface_count() > 0:
 		mesh.surface_set_material(0, bark)
 	if _leaves_node != null:
@@ -444,21 +459,10 @@ func _update_materials() -> void:
 	_levels.update()
 
 
-func _material_or_preset(material: Material, part: String) -> Material:
-	if material != null or reconstruction == null:
-		return material
-	var path: String = _PRESETS % [reconstruction.get_leaf_look(), part]
-	if not ResourceLoader.exists(path):
-		path = _PRESETS % ["generic", part]
-	return load(path) as Material
-
-
-# The values that the shaders take per instance. They are set in the server, so that scenes stay
-# free of them.
+# The values that the shaders take per instance.
 func _update_instances() -> void:
 	if not is_inside_tree():
 		return
-	var height: float = get_tree_height()
 	var wood: Array[GeometryInstance3D] = _levels.get_barks()
 	wood.append(self)
 	var foliage: Array[GeometryInstance3D] = _levels.get_leaves()
@@ -467,27 +471,10 @@ func _update_instances() -> void:
 			_leaves_node.set(property, get(property))
 		foliage.append(_leaves_node)
 	for node: GeometryInstance3D in wood + foliage:
-		_set_shader_values(node, height)
+		Looks.tell_place(node, self)
 	for node: GeometryInstance3D in foliage:
-		_set_season(node)
+		Looks.tell_season(node, reconstruction)
 	_levels.update()
-
-
-# What the season makes of the leaves' colour: of those that are early, and late, in it.
-func _set_season(part: GeometryInstance3D) -> void:
-	var tints: PackedColorArray = [Color(1.0, 1.0, 1.0, 0.0), Color(1.0, 1.0, 1.0, 0.0)]
-	if reconstruction != null and reconstruction.leaf_rule != null:
-		tints = reconstruction.leaf_rule.get_season_tints()
-	for i: int in 2:
-		# Colors would be converted by some renderers and not by others.
-		var tint: Color = tints[i].srgb_to_linear()
-		OwnMaterials.tell(part, _SEASON_PARAMETERS[i], Vector4(tint.r, tint.g, tint.b, tint.a))
-
-
-func _set_shader_values(part: GeometryInstance3D, height: float) -> void:
-	OwnMaterials.tell(part, &"tree_height", height)
-	OwnMaterials.tell(part, &"tree_wind", 1.0 if wind else 0.0)
-	OwnMaterials.tell(part, &"tree_origin", global_position)
 
 
 func _leaf_card() -> Mesh:

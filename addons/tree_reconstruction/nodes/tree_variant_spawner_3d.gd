@@ -13,7 +13,8 @@ extends Node3D
 ## The individuals are built on worker threads ([member threaded]) while the game goes on; [signal
 ## finished] says when all are there. Trees are drawn cell by cell as multimeshes of whole trees,
 ## each tree at the level of detail that it needs, and only around the camera. Nothing that is
-## built is saved with the scene.
+## built is saved with the scene. What the game takes away and adds is kept through every change of
+## the forest; [method get_state] gives it for a saved game or for a player who joins.
 ## [codeblock]
 ## var forest := TreeVariantSpawner3D.new()
 ## forest.source = load("res://oak.res")
@@ -36,15 +37,17 @@ enum Placement {
 	GIVEN,
 }
 
+const Checked := preload("checked.gd")
 const Forest := preload("spawning/forest.gd")
+const Inspecting := preload("spawning/inspecting.gd")
+const Listening := preload("spawning/listening.gd")
+const Making := preload("spawning/making.gd")
+const Telling := preload("spawning/telling.gd")
 const TreeLevels := preload("tree_levels.gd")
+const _MOST_VARIANTS: int = 64
+const _FARTHEST: float = 1e6
 # How long no property changes before the editor grows the forest again.
 const _CALM_SECONDS: float = 0.15
-# Properties that matter to scattered trees alone.
-const _OF_SCATTERED: String = (
-	" region_size region density minimum_distance clumping size_variation lean ground_rays "
-	+ " ground_mask ground_depth ground_alignment ground_slope_limit ground_heights "
-)
 
 ## Whether forests are built on worker threads. Where there are none, as in most web exports, they
 ## are built on the main thread, a slice per frame.
@@ -65,14 +68,14 @@ static var threaded: bool = OS.has_feature("threads")
 ## How many different individuals there are. Each takes memory once, however many trees it becomes.
 @export_range(1, 64) var variants: int = 8:
 	set(value):
-		variants = maxi(value, 1)
+		variants = clampi(value, 1, _MOST_VARIANTS)
 		_change(true)
 
 ## How much the individuals differ from their source: 0 is the same tree, 1 as different as its kind
 ## allows.
 @export_range(0.0, 1.0, 0.01) var amount: float = 0.6:
 	set(value):
-		amount = clampf(value, 0.0, 1.0)
+		amount = Checked.number(value, 0.0, 1.0, amount)
 		_change(true)
 
 ## Another number gives another forest of the same kind.
@@ -84,14 +87,14 @@ static var threaded: bool = OS.has_feature("threads")
 ## The ages of the youngest and of the oldest trees, over the source's own.
 @export var ages: Vector2 = Vector2(0.6, 1.1):
 	set(value):
-		ages = value.clamp(Vector2.ONE * 0.2, Vector2.ONE * 1.2)
+		ages = Checked.point(value, ages).clamp(Vector2.ONE * 0.2, Vector2.ONE * 1.2)
 		_change(true)
 
 ## How far the seasons of the earliest and the latest tree are apart (see [member LeafRule.season]).
 ## It needs a leaf rule.
 @export_range(0.0, 0.5, 0.01) var season_spread: float = 0.08:
 	set(value):
-		season_spread = maxf(value, 0.0)
+		season_spread = Checked.number(value, 0.0, 1.0, season_spread)
 		_change(true)
 
 @export_group("Places")
@@ -112,7 +115,7 @@ static var threaded: bool = OS.has_feature("threads")
 ## The sides of the rectangle around this node that trees stand in, in metres.
 @export_custom(PROPERTY_HINT_NONE, "suffix:m") var region_size: Vector2 = Vector2(40.0, 40.0):
 	set(value):
-		region_size = value.max(Vector2.ZERO)
+		region_size = Checked.point(value, region_size).max(Vector2.ZERO)
 		_change(false)
 
 ## What trees stand in instead of a rectangle: a [Path3D], whose curve is their edge, or a
@@ -126,31 +129,31 @@ static var threaded: bool = OS.has_feature("threads")
 ## How many trees there are on 100 square metres, where there is room.
 @export_range(0.01, 20.0, 0.01, "or_greater") var density: float = 2.0:
 	set(value):
-		density = maxf(value, 0.0)
+		density = Checked.number(value, 0.0, 1e6, density)
 		_change(false)
 
 ## How near to each other two trees may stand, in metres.
 @export_range(0.0, 20.0, 0.1, "or_greater", "suffix:m") var minimum_distance: float = 3.0:
 	set(value):
-		minimum_distance = maxf(value, 0.0)
+		minimum_distance = Checked.number(value, 0.0, 1e6, minimum_distance)
 		_change(false)
 
 ## 0 spreads the trees evenly, 1 leaves glades between thickets.
 @export_range(0.0, 1.0, 0.01) var clumping: float = 0.3:
 	set(value):
-		clumping = clampf(value, 0.0, 1.0)
+		clumping = Checked.number(value, 0.0, 1.0, clumping)
 		_change(false)
 
 ## How much smaller and larger than the scan trees are, beside their age.
 @export_range(0.0, 0.5, 0.01) var size_variation: float = 0.1:
 	set(value):
-		size_variation = clampf(value, 0.0, 0.9)
+		size_variation = Checked.number(value, 0.0, 0.9, size_variation)
 		_change(false)
 
 ## How far trees lean at most, in degrees.
 @export_range(0.0, 20.0, 0.1, "degrees") var lean: float = 2.0:
 	set(value):
-		lean = value
+		lean = Checked.number(value, 0.0, 80.0, lean)
 		_change(false)
 
 @export_subgroup("Ground", "ground_")
@@ -171,19 +174,19 @@ static var threaded: bool = OS.has_feature("threads")
 ## How far above and below the region rays look, in metres.
 @export_range(1.0, 1000.0, 1.0, "or_greater", "suffix:m") var ground_depth: float = 200.0:
 	set(value):
-		ground_depth = value
+		ground_depth = Checked.number(value, 0.0, 1e6, ground_depth)
 		_change(false)
 
 ## How far trees turn with the ground: 0 stands them upright, 1 at right angles to it.
 @export_range(0.0, 1.0, 0.01) var ground_alignment: float = 0.1:
 	set(value):
-		ground_alignment = clampf(value, 0.0, 1.0)
+		ground_alignment = Checked.number(value, 0.0, 1.0, ground_alignment)
 		_change(false)
 
 ## Ground that is steeper bears no tree, in degrees.
 @export_range(0.0, 90.0, 1.0, "degrees") var ground_slope_limit: float = 40.0:
 	set(value):
-		ground_slope_limit = value
+		ground_slope_limit = Checked.number(value, 0.0, 180.0, ground_slope_limit)
 		_change(false)
 
 ## Between which heights of the ground trees stand, in metres of this node's frame.
@@ -226,6 +229,14 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 		level_distances = value
 		_change(true)
 
+## The most triangles that a tree has at each level, the finest first; it becomes as fine as that
+## allows. 0: as many as the level has by itself. Those that are missing are chosen by the trees'
+## heights.
+@export var level_budgets: PackedInt32Array = []:
+	set(value):
+		level_budgets = value
+		_change(true)
+
 ## What stands for trees that are farther away than the last level of detail.
 @export var impostor: TreeImpostor:
 	set(value):
@@ -235,7 +246,7 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 ## Trees farther from the camera than this, in metres, are not there.
 @export_range(10.0, 2000.0, 1.0, "or_greater", "suffix:m") var view_distance: float = 300.0:
 	set(value):
-		view_distance = maxf(value, 1.0)
+		view_distance = Checked.number(value, 1.0, 1e6, view_distance)
 		_change(true)
 
 @export_group("Collision")
@@ -249,19 +260,19 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 ## How near they are, in metres.
 @export_range(1.0, 100.0, 0.5, "or_greater", "suffix:m") var collision_distance: float = 20.0:
 	set(value):
-		collision_distance = value
+		collision_distance = Checked.number(value, 0.0, 1e6, collision_distance)
 		_change(false)
 
 ## How many there are at most.
 @export_range(1, 256) var collision_trees: int = 24:
 	set(value):
-		collision_trees = value
+		collision_trees = clampi(value, 0, 4096)
 		_change(false)
 
 ## How many capsules each has at most.
 @export_range(1, 64) var collision_shapes: int = 12:
 	set(value):
-		collision_shapes = value
+		collision_shapes = clampi(value, 1, 256)
 		_change(true)
 
 ## The layers that the bodies are in.
@@ -280,7 +291,9 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 		_change(true)
 
 ## The milliseconds that the forest may take of a frame while it is made or the camera moves.
-@export_range(0.1, 20.0, 0.1, "suffix:ms") var frame_budget_ms: float = 1.5
+@export_range(0.1, 20.0, 0.1, "suffix:ms") var frame_budget_ms: float = 1.5:
+	set(value):
+		frame_budget_ms = Checked.number(value, 0.1, 1000.0, frame_budget_ms)
 
 ## The camera that the forest is drawn for; without one, that of the viewport.
 var camera: Node3D
@@ -289,10 +302,9 @@ var _forest: Forest = Forest.new(self)
 var _queued: bool = false
 var _variants_changed: bool = true
 var _calm: float = 0.0
-var _telling: bool = false
-var _progress: float = -1.0
+var _telling: Telling = Telling.new()
 var _longest: int = 0
-var _heard: Array[TreeReconstruction] = []
+var _listening: Listening = Listening.new()
 
 
 ## Makes the forest again, soon. You need it only after changing something that does not say so
@@ -308,7 +320,7 @@ func rebuild_places() -> void:
 
 ## Whether the forest is being made.
 func is_building() -> bool:
-	return _queued or _telling
+	return _queued or _telling.is_busy()
 
 
 ## How many trees stand, near the camera or not.
@@ -317,18 +329,35 @@ func get_tree_count() -> int:
 
 
 ## Adds a tree at [param frame], in this node's frame, and returns its id, or [code]-1[/code] with
-## an error where there is no forest yet: wait for [signal finished].
+## an error for a frame that is not finite, or flat. It stays through every change of the forest.
 func spawn_at(frame: Transform3D) -> int:
-	if _forest.stand == null:
-		push_error("There is no forest yet. Wait until it says 'finished'.")
+	if not Forest.Stand.can_stand(frame):
+		push_error("No tree can stand there: the transform is not finite, or flat.")
 		return -1
 	return _forest.add(frame)
 
 
-## Takes the tree [param id] away. Ids are never given again.
+## Takes the tree [param id] away. It stays away through every change of the forest that leaves its
+## place a tree, and ids are never given again.
 func remove(id: int) -> void:
-	if _has(id):
-		_forest.remove(id)
+	_say(_forest.remove(id), id)
+
+
+## What the game has done to the forest with [method spawn_at], [method remove] and [method take]:
+## numbers, and lists of numbers, which any format saves. Trees keep their ids.
+func get_state() -> Dictionary:
+	return _forest.changes.to_state()
+
+
+## Gives the forest back what [method get_state] told, of this machine or of another one that has
+## the same forest; an empty dictionary takes all changes back. The places are found again then: see
+## [signal finished].
+func set_state(state: Dictionary) -> void:
+	var wrong: String = _forest.changes.from_state(state)
+	if wrong.is_empty():
+		rebuild_places()
+	else:
+		push_error(wrong)
 
 
 ## Takes the tree [param id] out of the forest, and puts a [TreeInstance3D] in its place, which can
@@ -336,12 +365,7 @@ func remove(id: int) -> void:
 func take(id: int) -> TreeInstance3D:
 	if not _has(id):
 		return null
-	var made: TreeInstance3D = TreeInstance3D.new()
-	made.reconstruction = get_variant(get_tree_variant(id))
-	made.bark_material = bark_material
-	made.leaf_material = leaf_material
-	made.leaves = leaves
-	made.transform = get_tree_transform(id)
+	var made: TreeInstance3D = Making.make_instance(self, id)
 	add_child(made)
 	_forest.remove(id)
 	return made
@@ -359,7 +383,9 @@ func get_tree_variant(id: int) -> int:
 
 ## The trees within [param distance] metres of a place in this node's frame, the nearest first.
 func find_trees(place: Vector3, distance: float) -> PackedInt32Array:
-	return PackedInt32Array() if _forest.stand == null else _forest.stand.near(place, distance)
+	if _forest.stand == null or not place.is_finite() or is_nan(distance):
+		return []
+	return _forest.stand.near(place, minf(distance, _FARTHEST))
 
 
 ## The tree whose body this is (see [member collision]), or [code]-1[/code].
@@ -370,13 +396,7 @@ func find_tree_of(body: Node) -> int:
 ## The individual [param index], 0 to [member variants] - 1, as a tree of its own. It is made anew
 ## whenever you ask, in some milliseconds.
 func get_variant(index: int) -> TreeReconstruction:
-	var from: Array[TreeReconstruction] = get_all_sources()
-	if from.is_empty() or index < 0 or index >= variants:
-		push_error("The forest has no individual %d." % index)
-		return null
-	return from[index % from.size()].make_variant(
-		_forest.seed_of(index), amount, _forest.age_of(index)
-	)
+	return Making.make_variant(self, index, _forest.seed_of(index), _forest.age_of(index))
 
 
 ## The mesh of an individual that is ready, at a level of detail.
@@ -410,13 +430,17 @@ func get_statistics() -> Dictionary:
 	return found
 
 
+func _init() -> void:
+	finished.connect(update_configuration_warnings)
+
+
 func _notification(what: int) -> void:
 	match what:
 		NOTIFICATION_ENTER_TREE:
 			rebuild()
 		NOTIFICATION_EXIT_TREE:
 			_forest.clear()
-			_telling = false
+			_telling.stop()
 		NOTIFICATION_PREDELETE:
 			_forest.finish()
 
@@ -426,52 +450,34 @@ func _process(delta: float) -> void:
 	_calm -= delta
 	if _queued and _calm <= 0.0:
 		_queued = false
-		_telling = true
-		_progress = -1.0
+		_telling.start()
 		_forest.start(_variants_changed, threaded)
 		_variants_changed = false
 	_forest.go_on(began + int(1000.0 * frame_budget_ms), camera)
-	_tell()
+	if not _queued:
+		_telling.tell(_forest.get_progress(), progressed, finished)
 	_longest = maxi(_longest, Time.get_ticks_usec() - began)
 
 
 func _validate_property(property: Dictionary) -> void:
-	var of: String = property.name
-	var given: bool = placement == Placement.GIVEN
-	if (
-		(given and _OF_SCATTERED.contains(" %s " % of))
-		or (not given and of == "transforms")
-		or (not ground_rays and of in ["ground_mask", "ground_depth"])
-		or (not region.is_empty() and of == "region_size")
-	):
+	if not Inspecting.is_shown(property.name, self):
 		property.usage &= ~PROPERTY_USAGE_EDITOR
 
 
 func _get_configuration_warnings() -> PackedStringArray:
-	var warnings: PackedStringArray = []
-	if get_all_sources().is_empty():
-		warnings.append("Give this node a TreeReconstruction to make a forest of.")
-	if not region.is_empty() and not Forest.Region.is_region(get_node_or_null(region)):
-		warnings.append("The region is neither a Path3D with a curve nor a MeshInstance3D.")
-	if is_inside_tree() and not global_basis.get_scale().is_equal_approx(Vector3.ONE):
-		warnings.append("This node is scaled: its levels of detail change too early or too late.")
-	return warnings
+	return Inspecting.warnings(self, _forest.get_warning())
 
 
 func _listen() -> void:
-	for heard: TreeReconstruction in _heard:
-		heard.changed.disconnect(_on_source_changed)
-	_heard = []
-	for one: TreeReconstruction in [source] + sources:
-		if one != null and not _heard.has(one):
-			one.changed.connect(_on_source_changed)
-			_heard.append(one)
+	var all: Array[TreeReconstruction] = [source]
+	_listening.listen(all + sources, _on_source_changed)
 	_change(true)
 
 
-func _on_source_changed() -> void:
-	_forest.forget()
-	_change(true)
+func _on_source_changed(one: TreeReconstruction) -> void:
+	if not _forest.follow_season(one):
+		_forest.forget()
+		_change(true)
 
 
 func _change(of_variants: bool) -> void:
@@ -482,19 +488,11 @@ func _change(of_variants: bool) -> void:
 	_calm = _CALM_SECONDS if Engine.is_editor_hint() else 0.0
 
 
-func _tell() -> void:
-	if not _telling or _queued:
-		return
-	if _forest.get_progress() != _progress:
-		_progress = _forest.get_progress()
-		progressed.emit(_progress)
-	if _progress >= 1.0:
-		_telling = false
-		finished.emit()
-
-
 func _has(id: int) -> bool:
-	if _forest.stand != null and _forest.stand.has(id):
-		return true
-	push_error("The forest has no tree %d." % id)
-	return false
+	return _say(_forest.stand != null and _forest.stand.has(id), id)
+
+
+func _say(has: bool, id: int) -> bool:
+	if not has:
+		push_error("The forest has no tree %d." % id)
+	return has

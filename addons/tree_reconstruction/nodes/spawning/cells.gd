@@ -240,13 +240,13 @@ func _make(level: int, key: Vector2i, place: int) -> void:
 	var buffer: PackedFloat32Array = []
 	var box: AABB
 	var cell: Stand.Cell = stand.grids[level].cells.get(key)
-	var kinds: Array = cell.ids.keys() if cell != null else []
+	var kinds: Array = cell.rows.keys() if cell != null else []
 	for kind: int in kinds:
 		if stand_in(kind) != place:
 			continue
-		for id: int in cell.ids[kind]:
-			var at: int = Stand.FLOATS * id
-			var foot: Vector3 = stand.place_of(id)
+		for row: int in cell.rows[kind]:
+			var at: int = Stand.FLOATS * row
+			var foot: Vector3 = stand.place_of_row(row)
 			box = box.expand(foot) if not buffer.is_empty() else AABB(foot, Vector3.ZERO)
 			buffer.append_array(stand.buffer.slice(at, at + Stand.FLOATS))
 	var scale: float = turns[place][level].scale

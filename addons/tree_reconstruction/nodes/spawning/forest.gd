@@ -3,12 +3,14 @@ extends RefCounted
 ## What a [TreeVariantSpawner3D] does: builds the individuals, finds the places, and draws the trees
 ## around a camera.
 
+const Changes := preload("changes.gd")
 const Individual := preload("individual.gd")
 const Individuals := preload("individuals.gd")
 const Leftovers := preload("leftovers.gd")
 const Materials := preload("materials.gd")
 const Reading := preload("reading.gd")
 const Scatter := preload("scatter.gd")
+const Seasons := preload("seasons.gd")
 const Stand := preload("stand.gd")
 const Cells := preload("cells.gd")
 const Bodies := preload("bodies.gd")
@@ -24,11 +26,15 @@ const _LEAST_CELL: float = 6.0
 # How deep the feet of trees are in the ground, in metres.
 const _SINK: float = 0.03
 const _MEGABYTE: int = 1_000_000
+# What the individuals are of the work where they are built, too.
+const _INDIVIDUALS_SHARE: float = 0.8
 # Places of the spawner's enumeration.
 const _GIVEN: int = 1
 
 ## The trees, as soon as their places are known.
 var stand: Stand
+## What the game has done to them.
+var changes: Changes = Changes.new()
 
 # A TreeVariantSpawner3D: its settings are read when the forest starts.
 var _node: Node3D
@@ -36,7 +42,11 @@ var _individuals: Individuals = Individuals.new()
 var _cells: Cells = Cells.new()
 var _bodies: Bodies = Bodies.new()
 var _reading: Reading = Reading.new()
+var _seasons: Seasons = Seasons.new()
 var _region: Region
+# Materials of the cards, by individual.
+var _cards: Dictionary[int, Material] = {}
+var _with_individuals: bool = true
 # Whether each tree knows its level of detail; else a cell shows one.
 var _by_tree: bool = false
 var _threaded: bool = true
@@ -57,13 +67,15 @@ func start(with_individuals: bool, threaded: bool) -> void:
 	# What is drawn stays until there is something else.
 	_threaded = threaded
 	_leave_places()
-	if with_individuals or _individuals.ready.is_empty():
+	_with_individuals = with_individuals or _individuals.ready.is_empty()
+	if _with_individuals:
 		_individuals.stop()
 		_individuals.threaded = threaded
 		_individuals.budget = _node.memory_budget_mb * _MEGABYTE
 		var others: Array[Material] = []
 		if _has_card():
 			others.append(_node.impostor.material)
+		_seasons.start(from, _node.season_spread)
 		_reading.start(_plans(from), others)
 	_region = _make_region(_sizes(from))
 	_region.start(threaded)
@@ -76,11 +88,13 @@ func go_on(deadline: int, camera: Node3D) -> void:
 	if _reading.is_busy():
 		var plans: Array[Individual] = _reading.poll()
 		if not plans.is_empty():
-			_individuals.start(plans)
+			_start_individuals(plans)
 	var fresh: PackedInt32Array = _individuals.poll(deadline)
 	if not _reading.is_busy() and _region != null and _region.poll(deadline):
 		stand = _region.stand
+		_region.tell()
 		_region = null
+		changes.apply(stand)
 		_start_cells()
 	elif stand != null:
 		# Where the budget ended, others stand for those that it had no room for.
@@ -129,35 +143,71 @@ func forget() -> void:
 	Individuals.forget()
 
 
-## The share of the work that is done: 1 when all is there.
+## The share of the work that is done, from 0: 1 when all is there.
 func get_progress() -> float:
-	var share: float = _individuals.progress()
 	var placed: bool = stand != null or (_region == null and _individuals.ready.is_empty())
-	if not (not _reading.is_busy() and placed and _individuals.is_done() and _cells.is_done()):
-		share = minf(share, 0.99)
-	return share
+	if (
+		placed
+		and not _reading.is_busy()
+		and (_individuals.is_done() or _node.get_all_sources().is_empty())
+		and _cells.is_done()
+	):
+		return 1.0
+	var built: float = _INDIVIDUALS_SHARE if _with_individuals else 0.0
+	var rest: float = 0.5 * (1.0 - built) if placed else 0.0
+	return built * (0.0 if _reading.is_busy() else _individuals.progress()) + rest
+
+
+## The leaves of a tree's individuals follow its season, if the change of it that was just heard of
+## is one of the season and their materials know it; [code]false[/code] where they have to be built
+## again.
+func follow_season(of: TreeReconstruction) -> bool:
+	if not _seasons.follow(of):
+		return false
+	var values: Dictionary[StringName, Variant] = _seasons.get_values(of)
+	for index: int in _individuals.get_all().size():
+		var one: Individual = _individuals.get_all()[index]
+		if one.source != of:
+			continue
+		if not one.set_season(values):
+			return false
+		if _cards.has(index):
+			Materials.set_values(_cards[index], values)
+	return true
 
 
 ## Adds a tree; returns its id.
 func add(frame: Transform3D) -> int:
-	var id: int = stand.add(frame)
-	_cells.touch(frame.origin, stand.individuals[id])
-	_bodies.touch()
+	var id: int = changes.add(frame)
+	if stand != null:
+		stand.add_again(id, frame)
+		_cells.touch(frame.origin, stand.individual_of(id))
+		_bodies.touch()
 	return id
 
 
-## Takes a tree away.
-func remove(id: int) -> void:
-	var individual: int = stand.individuals[id]
+## Takes a tree away, at once or, while the places are looked for, when they are there;
+## [code]false[/code] where there is none.
+func remove(id: int) -> bool:
+	if stand == null:
+		if _region == null and not changes.has_added(id):
+			return false
+		changes.remove_later(id)
+		return true
+	if not stand.has(id):
+		return false
+	var individual: int = stand.individual_of(id)
 	var place: Vector3 = stand.place_of(id)
+	changes.remove(id, place)
 	stand.remove(id)
 	_cells.touch(place, individual)
 	_bodies.touch()
+	return true
 
 
 ## Which individual a tree is.
 func individual_of(id: int) -> int:
-	return _cells.stand_in(stand.individuals[id])
+	return _cells.stand_in(stand.individual_of(id))
 
 
 ## The seed of an individual.
@@ -179,6 +229,14 @@ func get_ready_count() -> int:
 	return count
 
 
+## A sentence where a budget of triangles could not be kept, of one individual.
+func get_warning() -> String:
+	for one: Individual in _individuals.ready:
+		if one != null and not one.warning.is_empty():
+			return one.warning
+	return ""
+
+
 ## A mesh of an individual that is ready.
 func get_mesh(index: int, level: int) -> ArrayMesh:
 	if index < 0 or index >= _individuals.ready.size() or _individuals.ready[index] == null:
@@ -193,9 +251,8 @@ func get_digest() -> String:
 	all.start(HashingContext.HASH_SHA256)
 	for index: int in _node.variants:
 		all.update(var_to_bytes([seed_of(index), _node.amount, age_of(index)]))
-	if stand != null and not stand.buffer.is_empty():
-		all.update(stand.buffer.to_byte_array())
-		all.update(stand.individuals.to_byte_array())
+	if stand != null:
+		stand.add_to(all)
 	return all.finish().hex_encode()
 
 
@@ -225,7 +282,18 @@ func _leave_places() -> void:
 	_bodies.clear()
 
 
+func _start_individuals(plans: Array[Individual]) -> void:
+	for plan: Individual in plans:
+		if Materials.knows_seasons(plan.leaf_material):
+			plan.summer_rule = Seasons.summer_rule(plan.source)
+	_individuals.start(plans)
+	# Some may be another forest's, which has heard of the season later.
+	for one: Individual in _individuals.get_all():
+		one.set_season(_seasons.get_values(one.source))
+
+
 func _start_cells() -> void:
+	_cards = {}
 	var before: Array = [_cells.stand]
 	_cells.start(stand, maxi(_individuals.accepted, 1))
 	if before[0] != stand:
@@ -239,13 +307,13 @@ func _start_cells() -> void:
 
 func _add_to_cells(ready: PackedInt32Array) -> void:
 	for index: int in ready:
-		var one: Individual = _individuals.ready[index]
-		_cells.add_individual(index, _turns(one))
+		_cells.add_individual(index, _turns(index))
 		_bodies.touch()
 
 
 # The levels of an individual, and the card that stands for it where it is far away.
-func _turns(one: Individual) -> Array[Cells.Turn]:
+func _turns(index: int) -> Array[Cells.Turn]:
+	var one: Individual = _individuals.ready[index]
 	var turns: Array[Cells.Turn] = []
 	for level: int in one.turns.size():
 		var turn: Cells.Turn = Cells.Turn.new()
@@ -258,24 +326,25 @@ func _turns(one: Individual) -> Array[Cells.Turn]:
 			turn.mesh = one.meshes[level]
 		else:
 			turn.scale = one.height / _node.impostor.height
-			turn.mesh = _make_card(one)
+			turn.mesh = _make_card(index)
 			turn.by_tree = _by_tree and Materials.knows_levels(_node.impostor.material)
 		turns.append(turn)
 	return turns
 
 
-func _make_card(one: Individual) -> ArrayMesh:
+func _make_card(index: int) -> ArrayMesh:
+	var one: Individual = _individuals.ready[index]
 	var impostor: TreeImpostor = _node.impostor
 	var values: Dictionary[StringName, Variant] = {
 		&"tree_height": impostor.height, &"tree_wind": 1.0, &"tree_levels": one.turns.back()
 	}
 	values.merge(one.season)
-	return impostor.make_mesh(Materials.for_trees(impostor.material, values))
+	_cards[index] = Materials.for_trees(impostor.material, values)
+	return impostor.make_mesh(_cards[index])
 
 
 func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 	var plans: Array[Individual] = []
-	var seasons: Dictionary[TreeReconstruction, Dictionary] = {}
 	for index: int in _node.variants:
 		var plan: Individual = Individual.new()
 		plan.source = from[index % from.size()]
@@ -285,16 +354,13 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 		plan.turn_count = _count_levels()
 		plan.levels = mini(_node.levels, plan.turn_count)
 		plan.level_distances = _node.level_distances
+		plan.level_budgets = _node.level_budgets
 		plan.farthest = _node.view_distance
 		plan.leaves = _node.leaves
 		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
 		plan.bark_material = _node.bark_material
 		plan.leaf_material = _node.leaf_material
-		if not seasons.has(plan.source):
-			seasons[plan.source] = Materials.season_values(
-				plan.source.leaf_rule, _node.season_spread
-			)
-		plan.season = seasons[plan.source]
+		plan.season = _seasons.get_values(plan.source)
 		if plan.bark_material == null:
 			plan.bark_path = Materials.preset_path(plan.source, "bark")
 		if plan.leaf_material == null:
@@ -308,6 +374,7 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 				plan.levels,
 				plan.turn_count,
 				plan.level_distances,
+				plan.level_budgets,
 				plan.farthest,
 				plan.leaves,
 				plan.capsules_wanted,

@@ -3,6 +3,7 @@ extends RefCounted
 ## One individual of a forest: how a worker builds it, step by step, and its meshes.
 
 const Materials := preload("materials.gd")
+const Collision := preload("../tree_collision.gd")
 const TreeLevels := preload("../tree_levels.gd")
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.15
@@ -38,11 +39,16 @@ var leaf_material: Material
 ## Where the materials are read from; empty where they are given.
 var bark_path: String
 var leaf_path: String
-## What the leaves' material takes on (see [method Materials.season_values]).
+## What the leaves' material takes on (see seasons.gd).
 var season: Dictionary[StringName, Variant] = {}
+## The rule of all leaves of a year, where the material knows the season; else [code]null[/code],
+## and the leaves are those of the source's season.
+var summer_rule: LeafRule
 ## How many levels take turns, with those of other meshes that come after these, and where.
 var turn_count: int = 4
 var level_distances: PackedFloat32Array = []
+## The most triangles of each level (see [member TreeVariantSpawner3D.level_budgets]).
+var level_budgets: PackedInt32Array = []
 ## Where the last one ends, in metres.
 var farthest: float = 300.0
 ## What others that would be the same have in common with it.
@@ -58,6 +64,8 @@ var meshes: Array[ArrayMesh] = []
 ## same for where it ends, in metres.
 var turns: Array[Vector4] = []
 var triangles: PackedInt32Array = []
+## A sentence where a budget could not be kept.
+var warning: String = ""
 var capsules: Array[Dictionary] = []
 var box: AABB
 var height: float = 0.1
@@ -78,12 +86,18 @@ func build() -> void:
 func step() -> bool:
 	if _step == 0:
 		_tree = source.make_variant(number, amount, age)
+		if summer_rule != null:
+			_tree.leaf_rule = summer_rule
 		if capsules_wanted > 0:
-			capsules = _tree.build_capsules(capsules_wanted, capsule_radius)
+			capsules = Collision.gather(
+				_tree, Collision.Kind.CAPSULES, capsules_wanted, capsule_radius
+			)
 	elif _step <= levels:
 		_add("bark", _step - 1, _tree.build_mesh_arrays(_step - 1))
 	elif leaves and _step <= 2 * levels:
 		_add("leaves", _step - levels - 1, _tree.build_joined_leaf_arrays(_step - levels - 1))
+	elif _step <= (3 if leaves else 2) * levels:
+		_fit(_step - (2 if leaves else 1) * levels - 1)
 	else:
 		_finish()
 		return false
@@ -144,6 +158,41 @@ func next_bytes() -> int:
 ## Whether the engine has all of it.
 func is_given() -> bool:
 	return not meshes.is_empty() and _added == surfaces.size()
+
+
+## Lets its leaves follow the season; [code]false[/code] where its material can't.
+func set_season(values: Dictionary[StringName, Variant]) -> bool:
+	season = values
+	if not leaves:
+		return true
+	if summer_rule == null:
+		return false
+	# Before, a worker may be at the surfaces; they get it when they are prepared.
+	if not meshes.is_empty():
+		for surface: Surface in surfaces:
+			if surface.name != "bark":
+				Materials.set_values(surface.material, values)
+	return true
+
+
+# Makes a level that has more triangles than it may have as fine as it may be.
+func _fit(level: int) -> void:
+	var budget: int = TreeLevels.budget(_tree.get_aabb().end.y, level, level_budgets)
+	if budget <= 0 or triangles[level] <= budget:
+		return
+	for place: int in range(surfaces.size() - 1, -1, -1):
+		if surfaces[place].level == level:
+			bytes -= surfaces[place].bytes
+			surfaces.remove_at(place)
+	triangles[level] = 0
+	if not leaves:
+		_tree.leaf_rule = null
+		_tree.leaf_preset = "none"
+	for made: Dictionary in _tree.build_levels([level], [budget], true):
+		_add("bark", level, made.bark)
+		_add("leaves", level, made.joined_leaves)
+		if warning.is_empty():
+			warning = made.warning
 
 
 func _add(name: String, level: int, arrays: Array) -> void:

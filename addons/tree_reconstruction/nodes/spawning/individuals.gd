@@ -75,6 +75,11 @@ func stop() -> void:
 	accepted = 0
 
 
+## All that are ready or to be.
+func get_all() -> Array[Individual]:
+	return _plans
+
+
 ## Whether all are ready.
 func is_done() -> bool:
 	return _decided >= accepted and _uploads.is_empty()
@@ -85,7 +90,7 @@ func progress() -> float:
 	var count: int = 0
 	for one: Individual in ready:
 		count += 1 if one != null else 0
-	return 1.0 if accepted == 0 else float(count) / accepted
+	return 0.0 if accepted == 0 else float(count) / accepted
 
 
 ## Goes on until [param deadline] (see [method Time.get_ticks_usec]); returns the places of those

@@ -54,22 +54,21 @@ static func preset_path(tree: TreeReconstruction, part: String) -> String:
 	return path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]
 
 
-## What the season makes of the leaves, [param spread] apart from the earliest tree to the latest.
-static func season_values(rule: LeafRule, spread: float) -> Dictionary[StringName, Variant]:
-	var values: Dictionary[StringName, Variant] = {}
-	if rule == null:
-		return values
-	var other: LeafRule = rule.duplicate() as LeafRule
-	for end: String in ["", "_after"]:
-		other.season = rule.season + (-0.5 if end.is_empty() else 0.5) * spread
-		var tints: PackedColorArray = other.get_season_tints()
-		for i: int in 2:
-			# Colors would be converted by some renderers and not by others.
-			var tint: Color = tints[i].srgb_to_linear()
-			values[StringName(["season_early", "season_late"][i] + end)] = Vector4(
-				tint.r, tint.g, tint.b, tint.a
-			)
-	return values
+## Sets [param values] in what [method for_trees] made, unless it is the material itself.
+static func set_values(made: Material, values: Dictionary[StringName, Variant]) -> void:
+	var shaded: ShaderMaterial = made as ShaderMaterial
+	# Those that it made are of no file, and so are their shaders.
+	if shaded == null or shaded.shader == null or not shaded.shader.code.contains(_DEFINES):
+		return
+	for name: StringName in values:
+		shaded.set_shader_parameter(name, values[name])
+
+
+## Whether the material's shader is the addon's, which lets leaves turn, fall and unfold.
+static func knows_seasons(material: Material) -> bool:
+	return (
+		_is_ours(material) and (material as ShaderMaterial).shader.code.contains("season_standing")
+	)
 
 
 static func _is_ours(material: Material) -> bool:

@@ -28,6 +28,7 @@ var _frame: Transform3D
 var _task: int = -1
 var _rayed: int = 0
 var _planted: int = 0
+var _skipped: int = 0
 
 
 ## Reads from the scene what a worker can't: what [param place] (may be [code]null[/code]) is for
@@ -89,6 +90,17 @@ func poll(deadline: int) -> bool:
 	return true
 
 
+## Says, on the main thread, what was left out.
+func tell() -> void:
+	if _skipped > 0:
+		push_error(
+			(
+				"%d of the forest's %d transforms bear no tree: they are not finite, or flat."
+				% [_skipped, given.size()]
+			)
+		)
+
+
 func _run(deadline: int) -> bool:
 	if not is_given and not scatter.run(deadline):
 		return false
@@ -96,7 +108,10 @@ func _run(deadline: int) -> bool:
 	while _planted < count and (is_given or not rays) and not scatter.stale:
 		if _planted % _TREES_BETWEEN_LOOKS == 0 and Time.get_ticks_usec() >= deadline:
 			return false
-		if is_given:
+		if is_given and not Stand.can_stand(given[_planted]):
+			stand.skip()
+			_skipped += 1
+		elif is_given:
 			stand.add(given[_planted])
 		else:
 			stand.plant(scatter.places[_planted], scatter.normals[_planted])

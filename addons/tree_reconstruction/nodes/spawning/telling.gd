@@ -1,0 +1,34 @@
+@tool
+extends RefCounted
+## Tells how far a forest is: from 0 on, never less than before, and then that it is there.
+
+var _telling: bool = false
+var _told: float = -1.0
+
+
+## Begins anew.
+func start() -> void:
+	_telling = true
+	_told = -1.0
+
+
+func stop() -> void:
+	_telling = false
+
+
+func is_busy() -> bool:
+	return _telling
+
+
+## Tells [param progressed] the share that is done, if it has become more, and [param finished] the
+## end of it.
+func tell(share: float, progressed: Signal, finished: Signal) -> void:
+	if not _telling:
+		return
+	var now: float = 0.0 if _told < 0.0 else share
+	if now > _told:
+		_told = now
+		progressed.emit(now)
+	if _told >= 1.0:
+		_telling = false
+		finished.emit()
