@@ -1,8 +1,12 @@
 #include "file_bytes.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <new>
+#include <random>
 #include <system_error>
 
 #include "error.h"
@@ -89,8 +93,22 @@ fs::path target_of(const std::string& path) {
     return code ? target : pointed_to;
 }
 
-fs::path part_of(fs::path target) {
-    return target += ".part";
+// What is written before it takes the target's place: no other process, and no other write of this one, has
+// that name, so that two that write the same file at once each leave a whole one.
+fs::path part_of(const fs::path& target) {
+    static std::atomic<uint64_t> writes{0};
+    static const uint64_t ours = [] {
+        std::random_device device;
+        return static_cast<uint64_t>(device()) << 32 | device();
+    }();
+    char id[17];
+    std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(ours + writes++));
+    // File systems take 255 bytes for a name.
+    constexpr size_t kLongest = 200;
+    fs::path name = target.filename();
+    if (utf8_of(name).size() > kLongest) name = "treerec";
+    name += std::string(".") + id + ".part";
+    return target.parent_path() / name;
 }
 
 }  // namespace
@@ -125,7 +143,10 @@ void require_writable(const std::string& path) {
     if (!folder.empty() && !fs::is_directory(folder, code))
         throw Error("'" + path + "' cannot be written: there is no folder '" + utf8_of(folder) + "'.");
     const fs::path beside = part_of(target);
-    const bool writable = static_cast<bool>(std::ofstream(beside, std::ios::binary | std::ios::trunc));
+    // A name that is too long for the file system is none.
+    const bool named = fs::status(target, code).type() != fs::file_type::none;
+    const bool writable =
+        named && static_cast<bool>(std::ofstream(beside, std::ios::binary | std::ios::trunc));
     fs::remove(beside, code);
     if (!writable)
         throw Error("'" + path +

@@ -22,8 +22,8 @@ struct FileBytes {
 // Throws Error where the file is missing, a folder, unreadable, or too large for memory.
 FileBytes read_file(const std::string& path, Progress* progress = nullptr);
 
-// Writes beside `path` and renames, so that a failure leaves the old file as it was. A link stays a link;
-// what is no plain file (a pipe, a device) is written to straight. Throws Error, or Cancelled.
+// Writes beside `path`, under a name of its own, and renames: a failure leaves the old file, and of several
+// writers one wins. Links stay; a pipe or a device is written to straight. Throws Error, or Cancelled.
 void write_file(const std::string& path, std::string_view bytes, const Progress* progress = nullptr);
 // The parts one after the other.
 void write_file(const std::string& path, std::span<const std::string_view> parts,

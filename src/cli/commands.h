@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/arguments.h"
@@ -18,6 +19,10 @@ std::vector<std::string> columns_from(const Arguments& arguments);
 int levels_from(const Arguments& arguments);
 // "--dialect paper" (default turtle). Throws UsageError.
 LStringDialect dialect_from(const Arguments& arguments);
+
+// Throws UsageError where a file at `path` has something in it and is not of ours, which begin with `mark` in
+// their first 4 kB: to be asked for what no -o names. what: "no report of a reconstruction".
+void require_own(const std::string& path, std::string_view mark, const std::string& what);
 
 const Command& reconstruct_command();
 void run_reconstruct(const std::vector<std::string>& words);

@@ -1,4 +1,8 @@
+#include <filesystem>
+#include <fstream>
+
 #include "cli/commands.h"
+#include "file_bytes.h"
 #include "pipeline/export.h"
 #include "scan/read_cloud.h"
 
@@ -18,6 +22,18 @@ std::vector<std::string> columns_from(const Arguments& arguments) {
 
 int levels_from(const Arguments& arguments) {
     return static_cast<int>(arguments.whole("--levels", 1, 1, kMostLevels));
+}
+
+void require_own(const std::string& path, std::string_view mark, const std::string& what) {
+    std::error_code failure;
+    if (!std::filesystem::is_regular_file(path_of(path), failure)) return;
+    std::ifstream stream(path_of(path), std::ios::binary);
+    std::string begin(4096, '\0');
+    stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.resize(static_cast<size_t>(stream.gcount()));
+    if (stream.bad() || (!begin.empty() && begin.find(mark) == std::string::npos))
+        throw UsageError("'" + path + "' is there already and " + what +
+                         "; it was left as it is. Name another file, or remove that one.");
 }
 
 }  // namespace treerec

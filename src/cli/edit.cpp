@@ -93,6 +93,8 @@ void run_edit(const std::vector<std::string>& words) {
     const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
     for (const std::string& out : outs)
         require_writable_format(out);
+    if (arguments.has("--log"))
+        require_own(arguments.text("--log", ""), "# treerec edit log ", "no log of edits");
     ExportOptions exports;
     exports.textures = arguments.text("--leaves", exports.textures);
     exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);

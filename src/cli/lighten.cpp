@@ -15,7 +15,7 @@ namespace treerec {
 const Command& lighten_command() {
     static const Command command{
         "lighten",
-        "lighten IN -o OUT... [options]",
+        "lighten IN -o OUT [-o OUT...] [options]",
         "Leaves fewer nodes in a tree, the least visible ones first.",
         {{"-o", "OUT", "a file to write, as reconstruct does: .glb .gltf .obj .ply .txt .csv", true},
          {"--nodes", "N", "how many nodes to leave; or:"},

@@ -41,9 +41,9 @@ void run_lstring(const std::vector<std::string>& words) {
     const Arguments arguments(lstring_command(), words);
     const std::vector<std::string>& positional = arguments.positional();
     if (positional.empty()) throw UsageError("Which tree? Name a tree file.");
-    if (positional.size() > 2 || (positional.size() == 2 && arguments.has("-o")))
-        throw UsageError("'" + positional.back() + "' is too much.");
-    const std::string out = positional.size() == 2 ? positional[1] : arguments.text("-o", "");
+    if (positional.size() > 1)
+        throw UsageError("'" + positional[1] + "' is too much; name the file to write with -o.");
+    const std::string out = arguments.text("-o", "");
     LStringOptions options;
     options.dialect = dialect_from(arguments);
     options.accuracy = arguments.number("--accuracy", options.accuracy, 1e-12, 0.1);

@@ -20,6 +20,10 @@ namespace treerec {
 
 namespace {
 
+// By what a report and a page of ours are known.
+constexpr std::string_view kReportMark = "\"scan_format\"";
+constexpr std::string_view kPageMark = "reconstructed tree</title>";
+
 // An option's wrong value is a matter of the command line, not of the file.
 template <typename Call>
 auto as_usage(Call call) {
@@ -151,12 +155,12 @@ std::string leaf_names() {
 const Command& reconstruct_command() {
     static const Command command{
         "reconstruct",
-        "reconstruct SCAN -o OUT... [--report R.json] [options]",
+        "reconstruct SCAN -o OUT [-o OUT...] [--report R.json] [options]",
         "Turns a point cloud into a tree.",
         {{"-o", "OUT",
           "a file to write; its ending names the format: .glb .gltf .obj (bark and leaves:\n"
           "metres, Y up, base at the origin), .ply .txt .csv .lstring (skeleton, tree file, QSM\n"
-          "cylinders: the scan's own coordinates). More of them: -o A -o B, or -o A B",
+          "cylinders: the scan's own coordinates). More of them: -o A -o B",
           true},
          {"--report", "FILE", "stage times, counts, measurements and warnings as JSON"},
          {"--html", "FILE", "a page to send to somebody: pictures, fidelity, tables (also -o FILE.html)"},
@@ -192,12 +196,14 @@ void run_reconstruct(const std::vector<std::string>& words) {
     const Arguments arguments(reconstruct_command(), words);
     const std::vector<std::string>& positional = arguments.positional();
     if (positional.empty()) throw UsageError("Which scan? Name a point-cloud file.");
+    // A second one may be a scan as well ("*.ply"), which must not be written over.
+    if (positional.size() > 1)
+        throw UsageError("'" + positional[1] +
+                         "' is too much: one scan at a time, and each file to write behind a -o of its own.");
     const std::string scan = positional[0];
     std::vector<std::string> outs = arguments.all("-o");
     const bool told = arguments.has("--report") || arguments.has("--html");
-    if (outs.empty() && (positional.size() > 1 || !told))
-        throw UsageError("Where to? Name at least one file to write with -o.");
-    outs.insert(outs.end(), positional.begin() + 1, positional.end());
+    if (outs.empty() && !told) throw UsageError("Where to? Name at least one file to write with -o.");
     std::vector<std::string> pages = arguments.all("--html");
     std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
     std::erase_if(outs, is_page);
@@ -217,6 +223,9 @@ void run_reconstruct(const std::vector<std::string>& words) {
     targets.insert(targets.end(), pages.begin(), pages.end());
     for (const std::string& target : targets)
         require_safe_target(target, scan, targets);
+    if (arguments.has("--report")) require_own(report, kReportMark, "no report of a reconstruction");
+    for (const std::string& page : arguments.all("--html"))
+        require_own(page, kPageMark, "no page of a reconstruction");
 
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
@@ -56,6 +57,14 @@ void run_synth(const std::vector<std::string>& words) {
     scanning.leaves = arguments.number("--leaves", 0.0, 0.0, 1.0);
     scanning.stations = static_cast<int>(arguments.whole("--stations", 5, 1, 64));
 
+    const std::string scan_path = folder + "/scan.ply", truth_path = folder + "/truth.txt";
+    require_own(truth_path, "# Tree file, one line per tree", "no tree file of ours");
+    std::error_code failure;
+    if (std::filesystem::exists(path_of(scan_path), failure) &&
+        !std::filesystem::exists(path_of(truth_path), failure))
+        throw UsageError("'" + scan_path +
+                         "' is there already, without the truth.txt of a grown tree, and was left as it is; "
+                         "name another folder.");
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     progress.update(0.0, "Growing");
@@ -65,7 +74,6 @@ void run_synth(const std::vector<std::string>& words) {
     progress.check();
     progress.update(0.9, "Writing");
     make_folder(folder);
-    const std::string scan_path = folder + "/scan.ply", truth_path = folder + "/truth.txt";
     write_cloud(scan_path, scan.cloud);
     write_treefile(truth_path, tree);
     progress.clear();

@@ -1,11 +1,34 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
 #include "exchange/material_textures.h"
+#include "file_bytes.h"
 #include "foliage/leaves.h"
 
 namespace treerec {
+
+namespace {
+
+// A picture of one of our names that stands there alone is somebody else's.
+void require_own_pictures(const std::string& folder, const std::string& preset) {
+    std::error_code failure;
+    std::string found;
+    bool all = true;
+    for (const std::string& name : picture_names()) {
+        const std::string path = folder + "/" + preset + "_" + name + ".png";
+        const bool there = std::filesystem::exists(path_of(path), failure);
+        all = all && there;
+        if (there && found.empty()) found = path;
+    }
+    if (!found.empty() && !all)
+        throw UsageError("'" + found +
+                         "' is there already, without the other pictures of its kind, and was left as it is; "
+                         "name another folder.");
+}
+
+}  // namespace
 
 const Command& textures_command() {
     static const Command command{"textures",
@@ -34,6 +57,8 @@ void run_textures(const std::vector<std::string>& words) {
         throw UsageError("There are no pictures for '" + arguments.text("--preset", "") + "'.");
     const int size = static_cast<int>(arguments.whole("--size", kTextureSize, 16, 4096));
     const uint64_t seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    for (const std::string& preset : presets)
+        require_own_pictures(arguments.text("-o", ""), preset);
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     for (size_t i = 0; i < presets.size(); i++) {

@@ -72,6 +72,10 @@ void set_ready_pictures(std::span<const ReadyPicture> pictures) {
     ready_pictures = pictures;
 }
 
+std::vector<std::string> picture_names() {
+    return {std::begin(kNames), std::end(kNames)};
+}
+
 std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uint64_t seed) {
     std::vector<NamedPicture> pictures;
     if (size == kTextureSize && seed == kTextureSeed)

@@ -37,6 +37,9 @@ struct ReadyPicture {
 // Takes pictures that need no drawing any more; they must outlive all use. Not while others make pictures.
 void set_ready_pictures(std::span<const ReadyPicture> pictures);
 
+// What these are called, whatever the preset.
+std::vector<std::string> picture_names();
+
 // The eight pictures of a preset, in this order: the build's, where it drew these.
 std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kTextureSize,
                                         uint64_t seed = kTextureSeed);

@@ -1,6 +1,8 @@
 #include "pipeline/export.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "error.h"
 #include "exchange/gltf.h"
@@ -34,6 +36,37 @@ Format format_of(const std::string& path) {
     return Format::kUnknown;
 }
 
+// Whether the model at `path` is there and was written by this program: with it, what lies beside it was.
+bool is_own_model(const std::string& path, std::string_view mark) {
+    std::ifstream stream(path_of(path), std::ios::binary);
+    std::string begin(4096, '\0');
+    stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.resize(static_cast<size_t>(stream.gcount()));
+    return begin.find(mark) != std::string::npos;
+}
+
+// A model of several files names all but one of them itself: none of these may be somebody else's.
+void require_own_companions(const std::string& path, Format format) {
+    const std::string extension = extension_of(path);
+    const bool in_parts = format == Format::kObj || extension == "gltf";
+    if (!in_parts) return;
+    const std::string stem = stem_of(path);
+    if (is_own_model(sibling_of(path, stem + ".gltf"), "(treerec)") ||
+        is_own_model(sibling_of(path, stem + ".obj"), "# Metres, Y up."))
+        return;
+    std::vector<std::string> names{stem + (format == Format::kObj ? ".mtl" : ".bin")};
+    for (const std::string& picture : picture_names())
+        names.push_back(stem + "_" + picture + ".png");
+    for (const std::string& name : names) {
+        std::error_code failure;
+        const std::string companion = sibling_of(path, name);
+        if (std::filesystem::exists(path_of(companion), failure))
+            throw Error("'" + companion + "', which '" + path +
+                        "' needs for itself, is there already and no output of this program; it was left as "
+                        "it is. Give the model another name, or move that file.");
+    }
+}
+
 }  // namespace
 
 void require_writable_format(const std::string& path) {
@@ -43,6 +76,7 @@ void require_writable_format(const std::string& path) {
             "' names no format that can be written; end it in .glb, .gltf or .obj (the tree with bark and "
             "leaves), or .ply, .txt, .csv or .lstring (its skeleton).");
     require_writable(path);
+    require_own_companions(path, format_of(path));
 }
 
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)

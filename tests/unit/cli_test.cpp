@@ -59,7 +59,7 @@ void expect_one_sentence(const Outcome& outcome) {
 TEST_F(Cli, SynthReconstructInfoScoreWorkTogether) {
     ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
     const Outcome made =
-        run("reconstruct s/scan.ply -o out/a.glb out/a.obj -o out/a.txt -o out/a.csv "
+        run("reconstruct s/scan.ply -o out/a.glb -o out/a.obj -o out/a.txt -o out/a.csv "
             "-o out/a.ply --report out/a.json --leaves maple --seed 9");
     ASSERT_EQ(made.code, 0) << made.error;
     EXPECT_NE(made.out.find("wrote out/a.glb"), std::string::npos);
