@@ -14,6 +14,7 @@ const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 const _PARTS: PackedStringArray = [
 	"translations/part.gd",
 	"import/part.gd",
+	"sharing/part.gd",
 	"viewport/part.gd",
 	"dock/part.gd",
 ]
@@ -119,6 +120,12 @@ func _forward_3d_draw_over_viewport(overlay: Control) -> void:
 		listener.call(&"draw_over", overlay)
 
 
+# Before a scene is saved.
+func _apply_changes() -> void:
+	if _session != null:
+		_session.local_trees.keep_from_engine()
+
+
 # With the scenes.
 func _save_external_data() -> void:
 	if _session == null:
@@ -128,9 +135,15 @@ func _save_external_data() -> void:
 
 
 func _get_unsaved_status(for_scene: String) -> String:
-	if _session == null or not for_scene.is_empty():
+	if _session == null:
 		return ""
-	var unsaved: PackedStringArray = _session.local_trees.get_unsaved()
+	var unsaved: PackedStringArray = []
+	if for_scene.is_empty():
+		unsaved = _session.local_trees.get_unsaved()
+	else:
+		for scene: Node in EditorInterface.get_open_scene_roots():
+			if scene != null and scene.scene_file_path == for_scene:
+				unsaved = _session.local_trees.get_unsaved_of(scene)
 	if unsaved.is_empty():
 		return ""
 	return (

@@ -56,7 +56,7 @@ func test_the_first_edit_makes_a_copy_beside_the_scan() -> void:
 	check(local != made, "The imported tree itself was edited.")
 	check_equal(made.skeleton, before, "the imported skeleton")
 	check_equal(local.resource_path, FOLDER.path_join("oak_tree.res"), "the file")
-	check(FileAccess.file_exists(local.resource_path), "There is no file.")
+	check(not FileAccess.file_exists(local.resource_path), "It was written before it was saved.")
 	check(_said.size() == 2 and "oak_tree.res" in _said[0], "Nobody said so: %s" % _said)
 	check_equal(_undo.get_history_count(), 1, "steps")
 	_undo.undo()
@@ -76,15 +76,74 @@ func test_what_changed_is_saved_with_the_scene() -> void:
 	_session.run("Prune", "prune_order order=1")
 	var local: TreeReconstruction = _session.tree
 	var path: String = local.resource_path
-	check(_saved(path).skeleton != local.skeleton, "It was saved before anybody asked.")
+	check(not FileAccess.file_exists(path), "It was saved before anybody asked.")
 	check_equal(_session.local_trees.get_unsaved(), PackedStringArray([path]), "unsaved files")
 	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
 	check_equal(_saved(path).skeleton, local.skeleton, "the saved skeleton")
 	check_equal(_saved(path).edit_log, local.edit_log, "the saved log")
 	check_equal(_session.local_trees.get_unsaved(), PackedStringArray(), "unsaved files then")
+	var saved: Dictionary = local.skeleton
 	_undo.undo()
-	check_equal(_session.local_trees.get_unsaved(), PackedStringArray([path]), "after undo")
+	check_equal(_session.tree.resource_path, FOLDER.path_join("oak.ply"), "the tree after undo")
+	check_equal(_saved(path).skeleton, saved, "the file after undo")
 	_end()
+
+
+func test_what_is_undone_before_it_is_saved_leaves_no_file() -> void:
+	_edit_imported(grown_tree(3))
+	_session.run("Prune", "prune_order order=1")
+	_undo.undo()
+	check_equal(_session.local_trees.get_unsaved(), PackedStringArray(), "unsaved files")
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check_equal(DirAccess.get_files_at(FOLDER).size(), 2, "files")
+	_undo.redo()
+	check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+	check_equal(_saved(_session.tree.resource_path).skeleton, _session.tree.skeleton, "the file")
+	_end()
+
+
+# Whatever is done, undone, done again and saved, in whatever order: the file has what was there
+# when it was last saved, and nothing that was not.
+func test_the_file_is_what_was_saved_last() -> void:
+	for seed: int in 12:
+		var random: RandomNumberGenerator = RandomNumberGenerator.new()
+		random.seed = seed
+		_edit_imported(grown_tree(seed))
+		_session.run("Smooth", "smooth_radii rounds=1")
+		var path: String = _session.tree.resource_path
+		var wanted: Dictionary = {}
+		for step: int in 25:
+			match random.randi_range(0, 5):
+				0:
+					_session.run("Smooth", "smooth_radii rounds=%d" % random.randi_range(1, 3))
+				1:
+					var tips: PackedInt32Array = _session.tree.get_leaves()
+					_session.run("Cut", "remove nodes=%d" % tips[random.randi() % tips.size()])
+				2:
+					_session.set_value(
+						"Leaves", _session.tree, &"leaf_size", random.randf_range(0.02, 0.2)
+					)
+				3:
+					_undo.undo()
+				4:
+					_undo.redo()
+				5:
+					# What was undone to the import before it was saved has no file.
+					var has_file: bool = (
+						_session.tree.resource_path == path or not wanted.is_empty()
+					)
+					check_equal(_session.local_trees.save(), PackedStringArray(), "failures")
+					if has_file and ResourceLoader.has_cached(path):
+						wanted = _state(load(path) as TreeReconstruction)
+			_session.update()
+			check_equal(FileAccess.file_exists(path), not wanted.is_empty(), "whether it is there")
+			if not wanted.is_empty():
+				check_equal(_state(_saved(path)), wanted, "the file after step %d" % step)
+		_end()
+
+
+func _state(of: TreeReconstruction) -> Dictionary:
+	return {"wood": of.skeleton, "log": of.edit_log, "size": of.leaf_size}
 
 
 func test_nothing_is_left_of_a_refused_or_cancelled_edit() -> void:

@@ -24,10 +24,11 @@ func _init(undo: Object) -> void:
 
 
 ## Begins a step that the user will see as [param title]. It goes into the history of the scene
-## that [param context] is in. Steps with the same [param merged], such as an object and its
-## property, that follow each other quickly become one, so that a slider that is dragged is one
+## that [param context] is in, or, for a resource with a file, that of all scenes. Steps with the
+## same [param merged], such as an object and its property, that follow each other quickly become
+## one, so that a slider that is dragged is one
 ## step.
-func begin(title: String, context: Node, merged: Array = []) -> void:
+func begin(title: String, context: Object, merged: Array = []) -> void:
 	# The engine would merge by the title alone.
 	var same: bool = (
 		not merged.is_empty() and merged == _merged and _get_version(context) == _version
@@ -39,7 +40,9 @@ func begin(title: String, context: Node, merged: Array = []) -> void:
 	if _undo is UndoRedo:
 		(_undo as UndoRedo).create_action(title, mode, true)
 	else:
-		_undo.call(&"create_action", title, mode, context, true)
+		# Whether resources are saved is known without the history, which would ask for those that
+		# nobody holds any more.
+		_undo.call(&"create_action", title, mode, context, true, context is Node)
 
 
 ## Adds a call that does, and one that undoes. The arguments are kept alive.
@@ -84,10 +87,10 @@ func keep_added(node: Node) -> void:
 ## Ends the step. Without [param execute] what it does is done already.
 func commit(execute: bool = true) -> void:
 	_undo.call(&"commit_action", execute)
-	_version = _get_version(_context.get_ref() as Node)
+	_version = _get_version(_context.get_ref() as Object)
 
 
-func _get_version(context: Node) -> int:
+func _get_version(context: Object) -> int:
 	var plain: UndoRedo = _undo as UndoRedo
 	if plain == null:
 		var id: int = _undo.call(&"get_object_history_id", context)

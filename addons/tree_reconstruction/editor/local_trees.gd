@@ -3,7 +3,14 @@ extends RefCounted
 ## Trees of the user's own: made of imported ones at their first edit, saved with the scene.
 ##
 ## An imported tree is overwritten whenever its scan is imported again, so it is never edited
-## itself: a copy is saved beside the scan, as [code]oak_tree.res[/code] of [code]oak.ply[/code].
+## itself: a copy gets a file beside the scan, as [code]oak_tree.res[/code] of [code]oak.ply[/code].
+## Nothing is written before a scene is saved: neither by the engine, which would save whatever a
+## step of the history has touched, nor at the editor's end.
+
+## Trees have changed that a save would write; at most once a frame.
+signal changed
+
+const SceneIndex: GDScript = preload("scene_index.gd")
 
 const _ADDON: String = "res://addons/"
 const _SUFFIX: String = "_tree"
@@ -15,6 +22,11 @@ var _watched: Array[WeakRef] = []
 # By path, those of them that have no file yet: they get one as soon as a scene is saved while
 # anything in a scene uses them. So what was undone leaves none behind.
 var _new: Dictionary[String, bool] = {}
+# Whether nothing has changed since the engine was last kept from saving.
+var _is_kept: bool = true
+# The trees whose steps are in the history of all scenes, by path: no scene's end ends them.
+var _outliving: Dictionary[String, bool] = {}
+var _scenes: SceneIndex = SceneIndex.new()
 
 
 ## Whether an edit of [param tree] would be lost, since it belongs to an import, to the addon, or
@@ -31,23 +43,19 @@ static func is_foreign(tree: TreeReconstruction, node: Node) -> bool:
 	return FileAccess.file_exists(path + ".import")
 
 
-## A copy of [param tree] that may be edited, in a file of its own beside its scan. Returns
-## [code]null[/code] if that can't be written; [param say] then gets a sentence.
-func make_local(tree: TreeReconstruction, node: Node, say: Callable) -> TreeReconstruction:
+## A copy of [param tree] that may be edited, with a file of its own beside its scan. It is written
+## when a scene is saved while any uses the copy: what is undone, or not saved, leaves no file.
+func make_local(tree: TreeReconstruction, node: Node) -> TreeReconstruction:
 	var local: TreeReconstruction = copy_of(tree)
-	var path: String = free_path(tree, node)
-	var error: Error = ResourceSaver.save(local, path, ResourceSaver.FLAG_COMPRESS)
-	if error != OK:
-		say.call(
-			(
-				tr("The tree can't be edited, since its copy can't be written to %s: %s.")
-				% [path, error_string(error)]
-			)
-		)
-		return null
-	local.take_over_path(path)
-	watch(local)
+	add_new(local, free_path(tree, node))
 	return local
+
+
+## Forgets a tree that was made in the editor and of which nothing came.
+func drop_new(tree: TreeReconstruction) -> void:
+	_changed.erase(tree.resource_path)
+	_new.erase(tree.resource_path)
+	tree.take_over_path("")
 
 
 ## A copy that shares nothing that is edited with [param tree].
@@ -73,10 +81,11 @@ static func free_path(tree: TreeReconstruction, node: Node) -> String:
 		stem = String(node.name).to_snake_case()
 	if not folder.begins_with("res://"):
 		folder = "res://"
-	var path: String = folder.path_join(stem + _SUFFIX + ".res")
+	stem = stem.trim_suffix(_SUFFIX) + _SUFFIX
+	var path: String = folder.path_join(stem + ".res")
 	var number: int = 2
-	while FileAccess.file_exists(path):
-		path = folder.path_join("%s%s_%d.res" % [stem, _SUFFIX, number])
+	while FileAccess.file_exists(path) or ResourceLoader.has_cached(path):
+		path = folder.path_join("%s_%d.res" % [stem, number])
 		number += 1
 	return path
 
@@ -104,10 +113,101 @@ func watch(tree: TreeReconstruction) -> void:
 func get_unsaved() -> PackedStringArray:
 	var paths: PackedStringArray = []
 	for path: String in _changed:
-		var tree: TreeReconstruction = _changed[path].get_ref() as TreeReconstruction
+		var tree: TreeReconstruction = get_changed(path)
 		if tree != null and (not _new.has(path) or _is_used(tree)):
 			paths.append(path)
 	return paths
+
+
+## Whether a save would write the file.
+func is_changed(path: String) -> bool:
+	return get_changed(path) != null
+
+
+## The trees in files, or to be, that are in memory and were edited, or may be. What was undone
+## before it had a file is none of them.
+func get_loaded() -> Array[TreeReconstruction]:
+	var trees: Array[TreeReconstruction] = []
+	for known: WeakRef in _watched:
+		var tree: TreeReconstruction = known.get_ref() as TreeReconstruction
+		if tree != null and has_file(tree):
+			if not _new.has(tree.resource_path) or _is_used(tree):
+				trees.append(tree)
+	return trees
+
+
+## A file was moved in the FileSystem dock; the engine tells its tree.
+func note_move(from: String, to: String) -> void:
+	if _changed.has(from):
+		_changed[to] = _changed[from]
+		_changed.erase(from)
+
+
+## The tree of a file, if it has changed since it was saved, or else [code]null[/code].
+func get_changed(path: String) -> TreeReconstruction:
+	var known: WeakRef = _changed.get(path)
+	var tree: TreeReconstruction = null if known == null else known.get_ref() as TreeReconstruction
+	# Another one may have taken its place since.
+	return tree if tree != null and tree.resource_path == path else null
+
+
+## The engine would write the trees by itself whenever it writes a resource, be they undone or
+## without a file: what it has marked for that is ours to save.
+func keep_from_engine() -> void:
+	_is_kept = true
+	for known: WeakRef in _watched:
+		var tree: TreeReconstruction = known.get_ref() as TreeReconstruction
+		if tree == null or not has_file(tree):
+			continue
+		var parts: Array[Resource] = [tree]
+		if tree.leaf_rule != null and tree.leaf_rule.resource_path.begins_with(tree.resource_path):
+			parts.append(tree.leaf_rule)
+		for part: Resource in parts:
+			if Engine.is_editor_hint() and EditorInterface.is_object_edited(part):
+				EditorInterface.set_object_edited(part, false)
+				_changed[tree.resource_path] = known
+	changed.emit()
+
+
+## The files with trees of a scene that a save would write.
+func get_unsaved_of(scene: Node) -> PackedStringArray:
+	var paths: PackedStringArray = []
+	for path: String in _changed:
+		var tree: TreeReconstruction = get_changed(path)
+		if tree != null and not get_holders(tree, scene).is_empty():
+			paths.append(path)
+	return paths
+
+
+## The scenes other than that of [param node] that show the tree: open ones, and files.
+func get_other_scenes(tree: TreeReconstruction, node: Node) -> PackedStringArray:
+	var here: Node = node.owner if node.owner != null else node
+	var paths: PackedStringArray = []
+	for holder: Node in get_holders(tree):
+		var scene: Node = holder.owner if holder.owner != null else holder
+		if scene != here and scene.scene_file_path not in paths:
+			paths.append(scene.scene_file_path)
+	if has_file(tree):
+		for path: String in _scenes.scenes_with(tree.resource_path):
+			if path != here.scene_file_path and path not in paths:
+				paths.append(path)
+	return paths
+
+
+## Steps of the tree go into the history of all scenes from now on.
+func note_outliving(tree: TreeReconstruction) -> void:
+	_outliving[tree.resource_path] = true
+
+
+## After a scene was closed: lets go of the changed trees that none shows any more. Its user did not
+## save them, so the file is what opens next.
+func drop_unused() -> void:
+	for path: String in _outliving.keys():
+		var tree: TreeReconstruction = get_changed(path)
+		if tree != null and not _new.has(path) and not _is_used(tree):
+			_changed.erase(path)
+			_outliving.erase(path)
+			tree.take_over_path("")
 
 
 ## These files were changed by another program and loaded again: their trees are as saved.
@@ -129,22 +229,23 @@ func save_tree(tree: TreeReconstruction) -> Error:
 func save() -> PackedStringArray:
 	var failed: PackedStringArray = []
 	for path: String in get_unsaved():
-		var tree: TreeReconstruction = _changed[path].get_ref() as TreeReconstruction
-		# Another tree may have taken its place since.
-		if tree.resource_path == path:
-			var error: Error = _write(tree, path)
-			if error != OK:
-				failed.append(tr("%s can't be written: %s.") % [path, error_string(error)])
-				continue
+		var error: Error = _write(get_changed(path), path)
+		if error != OK:
+			failed.append(tr("%s can't be written: %s.") % [path, error_string(error)])
+			continue
 		_changed.erase(path)
 		_new.erase(path)
 	return failed
 
 
-# Beside it first: a full disk must not cost the file that is there.
+# Beside it first: a full disk must not cost the file that is there. By its UID scenes find it, so
+# it keeps the one that it has.
 static func _write(tree: TreeReconstruction, path: String) -> Error:
 	var part: String = path.get_basename() + ".saving." + path.get_extension()
+	var uid: int = ResourceSaver.get_resource_id_for_path(path, true)
 	var error: Error = ResourceSaver.save(tree, part, ResourceSaver.FLAG_COMPRESS)
+	if error == OK and uid != ResourceUID.INVALID_ID:
+		error = ResourceSaver.set_uid(part, uid)
 	if error == OK:
 		error = DirAccess.rename_absolute(part, path)
 	if error != OK and FileAccess.file_exists(part):
@@ -157,11 +258,19 @@ static func _write(tree: TreeReconstruction, path: String) -> Error:
 	return error
 
 
-# Whether anything in an open scene holds the tree.
-static func _is_used(tree: TreeReconstruction) -> bool:
-	var scenes: Array[Node] = [(Engine.get_main_loop() as SceneTree).root]
-	if Engine.is_editor_hint():
+## Whether the tree has, or will get, a file of its own.
+static func has_file(tree: TreeReconstruction) -> bool:
+	return tree.resource_path.begins_with("res://") and not tree.resource_path.contains("::")
+
+
+## The nodes that hold the tree, of [param in_scene] or all open scenes.
+static func get_holders(tree: TreeReconstruction, in_scene: Node = null) -> Array[Node]:
+	var scenes: Array[Node] = [in_scene]
+	if in_scene == null and Engine.is_editor_hint():
 		scenes.assign(EditorInterface.get_open_scene_roots())
+	elif in_scene == null:
+		scenes = [(Engine.get_main_loop() as SceneTree).root]
+	var holders: Array[Node] = []
 	for scene: Node in scenes:
 		if scene == null:
 			continue
@@ -171,8 +280,13 @@ static func _is_used(tree: TreeReconstruction) -> bool:
 			# The engine's own nodes hold no tree.
 			var may: bool = node is TreeInstance3D or node.get_script() != null
 			if (may or not node.get_meta_list().is_empty()) and _holds(node, tree, {}):
-				return true
-	return false
+				holders.append(node)
+	return holders
+
+
+# Whether anything in an open scene holds the tree.
+static func _is_used(tree: TreeReconstruction) -> bool:
+	return not get_holders(tree).is_empty()
 
 
 # Whether a value holds the tree, or one of the resources in it does.
@@ -206,7 +320,11 @@ func _on_changed(of: WeakRef) -> void:
 	var tree: TreeReconstruction = of.get_ref() as TreeReconstruction
 	if tree == null:
 		return
-	var path: String = tree.resource_path
 	# What has no file of its own is saved with its scene.
-	if path.begins_with("res://") and not path.contains("::"):
-		_changed[path] = of
+	if not has_file(tree):
+		return
+	_changed[tree.resource_path] = of
+	if _is_kept:
+		# The history marks what it has changed right after.
+		_is_kept = false
+		keep_from_engine.call_deferred()

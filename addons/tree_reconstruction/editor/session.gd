@@ -51,11 +51,16 @@ var picker: RefCounted
 var scion: String = ""
 ## The L-strings that the Pick tool took last, the latest first.
 var picked: PackedStringArray = []
+## Asks what to change where other nodes show the edited tree, too: gets these nodes, and what to
+## call after [method make_unique] or [method agree_to_share]. Without it all of them change.
+var ask_sharing: Callable
 
 var _shown: TreeReconstruction
 var _tree_moved: bool = false
 # The drag under way.
 var _drag: Drag
+# By instance id of a tree: those of the nodes for all of which the user edits it.
+var _agreed: Dictionary[int, Array] = {}
 
 
 # What a drag did so far.
@@ -207,7 +212,7 @@ func run_edit(title: String, make: Callable) -> TreeEdit:
 		return null
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable()
+	var edited: TreeReconstruction = _editable(run_edit.bind(title, make))
 	if edited == null:
 		return null
 	var edit: TreeEdit = make.call(edited)
@@ -240,8 +245,8 @@ func drag(command: String) -> bool:
 		return false
 	if _drag.tree == null:
 		_drag.imported = tree
-		_drag.tree = _editable()
-		if _drag.tree == null:
+		_drag.tree = _editable(Callable())
+		if _drag == null or _drag.tree == null:
 			_drag = null
 			return false
 	if _drag.edit != null:
@@ -292,7 +297,9 @@ func set_value(
 		history.commit()
 		return
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable()
+	var edited: TreeReconstruction = _editable(
+		_set_value_again.bind(title, object is LeafRule, property, value)
+	)
 	if edited == null:
 		return
 	var rule: LeafRule = edited.leaf_rule
@@ -310,7 +317,7 @@ func set_value(
 	var before: Dictionary = _stored(target)
 	target.set(property, value)
 	var after: Dictionary = _stored(target)
-	history.begin(title, node, [target.get_instance_id(), property] if merged else [])
+	_begin(title, edited, imported, [target.get_instance_id(), property] if merged else [])
 	_add_local(edited, imported)
 	if merged and edited == imported:
 		# The last of the steps that become one does all that it does again.
@@ -328,10 +335,10 @@ func replace_tree(title: String, made: TreeReconstruction) -> void:
 		return
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable()
+	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made))
 	if edited == null:
 		return
-	history.begin(title, node)
+	_begin(title, edited, imported)
 	_add_local(edited, imported)
 	add_replacement(edited, made)
 	history.commit()
@@ -347,15 +354,91 @@ func add_replacement(replaced: TreeReconstruction, made: TreeReconstruction) -> 
 	history.add_method(replaced, &"take_tree_of", [after], &"take_tree_of", [before])
 
 
-# The tree to change: the edited one, or a copy of it in a file of its own.
-func _editable() -> TreeReconstruction:
+## Gives the edited node a tree of its own, which no other node shows.
+func make_unique() -> void:
+	if tree == null:
+		return
+	cancel_drag()
+	var shared: TreeReconstruction = tree
+	var own: TreeReconstruction = (
+		local_trees.make_local(shared, node)
+		if LocalTrees.has_file(shared)
+		else LocalTrees.copy_of(shared)
+	)
+	history.begin(tr("Make Unique"), node)
+	history.add_property(node, &"reconstruction", own, shared)
+	history.commit()
+	_watch(own)
+	if LocalTrees.has_file(own):
+		say(tr("'%s' has a tree of its own now: %s.") % [node.name, own.resource_path])
+
+
+## Edits of the tree are meant for all nodes that show it.
+func agree_to_share() -> void:
+	if tree != null:
+		var ids: Array = [node.get_instance_id()]
+		for holder: Node in LocalTrees.get_holders(tree):
+			ids.append(holder.get_instance_id())
+		_agreed[tree.get_instance_id()] = ids
+
+
+## Whether other scenes than that of the edited node show the tree. Its steps then are no scene's.
+func is_shared_by_scenes(shared: TreeReconstruction) -> bool:
+	if not Engine.is_editor_hint() or not LocalTrees.has_file(shared):
+		return false
+	var holder: Node = node if shared == tree else null
+	if holder == null:
+		var holders: Array[Node] = LocalTrees.get_holders(shared)
+		if holders.is_empty():
+			return false
+		holder = holders[0]
+	return not local_trees.get_other_scenes(shared, holder).is_empty()
+
+
+# Begins a step that changes a tree. Where other scenes show it, too, its steps are no scene's, but
+# undone in whichever is shown.
+func _begin(
+	title: String, edited: TreeReconstruction, imported: TreeReconstruction, merged: Array = []
+) -> void:
+	var context: Object = node
+	if edited == imported and is_shared_by_scenes(edited):
+		context = edited
+		local_trees.note_outliving(edited)
+	history.begin(title, context, merged)
+
+
+# The tree to change: the edited one, or a copy of it with a file of its own. Null: the user is
+# asked first, and `again` is called then.
+func _editable(again: Callable) -> TreeReconstruction:
 	var shown: TreeReconstruction = tree
 	if not LocalTrees.is_foreign(shown, node):
-		return shown
-	var local: TreeReconstruction = local_trees.make_local(shown, node, _refuse)
-	if local != null:
-		node.reconstruction = local
-	return local
+		return shown if _is_settled(again) else null
+	node.reconstruction = local_trees.make_local(shown, node)
+	return node.reconstruction
+
+
+# Whether the user knows who else shows the tree.
+func _is_settled(again: Callable) -> bool:
+	if not ask_sharing.is_valid():
+		return true
+	var others: Array[Node] = LocalTrees.get_holders(tree)
+	others.erase(node)
+	var agreed: Array = _agreed.get(tree.get_instance_id(), [])
+	if others.any(func(other: Node) -> bool: return other.get_instance_id() not in agreed):
+		ask_sharing.call(others, again)
+		return false
+	if others.is_empty() and agreed.is_empty():
+		var scenes: PackedStringArray = local_trees.get_other_scenes(tree, node)
+		if not scenes.is_empty():
+			agree_to_share()
+			var names: String = ", ".join(scenes)
+			_warn(tr("The edited tree is also in other scenes and changes there, too: %s.") % names)
+	return true
+
+
+# The tree, and its rule, may be other ones now.
+func _set_value_again(title: String, of_rule: bool, property: StringName, value: Variant) -> void:
+	set_value(title, tree.leaf_rule if of_rule else tree, property, value)
 
 
 func _try(edited: TreeReconstruction, command: String) -> TreeEdit:
@@ -371,15 +454,13 @@ func _take_back(edited: TreeReconstruction, imported: TreeReconstruction) -> voi
 	if edited == imported:
 		return
 	node.reconstruction = imported
-	var path: String = edited.resource_path
-	edited.take_over_path("")
-	DirAccess.remove_absolute(path)
+	local_trees.drop_new(edited)
 
 
 func _record(
 	title: String, edited: TreeReconstruction, imported: TreeReconstruction, edit: TreeEdit
 ) -> void:
-	history.begin(title, node)
+	_begin(title, edited, imported)
 	_add_local(edited, imported)
 	history.add_method(edited, &"apply_edit", [edit], &"revert_edit", [edit])
 	history.commit(false)
@@ -398,8 +479,6 @@ func _add_local(edited: TreeReconstruction, imported: TreeReconstruction) -> voi
 		),
 		Kind.WARNING
 	)
-	if Engine.is_editor_hint():
-		EditorInterface.get_resource_filesystem().update_file(edited.resource_path)
 
 
 static func _stored(object: Object) -> Dictionary:
@@ -414,7 +493,3 @@ static func _stored(object: Object) -> Dictionary:
 
 func _get_tree() -> TreeReconstruction:
 	return node.reconstruction if is_instance_valid(node) else null
-
-
-func _refuse(sentence: String) -> void:
-	say(sentence, Kind.ERROR)

@@ -212,6 +212,31 @@ func fine_picture(name: String) -> void:
 	RenderingServer.directional_shadow_atlas_set_size(size, true)
 
 
+## Clicks on the tab of an open scene.
+func go_to_scene(path: String) -> bool:
+	var tab: int = scene_tab(path)
+	if not check(tab >= 0, path + " is not open."):
+		return false
+	var tabs: TabBar = scene_tabs()
+	# There may be more tabs than there is room.
+	tabs.ensure_tab_visible(tab)
+	await user.frames(5)
+	await user.click(tabs.get_screen_transform() * tabs.get_tab_rect(tab).get_center())
+	return await until(func() -> bool: return scene_path() == path, path + " is shown")
+
+
+## Fails the step unless a scene's file names another file, and by no other UID than it has. The
+## engine names a file that did not exist yet by its path alone.
+func check_uid(scene: String, path: String) -> void:
+	var uid: String = ResourceUID.id_to_text(ResourceLoader.get_resource_uid(path))
+	for line: String in FileAccess.get_file_as_string(scene).split("\n"):
+		if line.begins_with("[ext_resource") and 'path="%s"' % path in line:
+			var is_right: bool = not "uid=" in line or 'uid="%s"' % uid in line
+			check(is_right, "%s has %s, whose UID is %s" % [scene, line, uid])
+			return
+	check(false, "%s names no %s." % [scene, path])
+
+
 ## How many objects the 3D view draws, with those that no node owns.
 func drawn_objects() -> int:
 	return RenderingServer.viewport_get_render_info(

@@ -120,6 +120,21 @@ func is_unsaved() -> bool:
 	return tabs.get_tab_title(tabs.current_tab).ends_with("(*)")
 
 
+## The tab of an open scene, or -1.
+func scene_tab(path: String) -> int:
+	var tabs: TabBar = scene_tabs()
+	for i: int in tabs.tab_count:
+		if tabs.get_tab_title(i).trim_suffix("(*)") == path.get_file().get_basename():
+			return i
+	return -1
+
+
+## Whether the tab of an open scene says that it has changes.
+func is_marked(path: String) -> bool:
+	var tab: int = scene_tab(path)
+	return tab >= 0 and scene_tabs().get_tab_title(tab).ends_with("(*)")
+
+
 func scene_tabs() -> TabBar:
 	var bars: Array[Node] = EditorInterface.get_base_control().find_children(
 		"*", "EditorSceneTabs", true, false

@@ -10,7 +10,7 @@ var adder: SceneAdder
 
 
 func _popup_menu(paths: PackedStringArray) -> void:
-	var count: int = SceneAdder.tree_files(paths).size()
+	var count: int = SceneAdder.tree_files(adder.resolved(paths)).size()
 	if count == 0:
 		return
 	var title: String = tr("Add Tree to Scene") if count == 1 else tr("Add Trees to Scene")
@@ -20,4 +20,4 @@ func _popup_menu(paths: PackedStringArray) -> void:
 
 
 func _add(paths: PackedStringArray) -> void:
-	adder.add(SceneAdder.load_trees(paths), SceneAdder.place_in_view())
+	adder.add(SceneAdder.load_trees(adder.resolved(paths)), SceneAdder.place_in_view())

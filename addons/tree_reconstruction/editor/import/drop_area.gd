@@ -40,14 +40,14 @@ func _notification(what: int) -> void:
 
 
 ## The trees in what is dragged: files, or resources from the inspector.
-static func trees_of(data: Variant) -> Array[TreeReconstruction]:
+func trees_of(data: Variant) -> Array[TreeReconstruction]:
 	var trees: Array[TreeReconstruction] = []
 	if not data is Dictionary:
 		return trees
 	var dragged: Dictionary = data
 	match dragged.get("type", ""):
 		"files":
-			var files: PackedStringArray = dragged.get("files", PackedStringArray())
+			var files: PackedStringArray = adder.resolved(dragged.get("files", PackedStringArray()))
 			# Scenes among them are the engine's to add.
 			if SceneAdder.tree_files(files).size() == files.size():
 				trees = SceneAdder.load_trees(files)

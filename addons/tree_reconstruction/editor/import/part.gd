@@ -54,12 +54,14 @@ func enter(plugin: EditorPlugin, session: RefCounted) -> void:
 	reimport.set_translation_domain(domain)
 	reimport.enter()
 	finder = ScanFinder.new()
+	adder.finder = finder
 	finder.found.connect(_on_found)
 	finder.enter()
 
 
 func exit() -> void:
 	finder.exit()
+	adder.finder = null
 	finder = null
 	reimport.exit()
 	reimport = null

@@ -8,9 +8,12 @@ extends RefCounted
 
 const ScanFiles: GDScript = preload("./scan_files.gd")
 const SceneAdder: GDScript = preload("./scene_adder.gd")
+const OwnTrees: GDScript = preload("./own_trees.gd")
 
 const _BACKUPS: int = 5
 const _LISTED: int = 20
+
+var own_trees: OwnTrees = OwnTrees.new()
 
 # The session of what is edited: its history, its trees, its voice.
 var _session: RefCounted
@@ -22,50 +25,34 @@ func _init(session: RefCounted) -> void:
 
 func enter() -> void:
 	EditorInterface.get_resource_filesystem().resources_reimported.connect(_on_reimported)
+	EditorInterface.get_file_system_dock().files_moved.connect(_on_file_moved)
 
 
 func exit() -> void:
+	EditorInterface.get_file_system_dock().files_moved.disconnect(_on_file_moved)
 	EditorInterface.get_resource_filesystem().resources_reimported.disconnect(_on_reimported)
 
 
 ## Does the edits of all trees that were made of these imported ones again. Returns their paths.
 func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
-	var imported_by_scan: Dictionary[String, String] = {}
-	for path: String in SceneAdder.tree_files(imported_paths):
-		if FileAccess.file_exists(path + ".import"):
-			imported_by_scan[_scan_of(path)] = path
 	var updated: PackedStringArray = []
 	var report: PackedStringArray = []
-	for local: TreeReconstruction in _local_trees_of(imported_by_scan):
-		var fresh: TreeReconstruction = _load_fresh(imported_by_scan[local.provenance["source"]])
-		if fresh != null and _update(local, fresh, report):
-			updated.append(local.resource_path)
+	for path: String in SceneAdder.tree_files(imported_paths):
+		if not FileAccess.file_exists(path + ".import"):
+			continue
+		var fresh: TreeReconstruction = _load_fresh(path)
+		if fresh == null:
+			continue
+		for local: TreeReconstruction in own_trees.find(
+			_scan_of(path), fresh, _session.local_trees.get_loaded()
+		):
+			if _update(local, fresh, report):
+				updated.append(local.resource_path)
 	if not report.is_empty():
 		_show(report)
 	elif not updated.is_empty():
 		_session.say(tr("The edits were done again on the new import: %s") % ", ".join(updated), 0)
 	return updated
-
-
-# The edited copies of imported trees: in files beside these, or beside their scans.
-static func _local_trees_of(
-	imported_by_scan: Dictionary[String, String]
-) -> Array[TreeReconstruction]:
-	var folders: Dictionary[String, bool] = {}
-	for scan: String in imported_by_scan:
-		folders[imported_by_scan[scan].get_base_dir()] = true
-		if scan.begins_with("res://"):
-			folders[scan.get_base_dir()] = true
-	var trees: Array[TreeReconstruction] = []
-	for folder: String in folders:
-		for name: String in DirAccess.get_files_at(folder):
-			var path: String = folder.path_join(name)
-			if name.get_extension() not in ["res", "tres"] or not SceneAdder.is_tree_file(path):
-				continue
-			var tree: TreeReconstruction = load(path) as TreeReconstruction
-			if tree != null and imported_by_scan.has(tree.provenance.get("source", "")):
-				trees.append(tree)
-	return trees
 
 
 # Where the imported tree says that it comes from, without loading it.
@@ -106,6 +93,7 @@ func _update(
 		return false
 	var made: TreeReconstruction = result["tree"]
 	if local.skeleton == made.skeleton and local.foliage == made.foliage:
+		_follow(local, made.provenance)
 		return false
 	var error: Error = _back_up(local, path)
 	if error != OK:
@@ -119,19 +107,43 @@ func _update(
 	_list(path, result["left_out"], report)
 	var node: TreeInstance3D = _node_of(local)
 	if node == null:
+		var is_saved: bool = not _session.local_trees.is_changed(path)
 		local.take_tree_of(made)
-		error = _session.local_trees.save_tree(local)
-		if error != OK:
-			report.append(tr("%s can't be written: %s.") % [path, error_string(error)])
+		if is_saved:
+			error = _session.local_trees.save_tree(local)
+			if error != OK:
+				report.append(tr("%s can't be written: %s.") % [path, error_string(error)])
 		return true
 	_session.cancel_drag()
-	_session.history.begin(tr("Import Scan Again"), node)
+	# It is saved with the scene.
+	_session.local_trees.watch(local)
+	_session.history.begin(
+		tr("Import Scan Again"), local if _session.is_shared_by_scenes(local) else node
+	)
 	_session.add_replacement(local, made)
 	_session.history.commit()
-	_session.local_trees.watch(local)
-	# It is saved with the scene.
-	local.emit_changed()
 	return true
+
+
+# The scan was renamed or moved, and nothing else: what is in the file stays as it was saved.
+func _follow(local: TreeReconstruction, provenance: Dictionary) -> void:
+	var path: String = local.resource_path
+	if local.provenance.get("source", "") == provenance.get("source", ""):
+		return
+	var is_saved: bool = not _session.local_trees.is_changed(path)
+	local.provenance = provenance
+	_session.say(
+		tr("%s follows its scan, which is %s now.") % [path, provenance.get("source", "")], 0
+	)
+	if is_saved and FileAccess.file_exists(path):
+		var error: Error = _session.local_trees.save_tree(local)
+		if error != OK:
+			_session.say(tr("%s can't be written: %s.") % [path, error_string(error)], 2)
+
+
+func _on_file_moved(from: String, to: String) -> void:
+	own_trees.note_move(from, to)
+	_session.local_trees.note_move(from, to)
 
 
 func _list(path: String, left_out: Array, report: PackedStringArray) -> void:

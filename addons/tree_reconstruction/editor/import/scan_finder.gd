@@ -66,6 +66,12 @@ func look() -> void:
 	_task = WorkerThreadPool.add_task(_run.bind(look_at), false, "Look for scans")
 
 
+## The file that stands for the scan, or an empty string.
+func get_stand_in(scan: String) -> String:
+	var stand_in: String = _stand_ins.get(scan, "")
+	return stand_in if FileAccess.file_exists(stand_in) else ""
+
+
 ## Whether a look is under way.
 func is_looking() -> bool:
 	return _task >= 0
@@ -173,16 +179,22 @@ func _leave_to_us(scan: String) -> void:
 		push_warning("Could not write '%s': %s." % [settings, error_string(error)])
 
 
-# A scan that is moved in the FileSystem dock takes along what stands for it.
+# A scan that is moved in the FileSystem dock takes along what stands for it, and that finds its
+# scan from wherever it is moved to.
 func _on_file_moved(from: String, to: String) -> void:
-	if not _stand_ins.has(from):
-		return
-	var stand_in: String = _stand_ins[from]
-	_stand_ins.erase(from)
-	_stand_ins[to] = stand_in
+	var scan: Variant = to
+	var stand_in: String = _stand_ins.get(from, "")
+	if _stand_ins.has(from):
+		_stand_ins.erase(from)
+	else:
+		scan = _stand_ins.find_key(from)
+		stand_in = to
+		if scan == null:
+			return
+	_stand_ins[scan] = stand_in
 	_remember("stand_ins", _stand_ins)
 	if FileAccess.file_exists(stand_in):
-		var error: Error = ScanFiles.write_stand_in(stand_in, to)
+		var error: Error = ScanFiles.write_stand_in(stand_in, scan as String)
 		if error != OK:
 			push_error("Could not write '%s': %s." % [stand_in, error_string(error)])
 

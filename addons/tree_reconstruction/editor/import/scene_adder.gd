@@ -11,11 +11,26 @@ const _AHEAD: float = 10.0
 const _GAP: float = 0.5
 const _MESH_LIMIT: int = 200000
 
+## Knows the files that stand for scans.
+var finder: RefCounted
+
 var _undo_redo: EditorUndoRedoManager
 
 
 func _init(undo_redo: EditorUndoRedoManager) -> void:
 	_undo_redo = undo_redo
+
+
+## The same files, but for scans that something else stands for, as [code]oak.treescan[/code] for
+## [code]oak.txt[/code]: that has their tree.
+func resolved(paths: PackedStringArray) -> PackedStringArray:
+	var files: PackedStringArray = []
+	for path: String in paths:
+		var stand_in: String = finder.call(&"get_stand_in", path)
+		var file: String = path if stand_in.is_empty() else stand_in
+		if file not in files:
+			files.append(file)
+	return files
 
 
 ## Whether the file is a tree, or a scan that was imported as one. Does not load it.

@@ -24,13 +24,13 @@ func run() -> void:
 		node_on_screen(node, clear_nodes(node, large_branches(node.reconstruction))[0])
 	)
 	await until(func() -> bool: return drawn_objects() > drawn + 1, "the tree is drawn")
-	await _go_to_scene("empty")
+	await go_to_scene("res://empty.tscn")
 	check(session().get(&"node") == null, "A tree of another scene is still edited.")
 	await until(func() -> bool: return drawn_objects() <= drawn, "nothing of the tree is drawn")
 	await picture("another-scene")
 
 	await step("back in its scene the tree is there again")
-	await _go_to_scene("first_of_two")
+	await go_to_scene("res://first_of_two.tscn")
 	node = EditorInterface.get_edited_scene_root().get_node(^"Tree") as TreeInstance3D
 	if not check(node != null, "The tree is gone."):
 		return
@@ -55,7 +55,7 @@ func run() -> void:
 	await step("it is copied into another scene")
 	await click_node(node)
 	await user.key("ctrl+c")
-	await _go_to_scene("empty")
+	await go_to_scene("res://empty.tscn")
 	root = EditorInterface.get_edited_scene_root()
 	await click_node(root)
 	await user.key("ctrl+v")
@@ -67,7 +67,7 @@ func run() -> void:
 	check(pasted.get_triangle_count() > 1000, "It has no bark.")
 	await picture("pasted")
 	await save_scene()
-	await _go_to_scene("first_of_two")
+	await go_to_scene("res://first_of_two.tscn")
 	await save_scene()
 
 	await step("a scene that is closed leaves nothing behind")
@@ -77,18 +77,3 @@ func run() -> void:
 	await user.frames(5)
 	var edited: Variant = session().get(&"node")
 	check(edited == null or is_instance_valid(edited), "A node that is gone is still edited.")
-
-
-# Clicks on the tab of a scene.
-func _go_to_scene(name: String) -> void:
-	var tabs: TabBar = scene_tabs()
-	for i: int in tabs.tab_count:
-		if tabs.get_tab_title(i).trim_suffix("(*)") == name:
-			# There may be more tabs than there is room.
-			tabs.ensure_tab_visible(i)
-			await user.frames(5)
-			await user.click(tabs.get_screen_transform() * (tabs.get_tab_rect(i).get_center()))
-	await until(
-		func() -> bool: return scene_path() == "res://%s.tscn" % name,
-		"the scene %s is shown" % name
-	)

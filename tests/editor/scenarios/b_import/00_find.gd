@@ -13,6 +13,7 @@ func run() -> void:
 	await _find()
 	await _stay_deleted()
 	await _drop()
+	await _add_text()
 	await _reimport_unedited()
 	await _reimport_edited()
 
@@ -96,6 +97,23 @@ func _drop() -> void:
 		"TreeDropArea", "", true, false
 	):
 		check(not (area as Control).visible, "An area for drops is in the way.")
+
+
+func _add_text() -> void:
+	await step("the text itself has Add Tree to Scene, which adds the tree of what stands for it")
+	var root: Node = EditorInterface.get_edited_scene_root()
+	EditorInterface.get_file_system_dock().navigate_to_path(SCAN)
+	await click_entry(file_list(), func() -> TreeItem: return file_item(SCAN), User.RIGHT)
+	await picture("menu-of-text")
+	if not await choose("Add Tree to Scene"):
+		return
+	if not await until(func() -> bool: return root.get_child_count() == 2, "a second tree stands"):
+		return
+	var added: TreeInstance3D = root.get_child(1) as TreeInstance3D
+	check(added != null and added.reconstruction == load(STAND_IN), "It is another tree.")
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("ctrl+z")
+	await until(func() -> bool: return root.get_child_count() == 1, "it is undone")
 
 
 func _reimport_unedited() -> void:

@@ -1,0 +1,93 @@
+@tool
+extends "../../test_plugin/garden.gd"
+## What the user did not save is not written: not by undo, not by another program's turn, and not by
+## closing with Don't Save. The next run of the editor (d2_saved) looks at the files.
+
+const SCAN: String = "res://garden/elm.ply"
+const LOCAL: String = "res://garden/elm_tree.res"
+const SCENE: String = "res://garden/saving.tscn"
+
+
+func run() -> void:
+	await step("a new import is undone after it was saved: the file stays as it was saved")
+	await drop_file(sample, SCAN)
+	var made: TreeReconstruction = await imported(SCAN)
+	if made == null:
+		return
+	var node: TreeInstance3D = await open_garden(SCENE, made)
+	if node == null:
+		return
+	await user.click(node_on_screen(node, clear_nodes(node, large_branches(made))[0]))
+	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
+	await user.key("Delete")
+	if not await until(func() -> bool: return node.reconstruction != made, "it is the user's own"):
+		return
+	await save_scene()
+	var local: TreeReconstruction = node.reconstruction
+	var edited: PackedByteArray = bytes(local)
+	if not await _import_with("Fast"):
+		return
+	if not await until(func() -> bool: return bytes(local) != edited, "the new import is taken in"):
+		return
+	await user.move(middle(view().get_parent() as Control))
+	await save_scene()
+	var saved: String = FileAccess.get_sha256(LOCAL)
+	await user.key("ctrl+z")
+	await until(func() -> bool: return bytes(local) == edited, "the new import is undone")
+	check_equal(FileAccess.get_sha256(LOCAL), saved, "the file after undo")
+
+	await step("another program's turn writes nothing")
+	await user.go()
+	await user.frames(30)
+	check_equal(FileAccess.get_sha256(LOCAL), saved, "the file while away")
+	await user.come()
+	await user.frames(30)
+	check_equal(FileAccess.get_sha256(LOCAL), saved, "the file afterwards")
+	check(is_unsaved(), "The scene is not marked as changed.")
+
+	await step("Ctrl+Q asks, and Don't Save is pressed")
+	var note: FileAccess = FileAccess.open("res://saved.cfg", FileAccess.WRITE)
+	note.store_string(saved)
+	note.close()
+	await user.key("ctrl+q")
+	if not await until(func() -> bool: return dialog("before quitting") != null, "it asks"):
+		return
+	await picture("asks")
+	var button: Control = find_control("Button", "Don't Save", dialog("before quitting"))
+	if check(button != null, "There is no Don't Save."):
+		_press_later(middle(button))
+
+
+# By the Import dock.
+func _import_with(preset: String) -> bool:
+	await click_file(SCAN)
+	var tabs: TabBar = null
+	var wanted: int = -1
+	for bar: Node in EditorInterface.get_base_control().find_children("*", "TabBar", true, false):
+		for i: int in (bar as TabBar).tab_count:
+			if (
+				(bar as TabBar).get_tab_title(i) == "Import"
+				and (bar as TabBar).is_visible_in_tree()
+			):
+				tabs = bar as TabBar
+				wanted = i
+	if not check(tabs != null, "There is no Import dock."):
+		return false
+	await user.click(tabs.get_screen_transform() * tabs.get_tab_rect(wanted).get_center())
+	var button: Callable = func(text: String) -> Button:
+		return find_control("Button", text) as Button
+	if not await until(
+		func() -> bool: return button.call("Reimport") != null, "the Import dock is shown"
+	):
+		return false
+	await press(button.call("Preset"))
+	if not await choose(preset):
+		return false
+	await picture("preset")
+	await press(button.call("Reimport"))
+	return true
+
+
+# When this has come to its end: the editor ends, too.
+func _press_later(at: Vector2) -> void:
+	OS.create_process("sh", ["-c", "sleep 3; xdotool mousemove %d %d click 1" % [at.x, at.y]])
