@@ -139,6 +139,8 @@ class TreeReconstruction : public godot::Resource {
     godot::Ref<TreeEdit> run_script(const godot::String& p_script);
     void set_edit_log(const godot::String& p_log);
     godot::String get_edit_log() const;
+    godot::TypedArray<godot::Dictionary> get_unfit_edits() const;
+    godot::String get_edit_log_without(int64_t p_index) const;
     godot::PackedInt32Array select_nodes(const godot::String& p_selection) const;
     godot::String check_selection(const godot::String& p_selection) const;
     static godot::TypedArray<godot::Dictionary> get_edit_commands();

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "convert.h"
+#include "edit/address.h"
 #include "edit/script.h"
 #include "edit/select.h"
 #include "error.h"
@@ -125,6 +126,7 @@ Dictionary TreeReconstruction::replay(const String& p_log, double p_tolerance) {
     result["edit"] = Ref<TreeEdit>();
     result["done"] = 0;
     result["left_out"] = TypedArray<Dictionary>();
+    result["in_part"] = TypedArray<Dictionary>();
     return guarded(result, [&] {
         treerec::Tree tree = *_editable_tree();
         treerec::ScriptOptions options;
@@ -139,6 +141,7 @@ Dictionary TreeReconstruction::replay(const String& p_log, double p_tolerance) {
         result["edit"] = edit;
         result["done"] = int64_t(replayed.done);
         result["left_out"] = to_godot(replayed.left_out);
+        result["in_part"] = to_godot(replayed.in_part);
         return result;
     });
 }
@@ -168,6 +171,42 @@ void TreeReconstruction::set_edit_log(const String& p_log) {
 
 String TreeReconstruction::get_edit_log() const {
     return edit_log_.empty() ? String() : to_godot(edit_log_.text());
+}
+
+TypedArray<Dictionary> TreeReconstruction::get_unfit_edits() const {
+    const std::shared_ptr<const treerec::Tree> tree = get_tree();
+    TypedArray<Dictionary> list;
+    const std::vector<EditLog::Entry>& entries = edit_log_.entries();
+    for (size_t i = 0; i < entries.size(); i++) {
+        if (entries[i].fits()) {
+            continue;
+        }
+        PackedVector3Array places;
+        PackedVector3Array directions;
+        PackedFloat32Array radii;
+        for (const treerec::NamedPlace& named : treerec::places_named(tree->frame(), entries[i].command)) {
+            places.push_back(to_godot(named.place));
+            directions.push_back(to_godot(named.direction));
+            radii.push_back(float(named.radius));
+        }
+        Dictionary entry;
+        entry["index"] = int64_t(i);
+        entry["command"] = to_godot(entries[i].command);
+        entry["reason"] = to_godot(entries[i].reason);
+        entry["places"] = places;
+        entry["directions"] = directions;
+        entry["radii"] = radii;
+        list.push_back(entry);
+    }
+    return list;
+}
+
+String TreeReconstruction::get_edit_log_without(int64_t p_index) const {
+    ERR_FAIL_INDEX_V_MSG(p_index, int64_t(edit_log_.entries().size()), get_edit_log(),
+                         "The log has no edit of that number.");
+    EditLog log = edit_log_;
+    log.remove(size_t(p_index));
+    return log.empty() ? String() : to_godot(log.text());
 }
 
 PackedInt32Array TreeReconstruction::select_nodes(const String& p_selection) const {
@@ -225,6 +264,9 @@ void TreeReconstruction::_bind_editing() {
     ClassDB::bind_method(D_METHOD("revert_edit", "edit"), &TreeReconstruction::revert_edit);
     ClassDB::bind_method(D_METHOD("replay", "log", "tolerance"), &TreeReconstruction::replay, DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("run_script", "script"), &TreeReconstruction::run_script);
+    ClassDB::bind_method(D_METHOD("get_unfit_edits"), &TreeReconstruction::get_unfit_edits);
+    ClassDB::bind_method(D_METHOD("get_edit_log_without", "index"),
+                         &TreeReconstruction::get_edit_log_without);
     ClassDB::bind_method(D_METHOD("select_nodes", "selection"), &TreeReconstruction::select_nodes);
     ClassDB::bind_method(D_METHOD("check_selection", "selection"), &TreeReconstruction::check_selection);
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_edit_commands"),

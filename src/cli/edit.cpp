@@ -137,6 +137,9 @@ void run_edit(const std::vector<std::string>& words) {
         for (const EditLog::Entry& entry : result.log.entries())
             log.add(entry);
         progress.clear();
+        for (const LeftOut& one : result.in_part)
+            std::fprintf(stderr, "Done in part: %sline %zu: %s\n", name.c_str(), one.line,
+                         one.reason.c_str());
         for (const std::string& sentence : result.said)
             if (!quiet) std::printf("%s\n", sentence.c_str());
         for (const LeftOut& one : result.left_out)

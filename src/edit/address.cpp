@@ -38,6 +38,21 @@ DVec3 direction_of(const Tree& tree, NodeId id) {
     return normalized_or(node.parent != kNoNode ? way : -way, DVec3(0.0));
 }
 
+// What stands behind the '@'. False: it is no place.
+bool read_place(const ScanFrame& frame, std::string_view text, NamedPlace& place) {
+    if (const auto three = read_numbers(text, ':', 3)) {
+        place.place = frame.to_tree({(*three)[0], (*three)[1], (*three)[2]});
+    } else if (const auto seven = read_numbers(text, ':', 7)) {
+        place.place = frame.to_tree({(*seven)[0], (*seven)[1], (*seven)[2]});
+        place.direction =
+            normalized_or(frame.turn_to_tree({(*seven)[3], (*seven)[4], (*seven)[5]}), DVec3(0.0));
+        place.radius = std::max((*seven)[6] * frame.metres_per_unit, 0.0);
+    } else {
+        return false;
+    }
+    return is_finite(place.place);
+}
+
 Address parse_address(const Tree& tree, std::string_view text) {
     const Error wrong(quote_word(text) + " names no node: write an id, 'root', or '@x:y:z'.");
     Address address;
@@ -56,19 +71,11 @@ Address parse_address(const Tree& tree, std::string_view text) {
         if (!address.id) throw wrong;
         return address;
     }
-    const ScanFrame& frame = tree.frame();
-    const std::string_view place = text.substr(at + 1);
-    if (const auto three = read_numbers(place, ':', 3)) {
-        address.place = frame.to_tree({(*three)[0], (*three)[1], (*three)[2]});
-    } else if (const auto seven = read_numbers(place, ':', 7)) {
-        address.place = frame.to_tree({(*seven)[0], (*seven)[1], (*seven)[2]});
-        address.direction =
-            normalized_or(frame.turn_to_tree({(*seven)[3], (*seven)[4], (*seven)[5]}), DVec3(0.0));
-        address.radius = std::max((*seven)[6] * frame.metres_per_unit, 0.0);
-    } else {
-        throw wrong;
-    }
-    if (!is_finite(*address.place)) throw wrong;
+    NamedPlace place;
+    if (!read_place(tree.frame(), text.substr(at + 1), place)) throw wrong;
+    address.place = place.place;
+    address.direction = place.direction;
+    address.radius = place.radius;
     return address;
 }
 
@@ -155,6 +162,16 @@ NodeId find_node(const Tree& tree, std::string_view text, double tolerance) {
                      (name.empty() ? "that place." : "the place of node " + name + "."));
     }
     return best;
+}
+
+std::vector<NamedPlace> places_named(const ScanFrame& frame, std::string_view command) {
+    std::vector<NamedPlace> places;
+    for (size_t at = command.find('@'); at != std::string_view::npos; at = command.find('@', at + 1)) {
+        const size_t end = std::min(command.find_first_of(" \t,&", at), command.size());
+        NamedPlace place;
+        if (read_place(frame, command.substr(at + 1, end - at - 1), place)) places.push_back(place);
+    }
+    return places;
 }
 
 std::string address_of(const Tree& tree, NodeId id) {

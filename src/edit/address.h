@@ -13,6 +13,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "error.h"
 #include "tree/tree.h"
@@ -29,6 +30,15 @@ class Misfit : public Error {
 // node's diameter if that is more. Linear in the nodes, but for an id that still fits. Throws Misfit where no
 // node fits, and Error for what is no address.
 NodeId find_node(const Tree& tree, std::string_view address, double tolerance = 0.0);
+
+// Where a node was that a command names by place.
+struct NamedPlace {
+    DVec3 place{0.0};      // tree space
+    DVec3 direction{0.0};  // in which the wood ran, unit; zero: not told
+    double radius = 0.0;   // metres; 0: not told
+};
+// Those of a command of a log, on this tree or any other of the same scan.
+std::vector<NamedPlace> places_named(const ScanFrame& frame, std::string_view command);
 
 // The address as a log keeps it; places to a tenth of a millimetre. Precondition: tree.contains(id).
 std::string address_of(const Tree& tree, NodeId id);

@@ -165,7 +165,7 @@ EditArguments::EditArguments(const Tree& tree, const CommandLine& line,
 }
 
 EditArguments::Value EditArguments::read(const Tree& tree, const Parameter& parameter, std::string_view text,
-                                         size_t column, const BindOptions& options, std::string& kept) const {
+                                         size_t column, const BindOptions& options, std::string& kept) {
     const auto wrong = [&](const std::string& what) {
         return CommandError("'" + parameter.name + "' must be " + what + ", not " + quote_word(text) + ".",
                             column);
@@ -222,8 +222,11 @@ EditArguments::Value EditArguments::read(const Tree& tree, const Parameter& para
             break;
         case ParameterType::kNodes:
             try {
-                Selection selection = select(tree, text, {options.tolerance, options.written_in});
+                Selection selection =
+                    select(tree, text, {options.tolerance, options.written_in, options.keep_going});
                 kept = selection.text;
+                named_ += selection.named;
+                missing_ += selection.missing;
                 result.value = std::move(selection.ids);
             } catch (const CommandError& error) {
                 throw CommandError(error.what(), column + error.column() - 1);

@@ -70,6 +70,8 @@ struct BindOptions {
     // The frame in which lengths and places were written, so that they stay where they were in the scan;
     // null: the tree's own.
     const ScanFrame* written_in = nullptr;
+    // Of a list of nodes, those that are not there are left out (SelectOptions).
+    bool keep_going = false;
     const Progress* progress = nullptr;
 };
 
@@ -95,6 +97,9 @@ class EditArguments {
     const Progress* progress() const { return progress_; }
     // The line as a log keeps it: what was given, in the tree's frame, nodes by address.
     const std::string& line() const { return line_; }
+    // How many places the lists of nodes named, and how many of these were not there (keep_going).
+    size_t named() const { return named_; }
+    size_t missing() const { return missing_; }
 
   private:
     struct Value {
@@ -103,11 +108,12 @@ class EditArguments {
     };
 
     Value read(const Tree& tree, const Parameter& parameter, std::string_view text, size_t column,
-               const BindOptions& options, std::string& kept) const;
+               const BindOptions& options, std::string& kept);
     const Value& find(std::string_view name) const;
 
     std::vector<Value> values_;
     std::string line_;
+    size_t named_ = 0, missing_ = 0;
     const Progress* progress_ = nullptr;
 };
 

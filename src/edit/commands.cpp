@@ -45,6 +45,8 @@ Edit perform_on_copy(const Tree& tree, std::string_view text, Tree& result, cons
     Tree changed = tree;
     edit.outcome = command.run(changed, arguments);
     edit.command = arguments.line();
+    edit.named = arguments.named();
+    edit.missing = arguments.missing();
     edit.frame = tree.frame();
     edit.delta = TreeDelta::between(tree, changed);
     result = std::move(changed);

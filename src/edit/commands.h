@@ -41,6 +41,8 @@ struct Edit {
     ScanFrame frame;      // in which its places are written: the tree's before the edit
     TreeDelta delta;
     EditOutcome outcome;
+    size_t named = 0;    // what its lists of nodes name
+    size_t missing = 0;  // and how much of it was left out (BindOptions::keep_going)
 };
 
 // Runs one line of text. The tree is changed wholly or, when anything is thrown, not at all. Throws

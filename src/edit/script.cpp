@@ -175,9 +175,14 @@ ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions
             bind.tolerance = options.tolerance;
             bind.written_in = written_in ? &*written_in : nullptr;
             bind.progress = options.progress;
+            bind.keep_going = options.keep_going;
             const Edit edit = perform(now, text, bind);
             result.done++;
             result.log.add(edit);
+            if (edit.missing > 0)
+                result.in_part.push_back({number, std::string(text),
+                                          std::to_string(edit.missing) + " of " + std::to_string(edit.named) +
+                                              " places are not there any more."});
             if (!edit.outcome.said.empty()) result.said.push_back(edit.outcome.said);
         } catch (const Cancelled&) {
             throw;

@@ -7,6 +7,7 @@
 // what did not fit the tree when the log was last replayed stands in it as "#? command".
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,8 @@ class EditLog {
     void add(Entry entry) { entries_.push_back(std::move(entry)); }
     // The last `count`, or as many as there are.
     void remove_last(size_t count);
+    // One of them. Precondition: index < entries().size().
+    void remove(size_t index) { entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index)); }
     void clear() { *this = EditLog(); }
     bool empty() const { return entries_.empty() && newer_.empty(); }
 
@@ -44,7 +47,8 @@ class EditLog {
 
 struct ScriptOptions {
     double tolerance = 0.0;  // of addresses (find_node())
-    // What does not fit is left out and told, instead of failing; "#?" lines are tried again.
+    // What does not fit is left out and told, instead of failing: a node of a list, or else the command. "#?"
+    // lines are tried again.
     bool keep_going = false;
     const Progress* progress = nullptr;
 };
@@ -58,6 +62,8 @@ struct LeftOut {
 struct ScriptResult {
     size_t done = 0;  // commands
     std::vector<LeftOut> left_out;
+    // Those that were done, though not everywhere (keep_going): with how much of the nodes they name is gone.
+    std::vector<LeftOut> in_part;
     EditLog log;                    // what was done, as found on this tree, and what was left out
     TreeDelta delta;                // of all together
     std::vector<std::string> said;  // a sentence of each command that was done

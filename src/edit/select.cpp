@@ -58,28 +58,66 @@ class Parser {
 
     Selection parse() {
         Mask chosen(static_cast<size_t>(tree_.id_end()), 0);
+        std::optional<Misfit> misfit;
+        Selection selection;
         size_t column = 1;
         for (const std::string_view either : split(text_, ',')) {
-            Mask part;
-            for (const std::string_view both : split(either, '&')) {
-                const Mask one = factor(both, column);
-                column += both.size() + 1;
-                if (part.empty())
-                    part = one;
-                else
-                    for (size_t i = 0; i < part.size(); i++)
-                        part[i] &= one[i];
-                out_ += '&';
+            const size_t length = out_.size();
+            selection.named++;
+            try {
+                const Mask part = term(either, column);
+                for (size_t i = 0; i < part.size(); i++)
+                    chosen[i] |= part[i];
+            } catch (const Misfit& error) {
+                if (!options_.keep_going) throw;
+                if (!misfit) misfit = error;
+                selection.missing++;
+                out_.resize(length);
             }
-            for (size_t i = 0; i < part.size(); i++)
-                chosen[i] |= part[i];
-            out_.back() = ',';
+            column += either.size() + 1;
         }
+        if (selection.missing == selection.named) throw *misfit;
         out_.pop_back();
-        return {select_where(tree_, [&](NodeId id) { return chosen[id] != 0; }), out_};
+        selection.ids = select_where(tree_, [&](NodeId id) { return chosen[id] != 0; });
+        selection.text = nodes_alone_ && selection.ids.size() > 1 ? by_branches(selection.ids, chosen) : out_;
+        return selection;
     }
 
   private:
+    // What '&' joins, written with a ',' behind it.
+    Mask term(std::string_view text, size_t column) {
+        Mask all;
+        for (const std::string_view both : split(text, '&')) {
+            const Mask one = factor(both, column);
+            column += both.size() + 1;
+            if (all.empty())
+                all = one;
+            else
+                for (size_t i = 0; i < all.size(); i++)
+                    all[i] &= one[i];
+            out_ += '&';
+        }
+        out_.back() = ',';
+        return all;
+    }
+
+    // The same nodes: those below which all are chosen by the lowest one, the others one by one.
+    std::string by_branches(const std::vector<NodeId>& ids, const Mask& chosen) const {
+        Mask whole = chosen;
+        for (auto id = ids.rbegin(); id != ids.rend(); ++id)
+            for (const NodeId child : tree_.children(*id))
+                whole[*id] &= whole[child];
+        std::string text;
+        for (const NodeId id : ids) {
+            const Node& node = tree_.node(id);
+            if (node.parent != kNoNode && whole[node.parent]) continue;
+            if (!text.empty()) text += ',';
+            if (whole[id] && node.first_child != kNoNode) text += "below:";
+            text += address_of(tree_, id);
+        }
+        return text;
+    }
+
     Mask mask_of(const std::vector<NodeId>& ids) const {
         Mask mask(static_cast<size_t>(tree_.id_end()), 0);
         for (const NodeId id : ids)
@@ -175,6 +213,7 @@ class Parser {
     Mask factor(std::string_view text, size_t column) {
         const bool others = !text.empty() && text.front() == '!';
         if (others) {
+            nodes_alone_ = false;
             text.remove_prefix(1);
             column++;
             out_ += '!';
@@ -188,11 +227,13 @@ class Parser {
 
     Mask atom(std::string_view text, size_t column) {
         if (const std::optional<Mask> mask = named(text)) {
+            nodes_alone_ = false;
             out_ += text;
             return *mask;
         }
         const size_t colon = text.find_first_of(":@");
         if (colon != std::string_view::npos && text[colon] == ':') {
+            nodes_alone_ = false;
             const std::string_view name = text.substr(0, colon), rest = text.substr(colon + 1);
             const size_t place = column + colon + 1;
             if (const std::optional<Mask> mask = ranged(name, rest, place)) return *mask;
@@ -208,6 +249,7 @@ class Parser {
                     ":'; there are below branch path order depth radius height box sphere side.",
                 column);
         }
+        nodes_alone_ = nodes_alone_ && text != "root";
         return mask_of({node_at(text, column)});
     }
 
@@ -215,6 +257,7 @@ class Parser {
     const std::string_view text_;
     const SelectOptions& options_;
     std::string out_;
+    bool nodes_alone_ = true;  // so far
 };
 
 }  // namespace

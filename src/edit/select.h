@@ -10,6 +10,9 @@
 //     box:x:y:z:x:y:z   sphere:x:y:z:r       two corners; centre and radius
 //     side:x:y:z:nx:ny:nz                    beyond the plane through a place, where its normal points
 //
+// A list of nodes alone is kept as the branches that it names whole, "below:" their lowest nodes: on another
+// reconstruction of the scan these have other nodes, and more or fewer of them.
+//
 // '!' before one takes all others, '&' joins what is in both, ',' what is in either:
 // "order:2..&radius:..0.01,12". Places and lengths are metres of tree space, but for those of addresses.
 #pragma once
@@ -40,11 +43,15 @@ struct SelectOptions {
     double tolerance = 0.0;  // of addresses (find_node())
     // The frame in which places and lengths were written; null: the tree's own.
     const ScanFrame* written_in = nullptr;
+    // Of what ',' joins, that which is not there is left out, as long as anything is.
+    bool keep_going = false;
 };
 
 struct Selection {
     std::vector<NodeId> ids;  // in depth-first order
     std::string text;         // as a log keeps it: in the tree's frame, nodes by address
+    size_t named = 0;         // what ',' joined
+    size_t missing = 0;       // and how much of it was left out
 };
 
 // Throws CommandError (column within the text) for what is no selection, Misfit for a node that is not there.
