@@ -57,7 +57,10 @@ LeafPlacer::LeafPlacer(const Tree& t, const LeafRules& r, uint64_t s)
       crown(measure_crown(t)),
       wind(t, list, crown.height),
       size(scaled(r, crown.height)),
-      seed(s) {}
+      leafy(crown),
+      seed(s) {
+    leafy.radii += DVec3(0.5 * size.leaf_size);
+}
 
 LeafPlacement LeafPlacer::leaf_at(const LeafSpot& spot) const {
     const auto& [at, radial, angle, tip, number, red] = spot;
@@ -96,7 +99,10 @@ LeafPlacement LeafPlacer::leaf_at(const LeafSpot& spot) const {
     leaf.x = Vec3(x);
     leaf.y = Vec3(y);
     leaf.z = Vec3(z);
-    leaf.outward = Vec3(outward);
+    // What a leaf is seen with, its middle decides, in a crown that leaves are a part of: a palm's wood ends
+    // in one point, out of which all fronds grow.
+    const DVec3 middle = position + y * (0.5 * size.leaf_size);
+    leaf.outward = Vec3(leafy.outward(middle));
     leaf.size = random_size(random);
     const double phase = branch_phase(tip) + 0.25 * random.uniform();
     leaf.phase = static_cast<float>(phase - std::floor(phase));
@@ -111,7 +117,7 @@ LeafPlacement LeafPlacer::leaf_at(const LeafSpot& spot) const {
     leaf.sway = static_cast<float>(crown.sway(at.position));
     leaf.wind = wind.codes(static_cast<size_t>(list.branch_of[static_cast<size_t>(tip)]), at.way,
                            position - at.position);
-    leaf.occlusion = static_cast<float>(0.35 + 0.65 * crown.openness(position));
+    leaf.occlusion = static_cast<float>(0.35 + 0.65 * leafy.openness(middle));
     leaf.terminal = terminal ? 1.0f : 0.0f;
     const double hold = number_of(branch_key ^ kFallKey, number);
     leaf.hold = static_cast<float>(terminal ? std::sqrt(hold) : hold);

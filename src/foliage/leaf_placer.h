@@ -37,6 +37,7 @@ struct LeafPlacer {
     const Crown crown;
     const WindGroups wind;
     const ScaledLeaf size;
+    Crown leafy;  // with the leaves that stand out of it
     const uint64_t seed;
 
     // The tree and the rules must outlive it.

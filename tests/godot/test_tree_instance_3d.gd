@@ -223,6 +223,59 @@ func test_the_mesh_has_room_for_the_wind() -> void:
 	instance.free()
 
 
+# What is drawn is culled and measured by boxes that the wind needs, and no larger ones.
+func test_bounds_are_the_trees_own() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	made.leaf_preset = "oak"
+	var instance: TreeInstance3D = _instance(made)
+	for wind: bool in [true, false, true]:
+		instance.wind = wind
+		while instance.is_building_levels():
+			await tree.process_frame
+		var rest: AABB = made.build_levels([0])[0].box
+		var room: float = 0.15 * instance.get_tree_height() if wind else 0.0
+		for child: Node in instance.get_children(true):
+			var part: GeometryInstance3D = child as GeometryInstance3D
+			check(
+				part.custom_aabb.is_equal_approx(rest.grow(room)),
+				"%s has %s of %s, wind %s." % [part.name, part.custom_aabb, rest, wind]
+			)
+		check(
+			(instance.mesh as ArrayMesh).custom_aabb.is_equal_approx(rest.grow(room)), "The bark's."
+		)
+	instance.free()
+
+
+# As the inspector compares: by value and by type.
+func test_a_fresh_node_has_nothing_to_revert() -> void:
+	var nodes: Array[Node] = [
+		TreeInstance3D.new(), TreeVariantSpawner3D.new(), TreeWind.new(), TreePusher3D.new()
+	]
+	for node: Node in nodes:
+		tree.root.add_child(node)
+		await tree.process_frame
+		for property: Dictionary in node.get_property_list():
+			if not property.usage & PROPERTY_USAGE_EDITOR or property.name == "script":
+				continue
+			var usual: Variant = (node.get_script() as Script).get_property_default_value(
+				property.name
+			)
+			if not property.usage & PROPERTY_USAGE_SCRIPT_VARIABLE:
+				usual = ClassDB.class_get_property_default_value(node.get_class(), property.name)
+			var now: Variant = node.get(property.name)
+			check(
+				typeof(now) == typeof(usual) and now == usual,
+				"%s of a fresh node is %s, not %s." % [property.name, now, usual]
+			)
+		var scene: PackedScene = PackedScene.new()
+		scene.pack(node)
+		for i: int in scene.get_state().get_node_property_count(0):
+			check_equal(
+				scene.get_state().get_node_property_name(0, i), &"script", "what is saved of it"
+			)
+		node.free()
+
+
 func test_leaves_share_what_the_node_is_set_to() -> void:
 	var instance: TreeInstance3D = _instance(grown_tree(2))
 	instance.lod = 0
@@ -237,3 +290,42 @@ func test_leaves_share_what_the_node_is_set_to() -> void:
 	check_equal(leaves.layers, 4, "the leaves' layers")
 	check_equal(leaves.cast_shadow, instance.cast_shadow, "the leaves' shadow")
 	instance.free()
+
+
+# A tree that comes into a game holds no frame up: a worker makes its meshes, and its materials are
+# read a piece per frame.
+func test_a_tree_comes_in_pieces() -> void:
+	const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
+	var made: TreeReconstruction = grown_tree(4)
+	made.leaf_preset = "willow"
+	var job: BuildJob = BuildJob.new()
+	job.source = made
+	job.leaves = true
+	job.run()
+	check_equal(job.bark.get_surface_count(), 1, "surfaces that the worker made")
+	check(job.foliage.instance_count > 0, "It made no leaves.")
+	var pieces: Dictionary[String, bool] = {}
+	for part: String in ["bark", "leaf"]:
+		var path: String = "res://addons/tree_reconstruction/presets/willow_%s.tres" % part
+		pieces[path] = true
+		for listed: String in ResourceLoader.get_dependencies(path):
+			pieces[listed.get_slice("::", listed.get_slice_count("::") - 1)] = true
+	var before: int = _count_read(pieces)
+	check(pieces.size() - before >= 4, "%d of %d are there already." % [before, pieces.size()])
+	var instance: TreeInstance3D = TreeInstance3D.new()
+	instance.reconstruction = made
+	tree.root.add_child(instance)
+	while instance.is_rebuilding():
+		await tree.process_frame
+		var now: int = _count_read(pieces)
+		check(now - before <= 1, "%d pieces were read at once." % (now - before))
+		before = now
+	check_equal(before, pieces.size(), "pieces that were read")
+	instance.free()
+
+
+static func _count_read(pieces: Dictionary[String, bool]) -> int:
+	var count: int = 0
+	for path: String in pieces:
+		count += 1 if ResourceLoader.has_cached(path) else 0
+	return count

@@ -263,6 +263,26 @@ TEST(Leaves, FewLargeLeavesStayAsTheyAre) {
     EXPECT_LT(thin_leaves(fronds, 16.0).size(), 2u);
 }
 
+// A palm was nearly black in full sun: its wood ends in one point, and fronds were shaded as the inside of a
+// crown that looks down.
+TEST(Leaves, FrondsOfOneTipAreShadedWhereTheyAre) {
+    for (const double tall : {2.0, 5.0, 10.0, 20.0}) {
+        Tree stem;
+        NodeId at = stem.add_root({0, 0, 0}, 0.02 * tall);
+        for (int i = 1; i <= 20; i++)
+            at = stem.add_child(at, {0, 0.05 * tall * i, 0}, 0.015 * tall);
+        const std::vector<LeafPlacement> fronds = place_leaves(stem, leaf_preset("palm"), 1);
+        ASSERT_GT(fronds.size(), 5u) << tall;
+        double along = 0.0, open = 0.0;
+        for (const LeafPlacement& frond : fronds) {
+            along += glm::dot(frond.outward, frond.y) / static_cast<double>(fronds.size());
+            open += frond.occlusion / static_cast<double>(fronds.size());
+        }
+        EXPECT_GT(along, 0.5) << tall;
+        EXPECT_GT(open, 0.55) << tall;
+    }
+}
+
 TEST(Leaves, CoarserLevelsAreSubsets) {
     const std::vector<LeafPlacement> all = place_leaves(test::random_tree(8, 1000), leaf_preset("maple"), 1);
     std::vector<LeafPlacement> finer = all;

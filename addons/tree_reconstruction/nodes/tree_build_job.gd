@@ -1,7 +1,8 @@
 @tool
 extends RefCounted
-## One build of a TreeInstance3D's level: what a worker thread needs and what it makes. The builders
-## see the reconstruction as it was when they began, so it may change meanwhile.
+## One build of a TreeInstance3D's level: what a worker thread needs and what it makes, up to the
+## meshes that are drawn, so that the main thread has little left to do. The builders see the
+## reconstruction as it was when they began, so it may change meanwhile.
 
 const Collision := preload("tree_collision.gd")
 const FLOATS_PER_LEAF: int = 20
@@ -16,9 +17,10 @@ var task: int = -1
 var stale: bool = false
 var with_bark: bool = true
 var revision: int
-var bark: Array
-var card: Array
-var buffer: PackedFloat32Array
+## The bark, where [member with_bark] wants it.
+var bark: ArrayMesh
+## The leaves; [code]null[/code] without any.
+var foliage: MultiMesh
 var warning: String = ""
 var capsules_wanted: int = 0
 var capsule_radius: float
@@ -29,26 +31,42 @@ var bark_time: float
 var leaf_time: float
 
 
+## Takes what it needs of [param tree].
+func take(tree: TreeInstance3D) -> void:
+	source = tree.reconstruction
+	capsules_wanted = tree.collision_shapes if tree.collision else 0
+	capsule_radius = tree.collision_minimum_radius
+	capsule_kind = tree.collision_kind
+	lod = maxi(tree.lod, 0)
+	budget = tree.get_level_budget(lod)
+	leaves = tree.leaves
+	revision = source.get_bark_revision()
+
+
 func run() -> void:
 	if capsules_wanted > 0:
 		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 	var started: int = Time.get_ticks_usec()
+	var wood: Array = []
+	var card: Array = []
+	var places: PackedFloat32Array = []
 	if budget > 0:
 		for made: Dictionary in source.build_levels([lod], [budget]):
-			bark = made.bark
+			wood = made.bark
 			warning = made.warning
 			if leaves:
-				buffer = made.leaves
+				places = made.leaves
 				card = made.card
-		bark_time = (Time.get_ticks_usec() - started) / 1000.0
-		return
+	elif with_bark:
+		wood = source.build_mesh_arrays(lod)
 	if with_bark:
-		bark = source.build_mesh_arrays(lod)
+		bark = bark_mesh(wood)
 	var barked: int = Time.get_ticks_usec()
-	if leaves:
-		buffer = source.build_leaf_buffer(lod)
-		card = source.build_leaf_form_arrays(lod)
 	bark_time = (barked - started) / 1000.0
+	if budget == 0 and leaves:
+		places = source.build_leaf_buffer(lod)
+		card = source.build_leaf_form_arrays(lod)
+	foliage = leaf_multimesh(places, card)
 	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
 
 

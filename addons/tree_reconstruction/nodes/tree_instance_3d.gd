@@ -31,7 +31,9 @@ const LevelNodes := preload("tree_level_nodes.gd")
 const OwnMaterials := preload("own_materials.gd")
 const Levels := preload("tree_levels.gd")
 const Looks := preload("tree_looks.gd")
-const _WIND_MARGIN: float = 0.25
+const Reading := preload("spawning/reading.gd")
+# How far the wind moves a tree beyond its box, over its height.
+const _SWAY: float = 0.15
 # What the leaves and the levels take over from this node.
 const _SHARED: PackedStringArray = [
 	"layers",
@@ -81,6 +83,7 @@ static var threaded: bool = true
 @export var wind: bool = true:
 	set(value):
 		wind = value
+		_set_box(_rest)
 		_update_instances()
 
 @export_group("Levels of Detail")
@@ -92,14 +95,14 @@ static var threaded: bool = true
 
 ## The distances in metres from which on the next level is shown, one less than there are levels.
 ## Those that are missing are chosen by the tree's height.
-@export var level_distances: PackedFloat32Array = []:
+@export var level_distances: PackedFloat32Array:
 	set(value):
 		level_distances = value
 		_update_instances()
 
 ## The most triangles that each level may have, the finest first: it becomes as fine as that allows.
 ## 0, or none: as many as the level has by itself.
-@export var level_budgets: PackedInt32Array = []:
+@export var level_budgets: PackedInt32Array:
 	set(value):
 		level_budgets = value
 		rebuild()
@@ -178,7 +181,9 @@ var _levels: LevelNodes = LevelNodes.new(self)
 var _body: StaticBody3D
 var _queued: bool = false
 var _job: BuildJob
+var _reading: Reading = Reading.new()
 var _height: float = 1.0
+var _rest: AABB
 var _budget_warning: String = ""
 # The reconstruction, its revision and the level that the mesh was built of.
 var _bark_of: Array = []
@@ -335,14 +340,7 @@ func _start() -> void:
 		_job.stale = true
 		return
 	var job: BuildJob = BuildJob.new()
-	job.source = reconstruction
-	job.capsules_wanted = collision_shapes if collision else 0
-	job.capsule_radius = collision_minimum_radius
-	job.capsule_kind = collision_kind
-	job.lod = maxi(lod, 0)
-	job.budget = get_level_budget(job.lod)
-	job.leaves = leaves
-	job.revision = reconstruction.get_bark_revision()
+	job.take(self)
 	# A change of the leaves alone keeps the bark.
 	job.with_bark = (
 		mesh == null
@@ -354,12 +352,18 @@ func _start() -> void:
 		_apply(job)
 		return
 	_job = job
+	# What the tree is seen with comes meanwhile, a piece per frame.
+	_reading.start_paths(Looks.paths_of(reconstruction, bark_material, leaf_material))
 	job.task = WorkerThreadPool.add_task(job.run, false, "Build the tree of %s" % name)
-	_main_loop().process_frame.connect(_poll)
+	(Engine.get_main_loop() as SceneTree).process_frame.connect(_poll)
 
 
 func _poll() -> void:
-	if _job == null or not WorkerThreadPool.is_task_completed(_job.task):
+	if (
+		_job == null
+		or not _reading.poll_paths()
+		or not WorkerThreadPool.is_task_completed(_job.task)
+	):
 		return
 	var job: BuildJob = _job
 	_drop_job()
@@ -373,7 +377,7 @@ func _poll() -> void:
 func _drop_job() -> void:
 	if _job == null:
 		return
-	_main_loop().process_frame.disconnect(_poll)
+	(Engine.get_main_loop() as SceneTree).process_frame.disconnect(_poll)
 	WorkerThreadPool.wait_for_task_completion(_job.task)
 	_job = null
 
@@ -383,7 +387,7 @@ func _apply(job: BuildJob) -> void:
 		_apply_bark(job)
 		_bark_time = job.bark_time
 	_leaf_time = job.leaf_time
-	if job.buffer.is_empty():
+	if job.foliage == null:
 		if _leaves_node != null:
 			_leaves_node.multimesh = null
 	else:
@@ -392,7 +396,7 @@ func _apply(job: BuildJob) -> void:
 			_leaves_node.name = &"Leaves"
 			add_child(_leaves_node, false, Node.INTERNAL_MODE_BACK)
 			_levels.finest_leaves = _leaves_node
-		_leaves_node.multimesh = BuildJob.leaf_multimesh(job.buffer, job.card)
+		_leaves_node.multimesh = job.foliage
 	_apply_collision(job.capsules)
 	_budget_warning = job.warning
 	_levels.begin()
@@ -422,19 +426,31 @@ func _update_body() -> void:
 
 
 func _apply_bark(job: BuildJob) -> void:
-	var bark: ArrayMesh = BuildJob.bark_mesh(job.bark)
+	var bark: ArrayMesh = job.bark
 	var box: AABB = bark.get_aabb()
 	_height = maxf(box.end.y, 0.1)
-	bark.custom_aabb = box.grow(_WIND_MARGIN * _height)
 	mesh = bark
+	_set_box(box)
 	_bark_of = [job.source, job.revision, job.lod, job.budget]
+
+
+# Of all that is drawn, at rest: what can't move has no more room than that.
+func _set_box(rest: AABB) -> void:
+	_rest = rest
+	if mesh == null:
+		return
+	mesh.custom_aabb = rest.grow(_SWAY * _height if wind else 0.0)
+	var parts: Array[GeometryInstance3D] = _levels.get_barks()
+	parts.append_array(_levels.get_leaves())
+	if _leaves_node != null:
+		parts.append(_leaves_node)
+	for part: GeometryInstance3D in parts:
+		part.custom_aabb = mesh.custom_aabb
 
 
 # All levels share one box.
 func _on_levels_built(box: AABB) -> void:
-	mesh.custom_aabb = box.grow(_WIND_MARGIN * _height)
-	if _leaves_node != null:
-		_leaves_node.custom_aabb = mesh.custom_aabb
+	_set_box(box)
 	_update_materials()
 	_update_instances()
 	update_configuration_warnings()
@@ -481,7 +497,3 @@ func _leaf_card() -> Mesh:
 	if _leaves_node == null or _leaves_node.multimesh == null:
 		return null
 	return _leaves_node.multimesh.mesh
-
-
-static func _main_loop() -> SceneTree:
-	return Engine.get_main_loop() as SceneTree

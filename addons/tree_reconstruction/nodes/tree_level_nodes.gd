@@ -325,9 +325,6 @@ func _apply_next() -> void:
 	_fill_shadow()
 	_ready = true
 	built.emit(made.box)
-	for part: Part in _all():
-		part.bark.custom_aabb = _tree.mesh.custom_aabb
-		part.leaves.custom_aabb = _tree.mesh.custom_aabb
 
 
 func _fill_shadow() -> void:
@@ -366,8 +363,8 @@ class Part:
 			tree.add_child(node, false, Node.INTERNAL_MODE_BACK)
 
 	func fill(made: Dictionary, with_leaves: bool) -> void:
-		bark.mesh = BuildJob.bark_mesh(made.bark)
-		leaves.multimesh = BuildJob.leaf_multimesh(made.leaves, made.card) if with_leaves else null
+		bark.mesh = made.bark
+		leaves.multimesh = made.leaves if with_leaves else null
 		triangles = made.triangles if with_leaves else BuildJob.triangles(bark.mesh)
 		warning = made.warning
 
@@ -393,3 +390,6 @@ class LevelsJob:
 
 	func run() -> void:
 		made = source.build_levels(numbers, budgets)
+		for level: Dictionary in made:
+			level.bark = BuildJob.bark_mesh(level.bark)
+			level.leaves = BuildJob.leaf_multimesh(level.leaves, level.card)

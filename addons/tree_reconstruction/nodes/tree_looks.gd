@@ -2,8 +2,8 @@
 extends RefCounted
 ## The materials of a TreeInstance3D, and what their shaders take per tree.
 
+const Materials := preload("spawning/materials.gd")
 const OwnMaterials := preload("own_materials.gd")
-const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 
 
@@ -12,12 +12,17 @@ const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 static func material_of(of: TreeReconstruction, material: Material, part: String) -> Material:
 	if material != null or of == null:
 		return material
-	if part == "leaf" and of.are_leaves_single():
-		part = "blade"
-	var path: String = _PRESETS % [of.get_leaf_look(), part]
-	if not ResourceLoader.exists(path):
-		path = _PRESETS % ["generic", part]
-	return load(path) as Material
+	return load(Materials.preset_path(of, part)) as Material
+
+
+## Where the materials are that a tree needs beside those that it is given.
+static func paths_of(of: TreeReconstruction, bark: Material, leaf: Material) -> PackedStringArray:
+	var paths: PackedStringArray = []
+	if bark == null:
+		paths.append(Materials.preset_path(of, "bark"))
+	if leaf == null:
+		paths.append(Materials.preset_path(of, "leaf"))
+	return paths
 
 
 ## What the shaders of any part take. It is set in the server, so that scenes stay free of it.

@@ -224,7 +224,7 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 
 ## The distances in metres from which on the next level is shown, one less than there are levels.
 ## Empty: chosen by the trees' heights.
-@export var level_distances: PackedFloat32Array = []:
+@export var level_distances: PackedFloat32Array:
 	set(value):
 		level_distances = value
 		_change(true)
@@ -232,7 +232,7 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 ## The most triangles that a tree has at each level, the finest first; it becomes as fine as that
 ## allows. 0: as many as the level has by itself. Those that are missing are chosen by the trees'
 ## heights.
-@export var level_budgets: PackedInt32Array = []:
+@export var level_budgets: PackedInt32Array:
 	set(value):
 		level_budgets = value
 		_change(true)

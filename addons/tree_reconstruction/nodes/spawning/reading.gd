@@ -40,6 +40,24 @@ func start(plans: Array[Individual], others: Array[Material]) -> void:
 		_steps.append(_need_shader.bind(material))
 
 
+## Begins with materials in files, for trees that are drawn with them as they are.
+func start_paths(paths: PackedStringArray) -> void:
+	_before = _kept
+	_kept = []
+	_plans = []
+	_steps = []
+	for path: String in paths:
+		_steps.append(_open.bind(path))
+
+
+## Goes on for a frame; returns whether the materials are there.
+func poll_paths() -> bool:
+	if _go_on():
+		_before = []
+		return true
+	return false
+
+
 ## Drops what is under way.
 func stop() -> void:
 	_plans = []
@@ -53,17 +71,23 @@ func is_busy() -> bool:
 
 ## Goes on for a frame; returns the individuals when they have their materials, else none.
 func poll() -> Array[Individual]:
+	if not _go_on():
+		return []
+	var done: Array[Individual] = _plans
+	_plans = []
+	_before = []
+	return done
+
+
+func _go_on() -> bool:
 	var deadline: int = Time.get_ticks_usec() + _SHORT
 	while not _steps.is_empty():
 		var step: Callable = _steps.pop_front()
 		_has_read = false
 		step.call()
 		if _has_read or Time.get_ticks_usec() >= deadline:
-			return []
-	var done: Array[Individual] = _plans
-	_plans = []
-	_before = []
-	return done
+			return false
+	return true
 
 
 # What a material is made of comes first, one by one.
