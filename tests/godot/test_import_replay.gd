@@ -2,6 +2,7 @@ extends "suite.gd"
 ## What a new import does to trees that were edited, and where several trees stand.
 
 const Reimport: GDScript = preload("res://addons/tree_reconstruction/editor/import/reimport.gd")
+const OwnTrees: GDScript = preload("res://addons/tree_reconstruction/editor/import/own_trees.gd")
 const SceneAdder: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/import/scene_adder.gd"
 )
@@ -58,6 +59,55 @@ func test_an_unedited_copy_is_the_import() -> void:
 	var fresh: TreeReconstruction = grown_tree(5)
 	var result: Dictionary = Reimport.replayed(grown_tree(4), fresh)
 	check_equal((result["tree"] as TreeReconstruction).skeleton, fresh.skeleton, "the tree")
+
+
+# However a scan is moved in the FileSystem dock, the trees that were made of it are its own.
+func test_a_moved_scan_has_its_trees() -> void:
+	for seed: int in 20:
+		var random: RandomNumberGenerator = RandomNumberGenerator.new()
+		random.seed = seed
+		var own: OwnTrees = OwnTrees.new()
+		# Where each of some scans is now, by where its tree says it is.
+		var places: Dictionary[String, String] = {}
+		for i: int in 4:
+			places["res://gone/%d.ply" % i] = "res://gone/%d.ply" % i
+		for step: int in 12:
+			var which: String = places.keys()[random.randi_range(0, 3)]
+			var to: String = "res://gone/%d.ply" % random.randi_range(0, 9)
+			if to not in places.values():
+				own.note_move(places[which], to)
+				places[which] = to
+		for told: String in places:
+			for at: String in places:
+				check_equal(
+					own.is_of({"source": told, "report": {"points_read": 1.0}}, places[at], {}),
+					told == at,
+					"whether the tree of %s is that of %s, now %s" % [told, at, places[at]]
+				)
+		# Once they have followed, a name means what lies there.
+		for told: String in places:
+			own.note_followed(places[told])
+		for told: String in places:
+			check(own.is_of({"source": places[told]}, places[told], {}), "It is forgotten.")
+
+
+func test_a_scan_that_another_program_moved_is_known_by_its_points() -> void:
+	var own: OwnTrees = OwnTrees.new()
+	var report: Dictionary = {
+		"points_read": 4711.0, "origin": [1.0, 2.0, 3.0], "height_m": 8.0, "metres_per_unit": 1.0
+	}
+	var was: Dictionary = {"source": "res://gone.ply", "report": report}
+	check(own.is_of(was, "res://new.ply", {"report": report}), "It is not known.")
+	var near: Dictionary = report.merged({"origin": [1.1, 2.0, 3.0], "height_m": 8.1}, true)
+	check(own.is_of(was, "res://new.ply", {"report": near}), "Other options made another scan.")
+	for other: Dictionary in [{"points_read": 4712.0}, {"origin": [9.0, 2.0, 3.0]}, {"origin": []}]:
+		check(
+			not own.is_of(was, "res://new.ply", {"report": report.merged(other, true)}),
+			"Another scan is taken for it: %s" % other
+		)
+	# A scan that is there was not moved.
+	var there: Dictionary = {"source": "res://project.godot", "report": report}
+	check(not own.is_of(there, "res://new.ply", {"report": report}), "It was taken from its scan.")
 
 
 func test_trees_stand_side_by_side() -> void:

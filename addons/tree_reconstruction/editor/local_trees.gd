@@ -15,6 +15,9 @@ const SceneIndex: GDScript = preload("scene_index.gd")
 const _ADDON: String = "res://addons/"
 const _SUFFIX: String = "_tree"
 
+## Which scenes have which trees in their files.
+var scene_index: SceneIndex = SceneIndex.new()
+
 # Paths of files whose trees have changed since they were saved, with weak references to these
 # trees: one that was closed unsaved is gone.
 var _changed: Dictionary[String, WeakRef] = {}
@@ -26,7 +29,6 @@ var _new: Dictionary[String, bool] = {}
 var _is_kept: bool = true
 # The trees whose steps are in the history of all scenes, by path: no scene's end ends them.
 var _outliving: Dictionary[String, bool] = {}
-var _scenes: SceneIndex = SceneIndex.new()
 
 
 ## Whether an edit of [param tree] would be lost, since it belongs to an import, to the addon, or
@@ -188,7 +190,7 @@ func get_other_scenes(tree: TreeReconstruction, node: Node) -> PackedStringArray
 		if scene != here and scene.scene_file_path not in paths:
 			paths.append(scene.scene_file_path)
 	if has_file(tree):
-		for path: String in _scenes.scenes_with(tree.resource_path):
+		for path: String in scene_index.scenes_with(tree.resource_path):
 			if path != here.scene_file_path and path not in paths:
 				paths.append(path)
 	return paths

@@ -4,18 +4,28 @@ extends RefCounted
 
 # By path of a scene: [time of its last change, paths of the resources in it].
 var _known: Dictionary[String, Array] = {}
+# By path of a resource: what was found last, until the project's files change.
+var _found: Dictionary[String, PackedStringArray] = {}
 
 
 ## The scenes in whose files the resource at [param path] is. Linear in the number of scenes; each
-## is read again only after it has changed.
+## is read again only after it has changed, and none is looked at until [method look_again].
 func scenes_with(path: String) -> PackedStringArray:
+	if _found.has(path):
+		return _found[path]
 	var found: PackedStringArray = []
 	if not Engine.is_editor_hint():
 		return found
 	var root: EditorFileSystemDirectory = EditorInterface.get_resource_filesystem().get_filesystem()
 	if root != null:
 		_look(root, path, found)
+		_found[path] = found
 	return found
+
+
+## The project's files have changed.
+func look_again() -> void:
+	_found.clear()
 
 
 func _look(folder: EditorFileSystemDirectory, path: String, found: PackedStringArray) -> void:

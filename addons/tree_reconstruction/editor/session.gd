@@ -317,7 +317,7 @@ func set_value(
 	var before: Dictionary = _stored(target)
 	target.set(property, value)
 	var after: Dictionary = _stored(target)
-	_begin(title, edited, imported, [target.get_instance_id(), property] if merged else [])
+	begin_step(title, edited, imported, [target.get_instance_id(), property] if merged else [])
 	_add_local(edited, imported)
 	if merged and edited == imported:
 		# The last of the steps that become one does all that it does again.
@@ -338,7 +338,7 @@ func replace_tree(title: String, made: TreeReconstruction) -> void:
 	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made))
 	if edited == null:
 		return
-	_begin(title, edited, imported)
+	begin_step(title, edited, imported)
 	_add_local(edited, imported)
 	add_replacement(edited, made)
 	history.commit()
@@ -395,9 +395,9 @@ func is_shared_by_scenes(shared: TreeReconstruction) -> bool:
 	return not local_trees.get_other_scenes(shared, holder).is_empty()
 
 
-# Begins a step that changes a tree. Where other scenes show it, too, its steps are no scene's, but
-# undone in whichever is shown.
-func _begin(
+## Begins a step that changes a tree, [param edited], a copy of [param imported] or the same. Where
+## other scenes show it, too, its steps are no scene's, but undone in whichever is shown.
+func begin_step(
 	title: String, edited: TreeReconstruction, imported: TreeReconstruction, merged: Array = []
 ) -> void:
 	var context: Object = node
@@ -460,7 +460,7 @@ func _take_back(edited: TreeReconstruction, imported: TreeReconstruction) -> voi
 func _record(
 	title: String, edited: TreeReconstruction, imported: TreeReconstruction, edit: TreeEdit
 ) -> void:
-	_begin(title, edited, imported)
+	begin_step(title, edited, imported)
 	_add_local(edited, imported)
 	history.add_method(edited, &"apply_edit", [edit], &"revert_edit", [edit])
 	history.commit(false)

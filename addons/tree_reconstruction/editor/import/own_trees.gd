@@ -7,7 +7,7 @@ const SceneAdder: GDScript = preload("./scene_adder.gd")
 
 # By path of a tree's file: [time of its last change, where the tree comes from].
 var _known: Dictionary[String, Array] = {}
-# Where files that were moved in the FileSystem dock are now.
+# Where files that were moved in the FileSystem dock are now, until their trees have followed.
 var _moved: Dictionary[String, String] = {}
 
 
@@ -16,8 +16,16 @@ func note_move(from: String, to: String) -> void:
 	for earlier: String in _moved:
 		if _moved[earlier] == from:
 			_moved[earlier] = to
-	_moved[from] = to
-	_moved.erase(to)
+	# Another one may have come to where the first one was.
+	if not _moved.has(from):
+		_moved[from] = to
+
+
+## All trees of the scan have followed it.
+func note_followed(scan: String) -> void:
+	for earlier: String in _moved.keys():
+		if _moved[earlier] == scan:
+			_moved.erase(earlier)
 
 
 ## The trees that were made of the scan at [param scan], of which [param fresh] is the new import:
@@ -44,8 +52,10 @@ func find(
 ## comes from [param fresh].
 func is_of(provenance: Dictionary, scan: String, fresh: Dictionary) -> bool:
 	var source: String = provenance.get("source", "")
-	if source.is_empty() or source == scan or _moved.get(source, "") == scan:
-		return not source.is_empty()
+	if source.is_empty() or _moved.has(source):
+		return not source.is_empty() and _moved[source] == scan
+	if source == scan:
+		return true
 	# It was moved outside of the editor: the same points lie in another file now.
 	if FileAccess.file_exists(source) or not source.begins_with("res://"):
 		return false

@@ -1,7 +1,7 @@
 @tool
 extends RefCounted
 ## What happens to trees that were edited when their scan is imported again: their edits are done
-## again on the new import. What no longer fits is listed; nothing of the user's is lost.
+## again on the new import. What no longer fits is shown where it was; nothing is lost.
 ##
 ## A tree in an open scene changes as one step of its undo history, another one in its file.
 ## Before, the tree as it was is kept beside it, as [code]oak_tree.res.bak[/code].
@@ -11,7 +11,8 @@ const SceneAdder: GDScript = preload("./scene_adder.gd")
 const OwnTrees: GDScript = preload("./own_trees.gd")
 
 const _BACKUPS: int = 5
-const _LISTED: int = 20
+# What the editor may take to tell its plugins what is selected.
+const _FRAMES: int = 5
 
 var own_trees: OwnTrees = OwnTrees.new()
 
@@ -37,6 +38,7 @@ func exit() -> void:
 func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
 	var updated: PackedStringArray = []
 	var report: PackedStringArray = []
+	var unfit: Array[TreeReconstruction] = []
 	for path: String in SceneAdder.tree_files(imported_paths):
 		if not FileAccess.file_exists(path + ".import"):
 			continue
@@ -46,10 +48,11 @@ func update_trees(imported_paths: PackedStringArray) -> PackedStringArray:
 		for local: TreeReconstruction in own_trees.find(
 			_scan_of(path), fresh, _session.local_trees.get_loaded()
 		):
-			if _update(local, fresh, report):
+			if _update(local, fresh, report, unfit):
 				updated.append(local.resource_path)
-	if not report.is_empty():
-		_show(report)
+		own_trees.note_followed(_scan_of(path))
+	if report.size() + unfit.size() > 0:
+		_show(report, unfit)
 	elif not updated.is_empty():
 		_session.say(tr("The edits were done again on the new import: %s") % ", ".join(updated), 0)
 	return updated
@@ -68,13 +71,14 @@ static func replayed(local: TreeReconstruction, fresh: TreeReconstruction) -> Di
 	made.skeleton = fresh.skeleton
 	made.foliage = fresh.foliage
 	made.provenance = fresh.provenance
-	var result: Dictionary = {"tree": made, "done": 0, "left_out": []}
+	var result: Dictionary = {"tree": made, "done": 0, "left_out": [], "in_part": []}
 	if not local.edit_log.is_empty():
 		var replay: Dictionary = made.replay(local.edit_log)
 		if replay["edit"] == null:
 			return {}
 		result["done"] = replay["done"]
 		result["left_out"] = replay["left_out"]
+		result["in_part"] = replay["in_part"]
 	return result
 
 
@@ -84,7 +88,10 @@ func _on_reimported(paths: PackedStringArray) -> void:
 
 
 func _update(
-	local: TreeReconstruction, fresh: TreeReconstruction, report: PackedStringArray
+	local: TreeReconstruction,
+	fresh: TreeReconstruction,
+	report: PackedStringArray,
+	unfit: Array[TreeReconstruction]
 ) -> bool:
 	var path: String = local.resource_path
 	var result: Dictionary = replayed(local, fresh)
@@ -104,7 +111,7 @@ func _update(
 			)
 		)
 		return false
-	_list(path, result["left_out"], report)
+	_tell(local, result, unfit)
 	var node: TreeInstance3D = _node_of(local)
 	if node == null:
 		var is_saved: bool = not _session.local_trees.is_changed(path)
@@ -146,25 +153,16 @@ func _on_file_moved(from: String, to: String) -> void:
 	_session.local_trees.note_move(from, to)
 
 
-func _list(path: String, left_out: Array, report: PackedStringArray) -> void:
-	if left_out.is_empty():
-		return
-	(
-		report
-		. append(
-			(
-				tr(
-					"%s: %d of its edits no longer fit the scan. They are kept, and tried again next time:"
-				)
-				% [path, left_out.size()]
-			)
+# What was done in part, or not at all.
+func _tell(local: TreeReconstruction, result: Dictionary, unfit: Array[TreeReconstruction]) -> void:
+	var in_part: Array = result["in_part"]
+	if not in_part.is_empty():
+		var sentence: String = tr(
+			"%s: %d of its edits were done on what is still there of their wood."
 		)
-	)
-	for i: int in mini(left_out.size(), _LISTED):
-		var entry: Dictionary = left_out[i]
-		report.append("  %s\n    %s" % [entry["command"], entry["reason"]])
-	if left_out.size() > _LISTED:
-		report.append(tr("  … and %d more.") % (left_out.size() - _LISTED))
+		_session.say(sentence % [local.resource_path, in_part.size()], 0)
+	if not (result["left_out"] as Array).is_empty():
+		unfit.append(local)
 
 
 # A node of an open scene that shows the tree: first the one that is edited.
@@ -182,21 +180,57 @@ func _node_of(local: TreeReconstruction) -> TreeInstance3D:
 	return null
 
 
-func _show(report: PackedStringArray) -> void:
-	var text: String = "\n".join(report)
-	print(text)
+# What could not be done, and the edits that fit nowhere: the latter are shown in the view.
+func _show(report: PackedStringArray, unfit: Array[TreeReconstruction]) -> void:
+	var text: PackedStringArray = report.duplicate()
+	var node: TreeInstance3D = null
+	for local: TreeReconstruction in unfit:
+		(
+			text
+			. append(
+				(
+					tr(
+						"%s: %d of its edits no longer fit the scan. They are kept, and tried again next time."
+					)
+					% [local.resource_path, local.get_unfit_edits().size()]
+				)
+			)
+		)
+		node = _node_of(local) if node == null else node
+	print("\n".join(text))
 	if not Engine.is_editor_hint():
 		return
-	var dialog: AcceptDialog = AcceptDialog.new()
+	var dialog: AcceptDialog = AcceptDialog.new() if node == null else ConfirmationDialog.new()
+	if node != null:
+		dialog.ok_button_text = tr("Show Them")
+		(dialog as ConfirmationDialog).cancel_button_text = tr("Later")
+		dialog.confirmed.connect(_show_edits.bind(weakref(node)))
 	dialog.title = tr("Edits That No Longer Fit")
-	var lines: TextEdit = TextEdit.new()
-	lines.text = text
-	lines.editable = false
-	lines.wrap_mode = TextEdit.LINE_WRAPPING_BOUNDARY
-	lines.custom_minimum_size = Vector2(640, 320) * EditorInterface.get_editor_scale()
-	dialog.add_child(lines)
+	dialog.dialog_text = "\n".join(text)
+	dialog.dialog_autowrap = true
+	dialog.min_size = Vector2i(Vector2(480, 0) * EditorInterface.get_editor_scale())
 	dialog.visibility_changed.connect(_free_hidden.bind(dialog))
 	EditorInterface.popup_dialog_centered(dialog)
+
+
+# Goes to the node, with the tool that goes through them.
+func _show_edits(of: WeakRef) -> void:
+	var node: TreeInstance3D = of.get_ref() as TreeInstance3D
+	if node == null:
+		return
+	var scene: Node = node.owner if node.owner != null else node
+	if scene != EditorInterface.get_edited_scene_root():
+		EditorInterface.open_scene_from_path(scene.scene_file_path)
+	EditorInterface.set_main_screen_editor("3D")
+	EditorInterface.get_selection().clear()
+	EditorInterface.get_selection().add_node(node)
+	EditorInterface.edit_node(node)
+	# The editor tells its plugins a little later.
+	for frame: int in _FRAMES:
+		await (Engine.get_main_loop() as SceneTree).process_frame
+	if _session.node == node:
+		_session.view.editing = true
+		_session.choose(&"unfit")
 
 
 static func _free_hidden(dialog: AcceptDialog) -> void:

@@ -19,15 +19,23 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	_plugin = plugin
 	_session = session
 	_session.ask_sharing = ask
+	EditorInterface.get_resource_filesystem().filesystem_changed.connect(
+		_session.local_trees.scene_index.look_again
+	)
 	_session.local_trees.changed.connect(_on_trees_changed)
 	plugin.scene_changed.connect(_on_scene_changed)
 	plugin.scene_closed.connect(_on_scene_closed)
+	plugin.scene_saved.connect(_on_scene_saved)
 
 
 func exit() -> void:
+	_plugin.scene_saved.disconnect(_on_scene_saved)
 	_plugin.scene_closed.disconnect(_on_scene_closed)
 	_plugin.scene_changed.disconnect(_on_scene_changed)
 	_session.local_trees.changed.disconnect(_on_trees_changed)
+	EditorInterface.get_resource_filesystem().filesystem_changed.disconnect(
+		_session.local_trees.scene_index.look_again
+	)
 	_session.ask_sharing = Callable()
 	_close()
 	_session = null
@@ -43,7 +51,7 @@ func ask(others: Array[Node], again: Callable) -> void:
 	var is_copied: bool = false
 	for other: Node in others:
 		var scene: Node = other.owner if other.owner != null else other
-		is_copied = is_copied or scene == here
+		is_copied = is_copied or (scene == here and other is TreeInstance3D)
 		names.append(
 			String(other.name) if scene == here else "%s (%s)" % [other.name, scene.scene_file_path]
 		)
@@ -129,6 +137,10 @@ func _on_scene_changed(scene: Node) -> void:
 		for path: String in _session.local_trees.get_unsaved_of(scene):
 			if _session.is_shared_by_scenes(_session.local_trees.get_changed(path)):
 				EditorInterface.mark_scene_as_unsaved()
+
+
+func _on_scene_saved(_path: String) -> void:
+	_session.local_trees.scene_index.look_again()
 
 
 func _on_scene_closed(path: String) -> void:

@@ -33,6 +33,8 @@ const PATTERNS: PackedStringArray = [
 	"The string's %s nodes take the place of %s.",
 	"The tree is empty.",
 	"There is no node %s in this tree.",
+	"There is no wood within %s of the place of node %s.",
+	"There is no wood of %s diameter that runs that way within %s of the place of node %s.",
 	"There is no node %s in this tree to graft onto.",
 	"The root cannot be cut away: no tree would be left.",
 	"The root lies inside, so no tree would be left.",

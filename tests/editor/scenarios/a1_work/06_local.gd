@@ -23,8 +23,7 @@ func run() -> void:
 		return
 	check_equal(node.reconstruction.resource_path, LOCAL, "the file")
 	check_equal(bytes(made), before, "the imported tree")
-	check(FileAccess.file_exists(LOCAL), "There is no file.")
-	await until(func() -> bool: return file_item(LOCAL) != null, "the file is in the dock")
+	check(not FileAccess.file_exists(LOCAL), "It was written before it was saved.")
 	await picture("made-local")
 
 	await step("Ctrl+Z goes back to the import, Ctrl+Shift+Z to the copy")
@@ -36,6 +35,7 @@ func run() -> void:
 	await until(func() -> bool: return node.reconstruction == local, "the copy is back")
 	check_equal(bytes(local), edited, "the copy")
 	await save_scene()
+	await until(func() -> bool: return file_item(LOCAL) != null, "the file is in the dock")
 
 	await step("importing the scan again keeps the edit")
 	await user.go()

@@ -161,16 +161,22 @@ func _reimport_edited() -> void:
 	check_equal(local.edit_log, log_before, "the log after undo")
 	await user.key("ctrl+shift+z")
 	check_equal(bytes(local), again, "the tree after redo")
-	await step("edits that no longer fit are listed, and nothing else is lost")
-	local.edit_log += "\ncut node=99999"
+	await step("edits that no longer fit are shown in the view, and nothing else is lost")
+	local.edit_log += "\ncut node=99999@0.6:-0.5:2.5:0:0:1:0.3"
 	_write(SCAN, _limbs(6))
 	await _look()
 	if await until(
-		func() -> bool: return dialog("No Longer Fit") != null, "a dialog lists the edits"
+		func() -> bool: return dialog("No Longer Fit") != null, "a dialog tells of the edit"
 	):
 		await picture("edits-that-no-longer-fit")
 		check("cut" in local.edit_log, "The command is forgotten.")
-		await user.key("Escape")
+		await user.key("Return")
+		await until(
+			func() -> bool: return session().tool == session().tools[&"unfit"], "its tool is chosen"
+		)
+		await user.frames(20)
+		check_equal(session().tool.get_left(), 1, "edits that fit nowhere")
+		await picture("where-it-was")
 	await step("the scene and the tree's file are saved together")
 	check_equal(session().local_trees.get_unsaved().size(), 1, "trees to save")
 	await save_scene()
@@ -193,7 +199,7 @@ func _reimport_edited() -> void:
 	)
 	# It is tried again, in vain again.
 	if await until(
-		func() -> bool: return dialog("No Longer Fit") != null, "a dialog lists the edits"
+		func() -> bool: return dialog("No Longer Fit") != null, "a dialog tells of the edit"
 	):
 		await user.key("Escape")
 	local = load(path) as TreeReconstruction

@@ -5,6 +5,7 @@ extends "../../test_plugin/garden.gd"
 
 const SCAN: String = "res://garden/elm.ply"
 const LOCAL: String = "res://garden/elm_tree.res"
+const UNSAVED: String = "res://garden/elm_tree_2.res"
 const SCENE: String = "res://garden/saving.tscn"
 
 
@@ -45,10 +46,29 @@ func run() -> void:
 	check_equal(FileAccess.get_sha256(LOCAL), saved, "the file afterwards")
 	check(is_unsaved(), "The scene is not marked as changed.")
 
-	await step("Ctrl+Q asks, and Don't Save is pressed")
 	var note: FileAccess = FileAccess.open("res://saved.cfg", FileAccess.WRITE)
 	note.store_string(saved)
 	note.close()
+	await _quit()
+
+
+# With another scene that was never saved.
+func _quit() -> void:
+	await step("the copy that a first edit makes has no file before it is saved")
+	var other: TreeInstance3D = await open_garden(
+		"res://garden/unsaved.tscn", load(SCAN) as TreeReconstruction
+	)
+	if other == null:
+		return
+	var imported_tree: TreeReconstruction = other.reconstruction
+	await user.click(node_on_screen(other, clear_nodes(other, large_branches(imported_tree))[0]))
+	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
+	await user.key("Delete")
+	await until(func() -> bool: return other.reconstruction != imported_tree, "it is a copy")
+	check_equal(other.reconstruction.resource_path, UNSAVED, "the path of its file")
+	check(not FileAccess.file_exists(UNSAVED), "It is written.")
+
+	await step("Ctrl+Q asks, and Don't Save is pressed")
 	await user.key("ctrl+q")
 	if not await until(func() -> bool: return dialog("before quitting") != null, "it asks"):
 		return
