@@ -282,34 +282,6 @@ func test_given_places() -> void:
 	_clear()
 
 
-func test_bodies_near_the_camera() -> void:
-	var forest: TreeVariantSpawner3D = _forest()
-	forest.collision = true
-	forest.collision_trees = 5
-	forest.collision_distance = 15.0
-	await _plant(forest)
-	for frame: int in 20:
-		await tree.process_frame
-	check_equal(forest.get_statistics()["bodies"], 5, "bodies")
-	var near: PackedInt32Array = forest.find_trees(Vector3.ZERO, 15.0).slice(0, 5)
-	var seen: int = 0
-	for child: Node in forest.get_children(true):
-		var body: StaticBody3D = child as StaticBody3D
-		if body != null:
-			seen += 1
-			check(near.has(forest.find_tree_of(body)), "A body is of a far tree.")
-			check(body.get_child_count(true) > 0, "It has no shapes.")
-	check_equal(seen, 5, "bodies that are there")
-	forest.remove(near[0])
-	for frame: int in 20:
-		await tree.process_frame
-	check(not near[0] in forest.find_trees(Vector3.ZERO, 15.0), "It is still found.")
-	for child: Node in forest.get_children(true):
-		if child is StaticBody3D and not child.is_queued_for_deletion():
-			check(forest.find_tree_of(child) != near[0], "Its body is still there.")
-	_clear()
-
-
 # Wherever it is under way, nothing is left and no error is heard.
 func test_forests_go_at_any_moment() -> void:
 	for frames: int in [0, 1, 2, 3, 5, 8, 13]:

@@ -53,11 +53,11 @@ static func _set_capsule(node: CollisionShape3D, capsule: Dictionary, frame: Tra
 	shape.radius = radius
 	shape.height = from.distance_to(to) + 2.0 * radius
 	node.shape = shape
-	node.transform = Transform3D(_upright_along(to - from), 0.5 * (from + to))
+	node.transform = Transform3D(upright_along(to - from), 0.5 * (from + to))
 
 
-# A frame whose Y axis goes along `way`.
-static func _upright_along(way: Vector3) -> Basis:
+## A frame whose Y axis goes along [param way].
+static func upright_along(way: Vector3) -> Basis:
 	if way.is_zero_approx():
 		return Basis.IDENTITY
 	var up: Vector3 = way.normalized()

@@ -28,6 +28,7 @@ const Collision := preload("tree_collision.gd")
 const Felling := preload("tree_felling.gd")
 const BuildJob := preload("tree_build_job.gd")
 const LevelNodes := preload("tree_level_nodes.gd")
+const Navigation := preload("navigation.gd")
 const OwnMaterials := preload("own_materials.gd")
 const Levels := preload("tree_levels.gd")
 const Looks := preload("tree_looks.gd")
@@ -281,6 +282,7 @@ func _init() -> void:
 
 
 func _notification(what: int) -> void:
+	Navigation.notify(what)
 	match what:
 		NOTIFICATION_PREDELETE:
 			_drop_job()
@@ -494,6 +496,4 @@ func _update_instances() -> void:
 
 
 func _leaf_card() -> Mesh:
-	if _leaves_node == null or _leaves_node.multimesh == null:
-		return null
-	return _leaves_node.multimesh.mesh
+	return _leaves_node.multimesh.mesh if get_leaf_count() > 0 else null

@@ -42,6 +42,7 @@ const Forest := preload("spawning/forest.gd")
 const Inspecting := preload("spawning/inspecting.gd")
 const Listening := preload("spawning/listening.gd")
 const Making := preload("spawning/making.gd")
+const Navigation := preload("navigation.gd")
 const Telling := preload("spawning/telling.gd")
 const TreeLevels := preload("tree_levels.gd")
 const _MOST_VARIANTS: int = 64
@@ -251,7 +252,7 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 
 @export_group("Collision")
 
-## Whether the trees nearest to the camera have bodies.
+## Whether the trees nearest to the camera, or to [member collision_group], have bodies.
 @export var collision: bool = false:
 	set(value):
 		collision = value
@@ -262,6 +263,10 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 	set(value):
 		collision_distance = Checked.number(value, 0.0, 1e6, collision_distance)
 		_change(false)
+
+## Bodies are where the nodes of this group are, such as the players of a game: a server has no
+## camera, and a split screen several. Empty: where the camera is.
+@export var collision_group: StringName = &""
 
 ## How many there are at most.
 @export_range(1, 256) var collision_trees: int = 24:
@@ -430,11 +435,8 @@ func get_statistics() -> Dictionary:
 	return found
 
 
-func _init() -> void:
-	finished.connect(update_configuration_warnings)
-
-
 func _notification(what: int) -> void:
+	Navigation.notify(what)
 	match what:
 		NOTIFICATION_ENTER_TREE:
 			rebuild()
@@ -455,7 +457,7 @@ func _process(delta: float) -> void:
 		_variants_changed = false
 	_forest.go_on(began + int(1000.0 * frame_budget_ms), camera)
 	if not _queued:
-		_telling.tell(_forest.get_progress(), progressed, finished)
+		_telling.tell(_forest.get_progress(), self)
 	_longest = maxi(_longest, Time.get_ticks_usec() - began)
 
 

@@ -1,6 +1,6 @@
 @tool
 extends RefCounted
-## The bodies of the trees nearest to a camera.
+## The bodies of the trees nearest to a camera, or to several.
 
 const Stand := preload("stand.gd")
 const Individual := preload("individual.gd")
@@ -18,7 +18,7 @@ var mask: int = 0
 
 var _bodies: Dictionary[int, StaticBody3D] = {}
 var _missing: PackedInt32Array = []
-var _viewer: Vector3 = Vector3.INF
+var _viewers: PackedVector3Array = []
 
 
 ## Frees all bodies.
@@ -27,20 +27,20 @@ func clear() -> void:
 		body.queue_free()
 	_bodies = {}
 	_missing = []
-	_viewer = Vector3.INF
+	_viewers = []
 
 
 ## The trees have changed: they are looked for again.
 func touch() -> void:
-	_viewer = Vector3.INF
+	_viewers = []
 
 
-## Decides whose bodies should be there.
-func look_from(viewer: Vector3, stand: Stand) -> void:
-	if viewer.distance_to(_viewer) < _STEP:
+## Decides whose bodies should be there: of those trees that are nearest to any of [param viewers].
+func look_from(viewers: PackedVector3Array, stand: Stand) -> void:
+	if not _have_moved(viewers):
 		return
-	_viewer = viewer
-	var near: PackedInt32Array = stand.near(viewer, reach).slice(0, most)
+	_viewers = viewers
+	var near: PackedInt32Array = _find_near(stand)
 	for id: int in _bodies.keys():
 		if not near.has(id):
 			_bodies[id].queue_free()
@@ -73,6 +73,29 @@ func make_next(stand: Stand, individual_of: Callable) -> bool:
 	parent.add_child(body, false, Node.INTERNAL_MODE_BACK)
 	_bodies[id] = body
 	return true
+
+
+func _have_moved(viewers: PackedVector3Array) -> bool:
+	if viewers.size() != _viewers.size() or viewers.is_empty():
+		return true
+	for i: int in viewers.size():
+		if viewers[i].distance_to(_viewers[i]) >= _STEP:
+			return true
+	return false
+
+
+func _find_near(stand: Stand) -> PackedInt32Array:
+	var distances: Dictionary[int, float] = {}
+	for viewer: Vector3 in _viewers:
+		for id: int in stand.near(viewer, reach).slice(0, most):
+			var away: float = stand.place_of(id).distance_to(viewer)
+			distances[id] = minf(away, distances.get(id, INF))
+	var near: Array[int] = distances.keys()
+	near.sort_custom(
+		func(a: int, b: int) -> bool:
+			return distances[a] < distances[b] or (distances[a] == distances[b] and a < b)
+	)
+	return PackedInt32Array(near.slice(0, most))
 
 
 ## How many bodies there are.

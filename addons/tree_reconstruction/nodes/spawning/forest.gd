@@ -111,7 +111,7 @@ func go_on(deadline: int, camera: Node3D) -> void:
 		_bodies.reach = _node.collision_distance
 		_bodies.most = _node.collision_trees
 		_bodies.layer = _node.collision_layer
-		_bodies.look_from(viewer, stand)
+		_bodies.look_from(_find_bodied(viewer), stand)
 		while Time.get_ticks_usec() < deadline and _bodies.make_next(stand, _ready_of):
 			pass
 
@@ -463,6 +463,18 @@ func _find_viewer(camera: Node3D) -> Vector3:
 	if from == null or not from.is_inside_tree():
 		return Vector3.ZERO
 	return _node.global_transform.affine_inverse() * from.global_position
+
+
+# Around what trees have bodies.
+func _find_bodied(viewer: Vector3) -> PackedVector3Array:
+	if _node.collision_group.is_empty():
+		return [viewer]
+	var found: PackedVector3Array = []
+	var here: Transform3D = _node.global_transform.affine_inverse()
+	for node: Node in _node.get_tree().get_nodes_in_group(_node.collision_group):
+		if node is Node3D:
+			found.append(here * (node as Node3D).global_position)
+	return found
 
 
 # The class is the editor's own: no game has it.

@@ -20,15 +20,15 @@ func is_busy() -> bool:
 	return _telling
 
 
-## Tells [param progressed] the share that is done, if it has become more, and [param finished] the
-## end of it.
-func tell(share: float, progressed: Signal, finished: Signal) -> void:
+## Lets [param of] tell the share that is done, if it has become more, and the end of it.
+func tell(share: float, of: TreeVariantSpawner3D) -> void:
 	if not _telling:
 		return
 	var now: float = 0.0 if _told < 0.0 else share
 	if now > _told:
 		_told = now
-		progressed.emit(now)
+		of.progressed.emit(now)
 	if _told >= 1.0:
 		_telling = false
-		finished.emit()
+		of.update_configuration_warnings()
+		of.finished.emit()
