@@ -227,7 +227,7 @@ Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path,
 }
 
 Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, const String& p_path,
-                                     int p_levels) {
+                                     int p_levels, bool p_pictures_beside) {
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), ERR_INVALID_PARAMETER, "There is no tree to export.");
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
@@ -236,7 +236,7 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
         listener.check();
         treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
                              uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_look()), &listener,
-                             *p_tree->get_leaf_density(), p_levels);
+                             *p_tree->get_leaf_density(), p_levels, p_pictures_beside);
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());
@@ -343,8 +343,8 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_cache_size"), &TreeReconstructor::get_cache_size);
     ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis"), &TreeReconstructor::import_skeleton,
                          DEFVAL("z"));
-    ClassDB::bind_method(D_METHOD("export_file", "tree", "path", "levels"), &TreeReconstructor::export_file,
-                         DEFVAL(1));
+    ClassDB::bind_method(D_METHOD("export_file", "tree", "path", "levels", "pictures_beside"),
+                         &TreeReconstructor::export_file, DEFVAL(1), DEFVAL(false));
     ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);

@@ -29,7 +29,7 @@ class TreeReconstructor : public godot::RefCounted {
     godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,
                                                    const godot::String& p_up_axis);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
-                             int p_levels = 1);
+                             int p_levels = 1, bool p_pictures_beside = false);
     godot::Error save_html_report(const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_option_list();
 

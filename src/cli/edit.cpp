@@ -70,6 +70,7 @@ const Command& edit_command() {
          {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
          {"--seed", "N", "of the leaves (default 1)"},
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
+         {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--commands", "", "lists the commands and what they take"},
          {"--quiet", "", "print errors only"}},
@@ -99,6 +100,7 @@ void run_edit(const std::vector<std::string>& words) {
     exports.textures = arguments.text("--leaves", exports.textures);
     exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
     exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
     try {
         exports.leaves = leaf_preset(exports.textures);
     } catch (const Error& error) {

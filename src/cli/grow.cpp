@@ -97,6 +97,7 @@ const Command& grow_command() {
          {"--vary-length", "F", "vary every segment's length by up to this share (default 0)"},
          {"--leaves", "NAME", "the leaf preset of models (default: the grammar's, or generic; none)"},
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
+         {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--quiet", "", "print errors only"}},
         "STRING-OR-GRAMMAR: a file, or one of the program's own grammars: " + preset_list() + "."};
     return command;
@@ -113,6 +114,7 @@ void run_grow(const std::vector<std::string>& words) {
     if (outs.empty()) throw UsageError("Where to? Name at least one file to write with -o.");
     ExportOptions exports;
     exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
     try {
         if (arguments.has("--leaves")) leaf_preset(arguments.text("--leaves", ""));
         for (const std::string& out : outs)

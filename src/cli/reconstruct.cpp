@@ -171,6 +171,7 @@ const Command& reconstruct_command() {
          {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
          {"--leaves", "PRESET", leaf_names() + "or auto, the default: palm for a palm, else generic"},
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
+         {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
@@ -213,6 +214,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     as_usage([&] { return leaf_preset(details.leaves == "auto" ? "generic" : details.leaves); });
     exports.seed = options.skeleton.seed;
     exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
     set_thread_count(static_cast<int>(arguments.whole("--threads", 0, 1, 1024)));
     // Before the long work, not after it.
     for (const std::string& out : outs)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -25,7 +26,11 @@ constexpr uint32_t kGlbMagic = 0x46546C67, kGlbVersion = 2, kJsonChunk = 0x4E4F5
 constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
 constexpr int kRepeat = 10497, kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
-constexpr size_t kMostShortIndices = 65535;  // vertices; the index 65535 itself is reserved
+// What leaf.gdshader makes of the leaves' picture, on average of a crown, as light: tones, hues and shade.
+constexpr std::array<double, 4> kLeafTint{0.66, 0.61, 0.48, 1.0};
+constexpr double kLeafCutoff = 0.25;            // lets the outline be, which smaller mipmaps average away
+constexpr char kPictureFolder[] = "_textures";  // after the model's name
+constexpr size_t kMostShortIndices = 65535;     // vertices; the index 65535 itself is reserved
 
 bool drawn(const Mesh* mesh) {
     return mesh && !mesh->indices.empty();
@@ -51,8 +56,8 @@ class Builder {
     size_t add_view(std::string_view bytes, int target);
     size_t add_accessor(std::string_view bytes, size_t count, int component, const char* type, int target);
     size_t add_indices(const Mesh& mesh);
-    size_t add_mesh(const Mesh& mesh, const std::string& name, int material);
-    void add_parts(size_t node, const ModelFile::Level& level, const std::string& suffix);
+    Json make_primitive(const Mesh& mesh, int material);
+    size_t add_level(const ModelFile::Level& level, size_t number);
     void add_levels(const ModelFile& file);
     size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap);
 
@@ -96,7 +101,7 @@ size_t Builder::add_indices(const Mesh& mesh) {
     return add_accessor(bytes_of(indices), count, kUnsignedShort, "SCALAR", kIndexBuffer);
 }
 
-size_t Builder::add_mesh(const Mesh& mesh, const std::string& name, int material) {
+Json Builder::make_primitive(const Mesh& mesh, int material) {
     const size_t count = mesh.positions.size();
     std::vector<glm::u8vec4>& wind = wind_.emplace_back();
     wind.resize(count);
@@ -133,8 +138,7 @@ size_t Builder::add_mesh(const Mesh& mesh, const std::string& name, int material
     add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
     add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
     primitive["material"] = material;
-    json["meshes"].push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
-    return json["meshes"].size() - 1;
+    return primitive;
 }
 
 size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap) {
@@ -158,16 +162,20 @@ Json texture_info(size_t index) {
     return Json::object({{"index", index}});
 }
 
-// What is drawn of a level, as children of the node.
-void Builder::add_parts(size_t node, const ModelFile::Level& level, const std::string& suffix) {
-    const auto add = [&](const char* name, const Mesh* mesh, int material) {
-        if (!drawn(mesh)) return;
-        json["nodes"][node]["children"].push_back(json["nodes"].size());
-        json["nodes"].push_back(
-            {{"name", name + suffix}, {"mesh", add_mesh(*mesh, name + suffix, material)}});
-    };
-    add("Bark", level.bark, 0);
-    add("Leaves", level.leaves, has_bark_ ? 1 : 0);
+// A node with what is drawn of a level as one mesh: tools that scatter meshes take each for a level by its
+// name. Returns the node's number.
+size_t Builder::add_level(const ModelFile::Level& level, size_t number) {
+    const std::string name = "Tree_LOD" + std::to_string(number);
+    Json primitives = Json::array();
+    if (drawn(level.bark)) primitives.push_back(make_primitive(*level.bark, 0));
+    if (drawn(level.leaves)) primitives.push_back(make_primitive(*level.leaves, has_bark_ ? 1 : 0));
+    Json node = {{"name", name}};
+    if (!primitives.empty()) {
+        node["mesh"] = json["meshes"].size();
+        json["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
+    }
+    json["nodes"].push_back(std::move(node));
+    return json["nodes"].size() - 1;
 }
 
 // The finest level is in the scene; the others are known to it alone (MSFT_lod), in the order of their
@@ -181,20 +189,16 @@ void Builder::add_levels(const ModelFile& file) {
         return std::min(high * high, 1.0);
     };
     Json ids = Json::array(), coverages = Json::array();
-    json["nodes"][0]["children"] = {1};
-    json["nodes"].push_back({{"name", "Tree_LOD0"}});
-    add_parts(1, {file.bark, file.leaves}, "_LOD0");
+    const size_t finest = add_level({file.bark, file.leaves}, 0);
+    json["nodes"][0]["children"] = {finest};
+    if (file.coarser.empty()) return;
     for (size_t i = 0; i < file.coarser.size(); i++) {
-        const std::string suffix = "_LOD" + std::to_string(i + 1);
-        const size_t node = json["nodes"].size();
-        json["nodes"].push_back({{"name", "Tree" + suffix}});
-        add_parts(node, file.coarser[i], suffix);
-        ids.push_back(node);
+        ids.push_back(add_level(file.coarser[i], i + 1));
         coverages.push_back(coverage(file.coarser[i].distance));
     }
     coverages.push_back(0.0);  // the coarsest one to the horizon
-    json["nodes"][1]["extensions"]["MSFT_lod"]["ids"] = std::move(ids);
-    json["nodes"][1]["extras"]["MSFT_screencoverage"] = std::move(coverages);
+    json["nodes"][finest]["extensions"]["MSFT_lod"]["ids"] = std::move(ids);
+    json["nodes"][finest]["extras"]["MSFT_screencoverage"] = std::move(coverages);
     json["extensionsUsed"] = {"MSFT_lod"};
 }
 
@@ -215,10 +219,7 @@ Builder::Builder(const ModelFile& file) {
         has_bark_ |= drawn(level.bark);
         has_leaves |= drawn(level.leaves);
     }
-    if (file.coarser.empty() || (!has_bark_ && !has_leaves))
-        add_parts(0, {file.bark, file.leaves}, "");
-    else
-        add_levels(file);
+    if (has_bark_ || has_leaves) add_levels(file);
     geometry_parts = parts.size();
     geometry_size = size;
     const std::vector<NamedPicture> all =
@@ -238,13 +239,13 @@ Builder::Builder(const ModelFile& file) {
         Json material, surface;
         material["name"] = "leaves";
         surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge));
+        surface["baseColorFactor"] = kLeafTint;
         surface["metallicFactor"] = 0.0;
-        surface["roughnessFactor"] = 0.7;
+        surface["roughnessFactor"] = 1.0;  // a crown of many small mirrors would be white
         material["pbrMetallicRoughness"] = std::move(surface);
         material["normalTexture"] = texture_info(add_texture(all, "leaf_normal", kClampToEdge));
         material["alphaMode"] = "MASK";
-        material["alphaCutoff"] = 0.4;
-        material["doubleSided"] = true;
+        material["alphaCutoff"] = kLeafCutoff;
         json["materials"].push_back(std::move(material));
     }
     if (size > 0) json["buffers"] = Json::array({{{"byteLength", size}}});
@@ -277,8 +278,31 @@ void append_u32(std::string& bytes, size_t value) {
         bytes += static_cast<char>(value >> shift & 0xFF);
 }
 
+// The pictures as files of a folder beside the model, which the model names.
+void write_pictures(const std::string& path, Builder& model, const Progress* progress) {
+    if (model.pictures.empty()) return;
+    const std::string folder = stem_of(path) + kPictureFolder;
+    std::error_code code;
+    std::filesystem::create_directory(path_of(sibling_of(path, folder)), code);
+    if (code)
+        throw Error(
+            "The folder '" + sibling_of(path, folder) +
+            "' for the pictures could not be made; check the rights, or whether a file has its name.");
+    for (size_t i = 0; i < model.pictures.size(); i++) {
+        const std::string name = model.pictures[i].name + ".png";
+        write_file(sibling_of(path, folder + "/" + name), model.pictures[i].png, progress);
+        model.json["images"][i] = {{"name", model.pictures[i].name},
+                                   {"uri", percent_encoded(folder) + "/" + percent_encoded(name)}};
+    }
+    Json& views = model.json["bufferViews"];
+    views.erase(views.end() - static_cast<std::ptrdiff_t>(model.pictures.size()), views.end());
+    model.parts.resize(model.geometry_parts);
+    model.size = model.geometry_size;
+    model.json["buffers"][0]["byteLength"] = model.size;
+}
+
 // One file: header, JSON, buffer (specification 2.0, section 4).
-void write_glb(const std::string& path, Builder& model, const Progress* progress) {
+void write_glb(const std::string& path, const Builder& model, const Progress* progress) {
     std::string text = model.json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const size_t buffer = model.size > 0 ? 8 + model.size : 0;
@@ -297,23 +321,14 @@ void write_glb(const std::string& path, Builder& model, const Progress* progress
     write_file(path, parts, progress);
 }
 
-// JSON, buffer and pictures, each in a file, the JSON last.
-void write_parts(const std::string& path, Builder& model, const Progress* progress) {
+// JSON and buffer, each in a file, the JSON last.
+void write_json(const std::string& path, Builder& model, const Progress* progress) {
     const std::string stem = stem_of(path);
-    Json& json = model.json;
     if (model.size > 0) {
-        for (size_t i = 0; i < model.pictures.size(); i++) {
-            const std::string name = stem + "_" + model.pictures[i].name + ".png";
-            write_file(sibling_of(path, name), model.pictures[i].png, progress);
-            json["images"][i] = {{"name", model.pictures[i].name}, {"uri", percent_encoded(name)}};
-        }
-        Json& views = json["bufferViews"];
-        views.erase(views.end() - static_cast<std::ptrdiff_t>(model.pictures.size()), views.end());
-        write_file(sibling_of(path, stem + ".bin"), std::span(model.parts).first(model.geometry_parts),
-                   progress);
-        json["buffers"][0] = {{"byteLength", model.geometry_size}, {"uri", percent_encoded(stem + ".bin")}};
+        write_file(sibling_of(path, stem + ".bin"), model.parts, progress);
+        model.json["buffers"][0]["uri"] = percent_encoded(stem + ".bin");
     }
-    write_file(path, json.dump(1, '\t'), progress);
+    write_file(path, model.json.dump(1, '\t'), progress);
 }
 
 }  // namespace
@@ -322,10 +337,11 @@ void write_gltf(const std::string& path, const ModelFile& file, const Progress* 
     const std::string extension = extension_of(path);
     if (extension != "glb" && extension != "gltf") throw Error("'" + path + "' must end in .glb or .gltf.");
     Builder model(file);
+    if (extension == "gltf" || file.pictures_beside) write_pictures(path, model, progress);
     if (extension == "glb")
         write_glb(path, model, progress);
     else
-        write_parts(path, model, progress);
+        write_json(path, model, progress);
 }
 
 }  // namespace treerec

@@ -6,14 +6,14 @@
 
 namespace treerec {
 
-// Writes `path`: .glb in one file, .gltf with a .bin and PNG pictures beside it. Node "Tree" holds the extras
-// and the children "Bark" and "Leaves", each only if it has triangles. With coarser levels its child is
-// "Tree_LOD0", which has these as children, and which names "Tree_LOD1", ... as its levels of detail
-// (MSFT_lod, with MSFT_screencoverage); a program that does not know the extension shows the finest level
-// alone. Levels share materials. Attributes: POSITION, NORMAL, TANGENT
-// (without it Khronos' validator warns), TEXCOORD_0 and _WIND (the wind channels of design.md as normalized
-// bytes). Metres, Y up. Throws Error, naming the path, where it cannot write or for another extension; or
-// Cancelled.
+// Writes `path`: .glb in one file, or, with pictures_beside, its PNG pictures in the folder NAME_textures
+// beside it; .gltf always has that, and a .bin. Node "Tree" holds the extras and, if anything has triangles,
+// the child "Tree_LOD0": one mesh of the same name, whose primitives are bark and leaves. It names
+// "Tree_LOD1", ... as its levels of detail (MSFT_lod, with MSFT_screencoverage), each such a node; a program
+// that does not know the extension shows the finest level alone. Levels share materials. Attributes:
+// POSITION, NORMAL, TANGENT (without it Khronos' validator warns), TEXCOORD_0 and _WIND (the wind channels of
+// design.md as normalized bytes: in COLOR_0 they would be taken for colours). Metres, Y up. Throws Error,
+// naming the path, where it cannot write or for another extension; or Cancelled.
 void write_gltf(const std::string& path, const ModelFile& model, const Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -23,6 +23,7 @@ struct ModelFile {
     std::string preset = "generic";  // of the textures (foliage/leaves.h)
     // make_pictures(preset) when empty; give them to write several files at the cost of one.
     std::vector<NamedPicture> pictures;
+    bool pictures_beside = false;                        // a .glb leaves them out; a .gltf always does
     std::vector<std::pair<std::string, double>> extras;  // kept in glTF: height_m, dbh_m, seed, nodes, ...
 };
 

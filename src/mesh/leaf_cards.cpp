@@ -12,11 +12,14 @@ namespace treerec {
 namespace {
 
 constexpr size_t kFloatsPerLeaf = 20;
-constexpr float kRoundness = 0.65f;  // how far the normals of baked leaves follow the crown
-constexpr float kMiddle = 0.5f;      // of a card, over its length
-constexpr double kKept = 0.42;       // of the leaves of one level, by the next
-constexpr double kFewest = 64.0;     // leaves: fewer are not thinned,
-constexpr double kLastWhole = 4.0;   // up to this level
+constexpr float kRoundness = 0.65f;    // how far the normals of baked leaves follow the crown
+constexpr float kSky = 0.35f;          // and how far they lean to where light comes from even below a crown
+constexpr float kLeastTowards = 0.3f;  // how far a face's normal goes the way that the face looks, at least
+constexpr float kHalfThickness = 0.0005f;  // of a leaf with two faces, over its length
+constexpr float kMiddle = 0.5f;            // of a card, over its length
+constexpr double kKept = 0.42;             // of the leaves of one level, by the next
+constexpr double kFewest = 64.0;           // leaves: fewer are not thinned,
+constexpr double kLastWhole = 4.0;         // up to this level
 
 double leaf_share(double level) {
     return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
@@ -29,6 +32,31 @@ double kept_share(double level, size_t count) {
     return std::max(leaf_share(level), few * leaf_share(level - kLastWhole));
 }
 
+// As leaf.gdshader has it: the crown is shaded as one round volume, from whichever side a leaf is seen.
+Vec3 crown_normal(const Vec3& flat, const Vec3& outward) {
+    const float side = glm::dot(flat, outward) < 0.0f ? -1.0f : 1.0f;
+    const Vec3 normal = flat * (side * (1.0f - kRoundness)) + outward * kRoundness + Vec3(0.0f, kSky, 0.0f);
+    const float length = glm::length(normal);
+    return length > 1e-3f ? normal / length : flat * side;
+}
+
+// The crown's normal for a face of a leaf, bent so far to whoever sees that face as programs need that follow
+// rays of light: with a normal that looks away from them all is black.
+Vec3 face_normal(const Vec3& face, const Vec3& crown) {
+    const float towards = glm::dot(face, crown);
+    if (towards >= kLeastTowards) return crown;
+    return glm::normalize(crown + face * (kLeastTowards - towards));
+}
+
+// Of a picture that runs across and along a card: both stay where they are when the normal has turned away.
+Vec4 tangent_at(const Vec3& normal, const Vec3& across, const Vec3& along) {
+    const Vec3 flat = across - normal * glm::dot(across, normal);
+    const float length = glm::length(flat);
+    // Where the normal runs across the card, its other axis still gives a direction.
+    const Vec3 tangent = length > 1e-3f ? flat / length : glm::normalize(glm::cross(along, normal));
+    return {tangent, glm::dot(glm::cross(normal, tangent), along) < 0.0f ? -1.0f : 1.0f};
+}
+
 }  // namespace
 
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Progress* progress) {
@@ -37,15 +65,15 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Prog
 
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, const Progress* progress) {
     const size_t corners = card.positions.size(), card_indices = card.indices.size();
-    if (leaves.size() * corners > UINT32_MAX) throw Error("There are too many leaves for one mesh.");
+    if (leaves.size() * corners * 2 > UINT32_MAX) throw Error("There are too many leaves for one mesh.");
     Mesh mesh;
-    const size_t vertices = leaves.size() * corners;
+    const size_t vertices = leaves.size() * corners * 2;
     mesh.positions.resize(vertices);
     mesh.normals.resize(vertices);
     mesh.tangents.resize(vertices);
     mesh.uvs.resize(vertices);
     mesh.colors.resize(vertices);
-    mesh.indices.resize(leaves.size() * card_indices);
+    mesh.indices.resize(leaves.size() * card_indices * 2);
     std::vector<uint8_t> turned_alike(corners, 0);  // by corner: it faces as the one before it does
     for (size_t k = 1; k < corners; k++)
         turned_alike[k] = card.normals[k] == card.normals[k - 1] && card.tangents[k] == card.tangents[k - 1];
@@ -55,30 +83,40 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
             const LeafPlacement& leaf = leaves[i];
             const glm::mat3 turn(leaf.x, leaf.y, leaf.z);
             for (size_t k = 0; k < corners; k++) {
-                const size_t v = i * corners + k;
-                mesh.positions[v] = leaf.position + turn * card.positions[k] * leaf.size;
-                mesh.uvs[v] = card.uvs[k];
-                mesh.colors[v] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
+                const size_t upper = 2 * i * corners + k, lower = upper + corners;
+                const Vec3 flat = turn * card.normals[k];
+                const Vec3 place = leaf.position + turn * card.positions[k] * leaf.size;
+                const Vec3 apart = flat * (kHalfThickness * leaf.size);
+                mesh.positions[upper] = place + apart;
+                mesh.positions[lower] = place - apart;
+                mesh.uvs[upper] = mesh.uvs[lower] = card.uvs[k];
+                mesh.colors[upper] =
+                    mesh.colors[lower] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
                 if (turned_alike[k]) {
-                    mesh.normals[v] = mesh.normals[v - 1];
-                    mesh.tangents[v] = mesh.tangents[v - 1];
+                    for (const size_t v : {upper, lower}) {
+                        mesh.normals[v] = mesh.normals[v - 1];
+                        mesh.tangents[v] = mesh.tangents[v - 1];
+                    }
                     continue;
                 }
-                const Vec3 flat = turn * card.normals[k];
-                const Vec3 normal = flat * (1.0f - kRoundness) + leaf.outward * kRoundness;
-                const float length = glm::length(normal);
-                mesh.normals[v] = length > 1e-3f ? normal / length : flat;
+                const Vec3 crown = crown_normal(flat, leaf.outward);
                 const Vec3 across = turn * Vec3(card.tangents[k]);
-                const Vec3 tangent = across - mesh.normals[v] * glm::dot(across, mesh.normals[v]);
-                const float tangent_length = glm::length(tangent);
-                // Where the rounded normal runs along the card's x, its y axis still gives a direction.
-                mesh.tangents[v] =
-                    Vec4(tangent_length > 1e-3f ? tangent / tangent_length
-                                                : glm::normalize(glm::cross(leaf.y, mesh.normals[v])),
-                         1.0f);
+                const Vec3 along = glm::cross(flat, across) * card.tangents[k].w;
+                mesh.normals[upper] = face_normal(flat, crown);
+                mesh.normals[lower] = face_normal(-flat, crown);
+                for (const size_t v : {upper, lower})
+                    mesh.tangents[v] = tangent_at(mesh.normals[v], across, along);
             }
+            const auto first = static_cast<uint32_t>(2 * i * corners);
+            const auto under = first + static_cast<uint32_t>(corners);
+            uint32_t* to = &mesh.indices[2 * i * card_indices];
             for (size_t k = 0; k < card_indices; k++)
-                mesh.indices[i * card_indices + k] = static_cast<uint32_t>(i * corners) + card.indices[k];
+                to[k] = first + card.indices[k];
+            for (size_t k = 0; k < card_indices; k += 3) {
+                to[card_indices + k] = under + card.indices[k];
+                to[card_indices + k + 1] = under + card.indices[k + 2];
+                to[card_indices + k + 2] = under + card.indices[k + 1];
+            }
         }
     });
     return mesh;

@@ -25,9 +25,11 @@ inline constexpr size_t kMostSprigParts = 4096;
 // Whether the rules' card shows the picture of one blade rather than that of a spray.
 bool uses_blade_picture(const LeafRules& rules);
 
-// Every leaf as geometry, with rounded-canopy normals and wind channels in colors; colors.g runs from 0 at
-// the card's base to 1 at its tip. custom0 stays empty. Throws Error for too many leaves, or
-// Cancelled.
+// Every leaf as geometry for programs that have no shader of ours: its upper face, and its lower one a hair
+// below with vertices of its own, so that neither needs a material of two sides, whose normals such programs
+// turn to whoever looks. Both have normals outward of the crown, as far as a face can that looks inward. Wind
+// channels in colors; colors.g runs from 0 at the card's base to 1 at its tip. custom0 stays empty. Throws
+// Error for too many leaves, or Cancelled.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card,
                  const Progress* progress = nullptr);
 // With the cards of sprays.

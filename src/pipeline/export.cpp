@@ -145,7 +145,7 @@ const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
 
 size_t TreeExporter::triangles() {
     return bark().triangle_count() +
-           leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
+           2 * leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
 }
 
 int TreeExporter::card_level() {
@@ -185,6 +185,7 @@ void TreeExporter::write(const std::string& path) {
             model.coarser.push_back({&level.bark, &level.leaves, kSwitch[model.coarser.size()]});
     }
     model.preset = options_.textures;
+    model.pictures_beside = options_.pictures_beside;
     model.pictures = pictures_;
     model.extras = {{"height_m", measured().height},
                     {"dbh_m", measured().dbh},
@@ -197,8 +198,9 @@ void TreeExporter::write(const std::string& path) {
 }
 
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
-                 const std::string& textures, const Progress* progress, const Foliage& foliage, int levels) {
-    TreeExporter(tree, {leaves, textures, seed, foliage, levels}, progress).write(path);
+                 const std::string& textures, const Progress* progress, const Foliage& foliage, int levels,
+                 bool pictures_beside) {
+    TreeExporter(tree, {leaves, textures, seed, foliage, levels, pictures_beside}, progress).write(path);
 }
 
 }  // namespace treerec

@@ -21,6 +21,7 @@ struct ExportOptions {
     uint64_t seed = 1;                 // of the leaves
     Foliage foliage = {};              // what the scan saw of them
     int levels = 1;                    // of detail in .glb and .gltf files, 1..kMostLevels
+    bool pictures_beside = false;      // of a .glb: in a folder, as those of a .gltf are
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
@@ -71,6 +72,6 @@ void require_writable_format(const std::string& path);
 // One file: TreeExporter in one call.
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
                  const std::string& textures = "generic", const Progress* progress = nullptr,
-                 const Foliage& foliage = {}, int levels = 1);
+                 const Foliage& foliage = {}, int levels = 1, bool pictures_beside = false);
 
 }  // namespace treerec

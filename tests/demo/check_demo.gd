@@ -130,10 +130,13 @@ func _check_model() -> void:
 	if error != OK:
 		return
 	var scene: Node = document.generate_scene(state)
-	var names: PackedStringArray = []
-	for node: Node in scene.find_children("*", "", true, false):
-		names.append(node.name)
-	_check("Bark" in names and "Leaves" in names, "tree.glb has bark and leaves: %s" % names)
+	var surfaces: PackedStringArray = []
+	var level: MeshInstance3D = scene.find_child("Tree_LOD0", true, false) as MeshInstance3D
+	if level != null:
+		for i: int in level.mesh.get_surface_count():
+			surfaces.append(level.mesh.surface_get_material(i).resource_name)
+	var wanted: PackedStringArray = ["bark", "leaves"]
+	_check(surfaces == wanted, "tree.glb has bark and leaves: %s" % [surfaces])
 	scene.free()
 
 

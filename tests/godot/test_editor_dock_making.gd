@@ -122,7 +122,7 @@ func test_baking_writes_a_scene() -> void:
 	_exports().bake_to(path)
 	await _finish()
 	root = (load(path) as PackedScene).instantiate()
-	var bark: MeshInstance3D = root.get_node("Level0")
+	var bark: MeshInstance3D = root.get_node("%s_LOD0" % root.name)
 	check(bark.get_node("Leaves") is MultiMeshInstance3D, "The leaves are no multimesh.")
 	var format: int = (bark.mesh as ArrayMesh).surface_get_format(0)
 	check((format & Mesh.ARRAY_FORMAT_TEX_UV2) != 0, "There is no place for a lightmap.")
@@ -133,7 +133,7 @@ func test_baking_writes_a_scene() -> void:
 	_exports().bake_meshes_to(folder.path_join("oak.res"))
 	await _finish()
 	for level: int in 2:
-		var mesh: Mesh = load(folder.path_join("oak_level%d.res" % level)) as Mesh
+		var mesh: Mesh = load(folder.path_join("oak_LOD%d.res" % level)) as Mesh
 		check_equal(mesh.get_surface_count(), 2, "surfaces of level %d" % level)
 	_end()
 

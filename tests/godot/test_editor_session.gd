@@ -53,6 +53,38 @@ func test_a_drag_is_one_step() -> void:
 	_end(session)
 
 
+func test_what_is_said_follows_undo() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var session: Session = _session_with(made)
+	session.update()
+	session.run("Prune", "prune_order order=1")
+	session.run("Smooth", "smooth_radii")
+	check_equal(_undo.get_history_count(), 2, "steps")
+	session.update()
+	_said.clear()
+	session.update()
+	check(_said.is_empty(), "%s is said of nothing." % [_said])
+	for wanted: String in ["Undone: Smooth", "Undone: Prune"]:
+		_undo.undo()
+		session.update()
+		check_equal(_said[-1], wanted, "what is said")
+	for wanted: String in ["Done again: Prune", "Done again: Smooth"]:
+		_undo.redo()
+		session.update()
+		check_equal(_said[-1], wanted, "what is said")
+	check_equal(_said.size(), 4, "sentences")
+	# A step that has nothing to do with the tree is not this addon's to tell of.
+	_undo.create_action("Move Node")
+	_undo.add_do_property(session.node, &"position", Vector3.ONE)
+	_undo.add_undo_property(session.node, &"position", Vector3.ZERO)
+	_undo.commit_action()
+	session.update()
+	_undo.undo()
+	session.update()
+	check_equal(_said.size(), 4, "sentences after a step of another kind")
+	_end(session)
+
+
 func test_a_value_and_what_it_sets_with_it_are_undone() -> void:
 	var made: TreeReconstruction = grown_tree(4)
 	var session: Session = _session_with(made)

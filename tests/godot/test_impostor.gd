@@ -121,7 +121,7 @@ func test_a_baked_scene_ends_in_the_card() -> void:
 	check_equal(root.get_child_count(), 3, "levels")
 	var last: MeshInstance3D = root.get_child(1)
 	var card: MeshInstance3D = root.get_child(2)
-	check_equal(String(card.name), "Impostor", "the name")
+	check_equal(String(card.name), "%s_LOD2" % root.name, "the name")
 	check_equal(card.visibility_range_begin, last.visibility_range_end, "where it begins")
 	check(card.visibility_range_begin > 10.0, "It begins at once.")
 	check_equal(card.visibility_range_end, 0.0, "where it ends")

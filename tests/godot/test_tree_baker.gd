@@ -63,7 +63,7 @@ func test_a_baked_scene_needs_no_addon() -> void:
 		@warning_ignore("integer_division")
 		var triangles: int = (bark[Mesh.ARRAY_INDEX] as PackedInt32Array).size() / 3
 		var wanted: String = (
-			"child: Level%d MeshInstance3D <null> %d false true" % [level, triangles]
+			"child: OldOak_LOD%d MeshInstance3D <null> %d false true" % [level, triangles]
 		)
 		check(wanted in text, "No '%s' in: %s" % [wanted, text])
 	check("child: Wood StaticBody3D <null> true" in text, "No body in: " + text)
@@ -95,6 +95,10 @@ func test_levels_take_turns_and_share_their_box() -> void:
 	var box: AABB
 	for i: int in root.get_child_count():
 		var level: MeshInstance3D = root.get_child(i)
+		# By such names, and one mesh of both, tools that scatter meshes know the levels.
+		check_equal(String(level.name), "OldOak_LOD%d" % i, "the name of level %d" % i)
+		check_equal(level.mesh.resource_name, "OldOak_LOD%d" % i, "the name of its mesh")
+		check_equal(level.mesh.get_surface_count(), 2, "surfaces of level %d" % i)
 		check_equal(level.visibility_range_begin, last, "where level %d begins" % i)
 		last = level.visibility_range_end
 		if i == 0:
@@ -265,7 +269,7 @@ func test_leaves_as_a_multimesh_need_no_addon_either() -> void:
 	root.position = Vector3(3.0, 1.0, -2.0)
 	await tree.process_frame
 	for i: int in 2:
-		var level: MeshInstance3D = root.get_node("Level%d" % i)
+		var level: MeshInstance3D = root.get_node("%s_LOD%d" % [root.name, i])
 		check_equal((level.mesh as ArrayMesh).get_surface_count(), 1, "surfaces of the bark")
 		var leaves: MultiMeshInstance3D = level.get_node("Leaves")
 		@warning_ignore("integer_division")
@@ -289,7 +293,7 @@ func test_charts_of_a_lightmap_do_not_overlap() -> void:
 	var made: TreeReconstruction = _made()
 	var root: Node3D = baker.bake(made).instantiate()
 	for level: int in 2:
-		var node: MeshInstance3D = root.get_node("Level%d" % level)
+		var node: MeshInstance3D = root.get_node("%s_LOD%d" % [root.name, level])
 		var leaves: MeshInstance3D = node.get_node("Leaves")
 		check_equal(leaves.gi_mode, GeometryInstance3D.GI_MODE_DYNAMIC, "how the leaves are lit")
 		var mesh: ArrayMesh = node.mesh as ArrayMesh

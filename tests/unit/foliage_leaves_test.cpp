@@ -357,13 +357,15 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
     const Mesh card = build_leaf_card(), mesh = bake_leaves(leaves);
     const std::vector<float> buffer = leaf_buffer(leaves);
     ASSERT_EQ(buffer.size(), leaves.size() * 20);
-    ASSERT_EQ(mesh.positions.size(), leaves.size() * card.positions.size());
-    ASSERT_EQ(mesh.indices.size(), leaves.size() * card.indices.size());
+    const size_t corners = card.positions.size();
+    ASSERT_EQ(mesh.positions.size(), leaves.size() * corners * 2);  // the upper faces and the lower ones
+    ASSERT_EQ(mesh.indices.size(), leaves.size() * card.indices.size() * 2);
     for (size_t i = 0; i < leaves.size(); i++) {
         const float* row = buffer.data() + i * 20;
-        for (size_t k = 0; k < card.positions.size(); k++) {
-            const Vec3 p = card.positions[k];
-            const size_t v = i * card.positions.size() + k;
+        for (size_t k = 0; k < 2 * corners; k++) {
+            const float apart = k < corners ? 0.0005f : -0.0005f;  // half of a leaf's thickness
+            const Vec3 p = card.positions[k % corners] + card.normals[k % corners] * apart;
+            const size_t v = i * corners * 2 + k;
             for (int axis = 0; axis < 3; axis++)
                 ASSERT_NEAR(mesh.positions[v][axis],
                             row[4 * axis] * p.x + row[4 * axis + 1] * p.y + row[4 * axis + 2] * p.z +
@@ -377,6 +379,56 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
         const Vec3 world = leaves[i].x * outward.x + leaves[i].y * outward.y + leaves[i].z * outward.z;
         ASSERT_NEAR(glm::distance(world, leaves[i].outward), 0.0f, 1e-4f);
         ASSERT_EQ(Vec2(row[17], row[19]), leaves[i].wind);
+    }
+}
+
+// Programs without our shader light a face by its vertices' normals, seen from its front, and turn them for a
+// face that is seen from behind: leaves of two sides were black wherever one looked at their lower ones.
+TEST(LeafCards, BakedLeavesAreLitAlikeFromBothSides) {
+    for (const char* preset : {"oak", "pine", "palm"}) {
+        SCOPED_TRACE(preset);
+        const LeafRules rules = leaf_preset(preset);
+        const std::vector<LeafPlacement> leaves = place_leaves(test::random_tree(7, 400), rules, 3);
+        const Mesh card = build_leaf_card(rules), mesh = bake_leaves(leaves, card);
+        ASSERT_GT(leaves.size(), 20u);
+        const size_t corners = card.positions.size(), indices = card.indices.size();
+        size_t outward = 0, faces = 0;
+        const auto face = [&](size_t at) {
+            const Vec3 a = mesh.positions[mesh.indices[at]];
+            return glm::cross(mesh.positions[mesh.indices[at + 1]] - a,
+                              mesh.positions[mesh.indices[at + 2]] - a);
+        };
+        for (size_t i = 0; i < leaves.size(); i++) {
+            for (size_t k = 0; k < indices; k += 3) {
+                const Vec3 up = face(2 * i * indices + k), down = face((2 * i + 1) * indices + k);
+                ASSERT_LT(glm::dot(up, down), -0.9f * glm::dot(up, up));
+            }
+            for (size_t k = 0; k < corners; k++) {
+                const size_t upper = 2 * i * corners + k, lower = upper + corners;
+                const glm::mat3 turn(leaves[i].x, leaves[i].y, leaves[i].z);
+                const Vec3 flat = turn * card.normals[k];
+                const Vec3 along = turn * glm::cross(card.normals[k], Vec3(card.tangents[k]));
+                for (const size_t v : {upper, lower}) {
+                    const Vec3 normal = mesh.normals[v], seen = v == upper ? flat : -flat;
+                    // Not away from whoever sees the face,
+                    ASSERT_GT(glm::dot(normal, seen), 0.25f);
+                    const Vec3 tangent(mesh.tangents[v]);
+                    ASSERT_NEAR(glm::length(tangent), 1.0f, 1e-4f);
+                    ASSERT_NEAR(glm::dot(tangent, normal), 0.0f, 1e-3f);
+                    // and the picture's relief lies as it does on the card.
+                    ASSERT_GE(glm::dot(glm::cross(normal, tangent) * mesh.tangents[v].w,
+                                       along * card.tangents[k].w),
+                              -1e-4f);
+                    outward += glm::dot(normal, leaves[i].outward) > 0.0f;
+                    faces++;
+                }
+                const Vec3 apart = mesh.positions[upper] - mesh.positions[lower];
+                ASSERT_GT(glm::dot(apart, turn * card.normals[k]), 0.0f);
+                ASSERT_LT(glm::length(apart), 0.0011f * leaves[i].size);
+            }
+        }
+        // Half of them, were they turned to whoever looks.
+        EXPECT_GT(static_cast<double>(outward), 0.8 * static_cast<double>(faces));
     }
 }
 

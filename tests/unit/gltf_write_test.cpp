@@ -85,8 +85,10 @@ void expect_attribute(const tinygltf::Model& model, int accessor_index,
     EXPECT_EQ(std::memcmp(model.buffers[0].data.data() + view.byteOffset, values.data(), view.byteLength), 0);
 }
 
-void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh) {
-    const tinygltf::Primitive& primitive = model.meshes[static_cast<size_t>(mesh_index)].primitives.at(0);
+void expect_mesh(const tinygltf::Model& model, int mesh_index, const Mesh& mesh, size_t part = 0) {
+    const tinygltf::Primitive& primitive = model.meshes[static_cast<size_t>(mesh_index)].primitives.at(part);
+    // They are no colours: programs would multiply the picture by them.
+    EXPECT_FALSE(primitive.attributes.contains("COLOR_0"));
     // Short indices where they suffice.
     if (mesh.positions.size() <= 65535)
         expect_attribute(model, primitive.indices,
@@ -137,8 +139,6 @@ TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
             const tinygltf::Node& shown = model.nodes.at(static_cast<size_t>(node));
             const std::string suffix = "_LOD" + std::to_string(level);
             EXPECT_EQ(shown.name, "Tree" + suffix);
-            const bool leafy = level < 3;
-            ASSERT_EQ(shown.children.size(), leafy ? 2u : 1u);
             const double before = level > 0 ? coverage.Get(level - 1).GetNumberAsDouble() : 1.0;
             EXPECT_LT(coverage.Get(level).GetNumberAsDouble(), before);
             // The share of a square picture that a view of 75 degrees shows; the coarsest level never ends.
@@ -151,14 +151,16 @@ TEST_F(GltfWrite, LevelsOfDetailAreNodesOfTheirOwn) {
                 for (const tinygltf::Node& other : model.nodes)
                     EXPECT_EQ(std::count(other.children.begin(), other.children.end(), node), 0);
             }
-            for (size_t part = 0; part < shown.children.size(); part++) {
-                const tinygltf::Node& child = model.nodes.at(static_cast<size_t>(shown.children[part]));
-                EXPECT_EQ(child.name, (part == 0 ? "Bark" : "Leaves") + suffix);
+            // One mesh of two surfaces, by whose name tools that scatter meshes know the level.
+            EXPECT_TRUE(shown.children.empty());
+            const tinygltf::Mesh& mesh = model.meshes.at(static_cast<size_t>(shown.mesh));
+            EXPECT_EQ(mesh.name, "Tree" + suffix);
+            ASSERT_EQ(mesh.primitives.size(), level < 3 ? 2u : 1u);
+            for (size_t part = 0; part < mesh.primitives.size(); part++) {
                 const Mesh& wanted = part == 0 ? (level == 0 ? bark_ : bark[level - 1])
                                                : (level == 0 ? leaves_ : leaves[level - 1]);
-                expect_mesh(model, child.mesh, wanted);
-                EXPECT_EQ(model.meshes.at(static_cast<size_t>(child.mesh)).primitives.at(0).material,
-                          static_cast<int>(part));
+                expect_mesh(model, shown.mesh, wanted, part);
+                EXPECT_EQ(mesh.primitives[part].material, static_cast<int>(part));
             }
         }
         EXPECT_EQ(model.materials.size(), 2u);
@@ -182,15 +184,15 @@ TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
     for (const char* name : {"a tree.glb", "a tree.gltf"}) {
         write_gltf(path(name), model_);
         const tinygltf::Model model = read(path(name));
-        ASSERT_EQ(model.nodes.size(), 3u);
+        ASSERT_EQ(model.nodes.size(), 2u);
         EXPECT_EQ(model.nodes[0].name, "Tree");
         EXPECT_EQ(model.nodes[0].extras.Get("height_m").GetNumberAsDouble(), 11.5);
-        EXPECT_EQ(model.nodes[1].name, "Bark");
-        EXPECT_EQ(model.nodes[2].name, "Leaves");
-        expect_mesh(model, model.nodes[1].mesh, bark_);
-        expect_mesh(model, model.nodes[2].mesh, leaves_);
+        EXPECT_EQ(model.nodes[1].name, "Tree_LOD0");
+        EXPECT_TRUE(model.extensionsUsed.empty());
+        expect_mesh(model, model.nodes[1].mesh, bark_, 0);
+        expect_mesh(model, model.nodes[1].mesh, leaves_, 1);
         EXPECT_EQ(model.materials.at(1).alphaMode, "MASK");
-        EXPECT_TRUE(model.materials.at(1).doubleSided);
+        EXPECT_FALSE(model.materials.at(1).doubleSided);  // the leaves have a lower face of their own
         ASSERT_EQ(model.images.size(), 5u);
         for (const tinygltf::Image& image : model.images) {
             const auto picture = std::find_if(model_.pictures.begin(), model_.pictures.end(),
@@ -207,8 +209,44 @@ TEST_F(GltfWrite, AMeshOfManyVerticesHasLongIndices) {
     ASSERT_GT(bark_.positions.size(), 65535u);
     write_gltf(path("many.glb"), model_);
     const tinygltf::Model model = read(path("many.glb"));
-    expect_mesh(model, model.nodes[1].mesh, bark_);
-    expect_mesh(model, model.nodes[2].mesh, leaves_);
+    expect_mesh(model, model.nodes[1].mesh, bark_, 0);
+    expect_mesh(model, model.nodes[1].mesh, leaves_, 1);
+}
+
+TEST_F(GltfWrite, PicturesMayLieInAFolderBesideIt) {
+    model_.pictures_beside = true;
+    for (const char* name : {"an oak.glb", "an oak.gltf"}) {
+        const std::filesystem::path folder = folder_ / "an oak_textures";
+        std::filesystem::remove_all(folder);
+        write_gltf(path(name), model_);
+        const tinygltf::Model model = read(path(name));
+        expect_mesh(model, model.nodes.at(1).mesh, bark_, 0);
+        expect_mesh(model, model.nodes.at(1).mesh, leaves_, 1);
+        ASSERT_EQ(model.images.size(), 5u);
+        for (const tinygltf::Image& image : model.images) {
+            EXPECT_EQ(image.uri, "an%20oak_textures/" + image.name + ".png");
+            EXPECT_EQ(image.bufferView, -1);
+            std::ifstream file(folder / (image.name + ".png"), std::ios::binary);
+            const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+            EXPECT_EQ(std::string(image.image.begin(), image.image.end()), bytes);
+            EXPECT_FALSE(bytes.empty());
+        }
+        size_t files = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            files += entry.is_regular_file();
+        EXPECT_EQ(files, 5u);
+        EXPECT_EQ(model.buffers.at(0).data.size(),
+                  model.bufferViews.back().byteOffset + (model.bufferViews.back().byteLength + 3) / 4 * 4);
+    }
+    // What stands in its way is not ours to remove.
+    std::ofstream(path("taken_textures")) << "mine";
+    try {
+        write_gltf(path("taken.glb"), model_);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("taken_textures"), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("taken.glb")));
 }
 
 TEST_F(GltfWrite, ACancelledOneLeavesTheOldFile) {

@@ -4,8 +4,10 @@ extends RefCounted
 ## Turns trees into plain scenes and meshes that need neither this addon nor its library.
 ##
 ## A baked scene holds a mesh for each level of detail, of a surface of bark and one of leaves, that
-## take turns by their distance; its materials, with the wind; and a body along its wood. Share it,
-## use it in a project without the addon, or give the meshes to a tool that scatters them.
+## take turns by their distance. Their nodes are named after the tree, with [code]_LOD0[/code],
+## [code]_LOD1[/code] and so on; an impostor is the last of them. The scene holds its materials,
+## with the wind, and a body along its wood. Share it, use it in a project without the addon, or
+## give the meshes to a tool that scatters them.
 ## [codeblock]
 ## var baker := TreeBaker.new()
 ## baker.levels = 3
@@ -193,7 +195,8 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	var apart: Array[GeometryInstance3D] = _make_leaves(tree, parts)
 	for level: int in meshes.size():
 		var part: MeshInstance3D = MeshInstance3D.new()
-		part.name = "Level%d" % level if level < parts.bark.size() else "Impostor"
+		# By such names, tools that scatter meshes know the levels; the impostor is the last one.
+		part.name = "%s_LOD%d" % [root.name, level]
 		part.mesh = meshes[level]
 		part.gi_mode = _gi_mode(level == 0)
 		var drawn: Array[GeometryInstance3D] = [part]
@@ -252,6 +255,7 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 		if level == 0 and parts.lightmap != Vector2i.ZERO:
 			mesh.lightmap_size_hint = parts.lightmap
 		mesh.custom_aabb = _box_of(parts)
+		mesh.resource_name = "%s_LOD%d" % [_name_of(tree), level]
 		meshes.append(mesh)
 	return meshes
 

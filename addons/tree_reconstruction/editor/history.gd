@@ -13,6 +13,8 @@ extends RefCounted
 
 # EditorUndoRedoManager or UndoRedo.
 var _undo: Object
+# The version of each history, by its id, when it was looked at last.
+var _seen: Dictionary[int, int] = {}
 # What the step before may merge with, and the history's version after it.
 var _merged: Array = []
 var _version: int = -1
@@ -87,12 +89,37 @@ func keep_added(node: Node) -> void:
 ## Ends the step. Without [param execute] what it does is done already.
 func commit(execute: bool = true) -> void:
 	_undo.call(&"commit_action", execute)
-	_version = _get_version(_context.get_ref() as Object)
+	var plain: UndoRedo = _get_plain(_context.get_ref() as Object)
+	_version = plain.get_version()
+	_seen[plain.get_instance_id()] = _version
+
+
+## To be called once a frame, with all whose histories steps may be in: returns the title of the
+## step that was undone since the last call (with a minus before it) or done again (with a plus), or
+## nothing.
+func look(contexts: Array[Object]) -> String:
+	var found: String = ""
+	for context: Object in contexts:
+		var plain: UndoRedo = _get_plain(context)
+		var id: int = plain.get_instance_id()
+		var now: int = plain.get_version()
+		var before: int = _seen.get(id, now)
+		_seen[id] = now
+		var at: int = plain.get_current_action()
+		if now < before and plain.has_redo():
+			found = "-" + plain.get_action_name(at + 1)
+		elif now > before and at >= 0:
+			found = "+" + plain.get_action_name(at)
+	return found
 
 
 func _get_version(context: Object) -> int:
+	return _get_plain(context).get_version()
+
+
+func _get_plain(context: Object) -> UndoRedo:
 	var plain: UndoRedo = _undo as UndoRedo
 	if plain == null:
 		var id: int = _undo.call(&"get_object_history_id", context)
 		plain = _undo.call(&"get_history_undo_redo", id)
-	return plain.get_version()
+	return plain

@@ -28,6 +28,7 @@ const Jobs := preload("jobs.gd")
 const LocalTrees := preload("local_trees.gd")
 const ScanData := preload("scan_data.gd")
 const Sentences := preload("translations/sentences.gd")
+const UndoStatus := preload("undo_status.gd")
 const ViewState := preload("view_state.gd")
 # What a reconstruction makes of a tree; all else is how it looks.
 const _MADE: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
@@ -55,6 +56,7 @@ var picked: PackedStringArray = []
 ## call after [method make_unique] or [method agree_to_share]. Without it all of them change.
 var ask_sharing: Callable
 
+var _undo_status: UndoStatus = UndoStatus.new()
 var _shown: TreeReconstruction
 var _tree_moved: bool = false
 # The drag under way.
@@ -112,6 +114,7 @@ func update() -> void:
 		selection_changed.emit()
 	if tree != _shown:
 		_watch(tree)
+	_undo_status.update(self, _tree_moved)
 	if _tree_moved:
 		_tree_moved = false
 		_drop_missing()

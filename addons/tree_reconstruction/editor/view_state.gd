@@ -68,6 +68,27 @@ var grid: bool = false:
 		grid = value
 		changed.emit()
 
+var _wanted: WeakRef = weakref(null)
+
+
+## Shows trees with all that they have.
+func show_whole() -> void:
+	mesh = true
+	leaves = true
+
+
+## The view goes to a node that was put into a scene, as soon as it is edited.
+func want(node: TreeInstance3D) -> void:
+	_wanted = weakref(node)
+
+
+## Whether the view has to go to [param node]. The next question is about another one.
+func take_wanted(node: TreeInstance3D) -> bool:
+	if node == null or _wanted.get_ref() != node:
+		return false
+	_wanted = weakref(null)
+	return true
+
 
 ## Reads what was shown when the project was open last.
 func restore(settings: EditorSettings) -> void:

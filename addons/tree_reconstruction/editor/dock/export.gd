@@ -10,6 +10,7 @@ var levels: SpinBox
 var form: OptionButton
 var lightmap: CheckBox
 var collision: CheckBox
+var pictures: CheckBox
 var bake: Button
 var meshes: Button
 var impostor: Impostor
@@ -42,7 +43,7 @@ func export_to(path: String) -> void:
 	var worker: TreeReconstructor = TreeReconstructor.new()
 	session.jobs.start(
 		tr("Writing %s") % path.get_file(),
-		_export.bind(worker, session.tree, path, int(levels.value)),
+		_export.bind(worker, session.tree, path, int(levels.value), pictures.button_pressed),
 		_on_exported.bind(worker, path),
 		worker
 	)
@@ -93,6 +94,14 @@ func _build() -> void:
 	collision.tooltip_text = "Adds a body along trunk and stout branches, as the node has it."
 	collision.button_pressed = true
 	body.add_child(collision)
+	pictures = CheckBox.new()
+	pictures.text = "GLB's pictures beside it"
+	pictures.tooltip_text = (
+		"Puts the pictures of a GLB into a folder beside it, from where programs share them."
+		+ " Otherwise they are inside of it."
+	)
+	pictures.button_pressed = true
+	body.add_child(pictures)
 	bake = Widgets.button(
 		"Bake to scene…",
 		"Writes a plain scene with the tree's meshes and materials. It needs no addon.",
@@ -179,7 +188,7 @@ static func _write_meshes(
 	var written: Dictionary[String, Error] = {}
 	var made: Array[ArrayMesh] = baker.make_meshes(tree, parts)
 	for level: int in made.size():
-		var each: String = "%s_level%d.%s" % [path.get_basename(), level, path.get_extension()]
+		var each: String = "%s_LOD%d.%s" % [path.get_basename(), level, path.get_extension()]
 		written[each] = ResourceSaver.save(made[level], each, ResourceSaver.FLAG_COMPRESS)
 	return written
 
@@ -194,9 +203,10 @@ static func _export(
 	worker: TreeReconstructor,
 	tree: TreeReconstruction,
 	path: String,
-	model_levels: int
+	model_levels: int,
+	pictures_beside: bool
 ) -> Error:
-	return worker.export_file(tree, path, model_levels)
+	return worker.export_file(tree, path, model_levels, pictures_beside)
 
 
 func _on_exported(

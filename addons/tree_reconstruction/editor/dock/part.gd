@@ -15,6 +15,8 @@ var _host: Host
 var _dock: Dock
 var _session: Session
 var _drops: Array[TwigDrop] = []
+# Whether the dock stood in front of the inspector when the last tree was let go.
+var _was_in_front: bool = false
 
 
 func enter(plugin: EditorPlugin, session: Session) -> void:
@@ -48,10 +50,41 @@ func exit() -> void:
 	_plugin = null
 
 
-# The first tree of a project shows where the dock is; from then on the user decides.
+# The first tree of a project shows where the dock is; from then on the user decides. Of whatever
+# else is selected it knows nothing: where it stands in front of the inspector, that comes back
+# then, and the dock with the next tree.
 func _on_node_changed() -> void:
 	var settings: EditorSettings = EditorInterface.get_editor_settings()
-	if _session.node == null or settings.get_project_metadata("tree_reconstruction", _SEEN, false):
+	if _session.node == null:
+		_step_back.call_deferred()
 		return
-	settings.set_project_metadata("tree_reconstruction", _SEEN, true)
-	_host.make_visible()
+	if not settings.get_project_metadata("tree_reconstruction", _SEEN, false):
+		settings.set_project_metadata("tree_reconstruction", _SEEN, true)
+		_host.make_visible()
+	elif _was_in_front:
+		_bring_to_front(_host)
+	_was_in_front = false
+
+
+# Once the editor has taken up what was selected instead.
+func _step_back() -> void:
+	if _session == null or _session.node != null:
+		return
+	var inspected: Object = EditorInterface.get_inspector().get_edited_object()
+	if inspected == null or not _host.is_visible_in_tree():
+		return
+	_was_in_front = _bring_to_front(EditorInterface.get_inspector())
+
+
+# Turns to the tab that a control is in, if it is one of those that the dock is among.
+func _bring_to_front(control: Control) -> bool:
+	var tabs: TabContainer = _host.get_parent() as TabContainer
+	if tabs == null or not tabs.is_ancestor_of(control):
+		return false
+	while control.get_parent() != tabs:
+		control = control.get_parent() as Control
+	var tab: int = tabs.get_tab_idx_from_control(control)
+	if tab < 0 or tab == tabs.current_tab:
+		return false
+	tabs.current_tab = tab
+	return true

@@ -2,7 +2,11 @@
 extends EditorContextMenuPlugin
 ## 'Add Tree to Scene' in the FileSystem dock's menu of scans and trees.
 
+## A tree was put into the scene, where there was room for it.
+signal placed(node: TreeInstance3D)
+
 const SceneAdder: GDScript = preload("./scene_adder.gd")
+const FreePlace: GDScript = preload("./free_place.gd")
 
 const _ICON: String = "res://addons/tree_reconstruction/icons/TreeInstance3D.svg"
 
@@ -20,4 +24,7 @@ func _popup_menu(paths: PackedStringArray) -> void:
 
 
 func _add(paths: PackedStringArray) -> void:
-	adder.add(SceneAdder.load_trees(adder.resolved(paths)), SceneAdder.place_in_view())
+	var trees: Array[TreeReconstruction] = SceneAdder.load_trees(adder.resolved(paths))
+	var nodes: Array[TreeInstance3D] = adder.add(trees, FreePlace.in_view(trees))
+	if not nodes.is_empty():
+		placed.emit(nodes[0])

@@ -44,9 +44,11 @@ func enter(plugin: EditorPlugin, session: RefCounted) -> void:
 	var domain: StringName = get_translation_domain()
 	adder = SceneAdder.new(plugin.get_undo_redo())
 	adder.set_translation_domain(domain)
+	adder.added.connect(session.view.show_whole.unbind(1))
 	_menu = ContextMenu.new()
 	_menu.set_translation_domain(domain)
 	_menu.adder = adder
+	_menu.placed.connect(session.view.want)
 	plugin.add_context_menu_plugin(EditorContextMenuPlugin.CONTEXT_SLOT_FILESYSTEM, _menu)
 	for i: int in _VIEWPORTS:
 		_add_area(EditorInterface.get_editor_viewport_3d(i))

@@ -2,6 +2,9 @@
 extends RefCounted
 ## Adds trees to the scene that is edited: one step of its undo history, wherever they come from.
 
+## Trees were put into the scene, and are selected.
+signal added(nodes: Array[TreeInstance3D])
+
 const ScanFiles: GDScript = preload("./scan_files.gd")
 
 # How far away the view may look at the ground, in metres.
@@ -103,6 +106,7 @@ func add(trees: Array[TreeReconstruction], place: Vector3) -> Array[TreeInstance
 	selection.clear()
 	for node: TreeInstance3D in nodes:
 		selection.add_node(node)
+	added.emit(nodes)
 	return nodes
 
 

@@ -49,13 +49,13 @@ func make_settings() -> Control:
 	_sliders = {
 		&"internode":
 		strip.add_number(
-			tr("Density (per m)"),
-			tr("How many leaves stand on a metre of twig."),
-			2.0,
-			200.0,
+			tr("Distance (m)"),
+			tr("How far leaves stand apart along a twig: less makes the crown denser."),
+			0.005,
 			0.5,
-			20.0,
-			_on_density_changed
+			0.005,
+			0.05,
+			_on_value_changed.bind(&"internode")
 		),
 		&"leaf_size":
 		strip.add_number(
@@ -128,7 +128,7 @@ func set_rule(property: StringName, value: Variant) -> void:
 func _title_of(property: StringName) -> String:
 	match property:
 		&"internode":
-			return tr("Leaf density")
+			return tr("Distance of the leaves")
 		&"leaf_size":
 			return tr("Leaf size")
 		&"season":
@@ -149,10 +149,7 @@ func _show_values() -> void:
 	var names: PackedStringArray = TreeReconstruction.get_leaf_preset_names()
 	(_presets as OptionButton).select(names.find(rule.look))
 	for property: StringName in _sliders:
-		var value: float = rule.get(property)
-		if property == &"internode":
-			value = 1.0 / maxf(value, 0.001)
-		(_sliders[property] as Range).value = value
+		(_sliders[property] as Range).value = rule.get(property)
 	_showing = false
 
 
@@ -165,10 +162,6 @@ func _titles_of_presets() -> PackedStringArray:
 
 func _on_preset_chosen(index: int) -> void:
 	choose_preset(TreeReconstruction.get_leaf_preset_names()[index])
-
-
-func _on_density_changed(value: float) -> void:
-	_on_value_changed(1.0 / value, &"internode")
 
 
 func _on_value_changed(value: Variant, property: StringName) -> void:

@@ -3,20 +3,15 @@ extends "tool.gd"
 ## Selects nodes: by a click, with all that grows from them by a double click, by a box.
 ##
 ## A press on nothing may become a box or be a click on something else of the scene. So it waits:
-## where the mouse does not move, the editor gets the click when the button is let go.
+## where the mouse does not move, the editor gets the click when the button is let go; unless it is
+## so near to wood that it was meant for that.
 
 const NO_NODE: int = TreeReconstruction.NO_NODE
 # In pixels at the editor's scale of 1.
 const _DRAGGED: float = 6.0
-# How far the arrows and rings of the editor's own gizmo reach from the node's origin, and in what
-# height of a viewport they begin to shrink.
-const _ARROWS: float = 115.0
-const _LOW: float = 400.0
 
 ## Called with the events of a click that was not for the tree, to hand it to the editor.
 var give_back: Callable
-## Tells whether the editor shows its own arrows and rings at the node's origin.
-var are_arrows_shown: Callable
 
 var _pressed: InputEventMouseButton
 var _camera: Camera3D
@@ -88,7 +83,7 @@ func _press(camera: Camera3D, event: InputEventMouseButton) -> bool:
 		return false
 	var id: int = session.picker.pick(camera, event.position)
 	if id == NO_NODE:
-		if _is_on_arrows(camera, event.position):
+		if session.picker.is_on_arrows(camera, event.position):
 			return false
 		_pressed = event
 		_camera = camera
@@ -126,6 +121,9 @@ func _release(event: InputEventMouseButton) -> bool:
 	_forget()
 	if boxing:
 		session.select(session.picker.pick_rect(camera, box), _how(event))
+	elif session.picker.is_near(camera, pressed.position):
+		# What is selected stays: the click was meant for wood.
+		session.say(tr("There is no wood right there. Click a little nearer to it."))
 	elif give_back.is_valid():
 		give_back.call(pressed, event)
 	return true
@@ -146,13 +144,3 @@ func _how(event: InputEventMouseButton) -> int:
 
 func _adds(event: InputEventMouseButton) -> bool:
 	return event.shift_pressed or event.is_command_or_control_pressed()
-
-
-# Whether a press is for the arrows and rings by which the editor moves and turns the whole node.
-func _is_on_arrows(camera: Camera3D, position: Vector2) -> bool:
-	if are_arrows_shown.is_valid() and not are_arrows_shown.call():
-		return false
-	var foot: Vector2 = session.picker.project_place(camera, Vector3.ZERO)
-	# They shrink in low viewports.
-	var low: float = minf(session.picker.get_size(camera).y / _LOW, 1.0)
-	return foot.distance_to(position) <= _ARROWS * session.picker.get_scale() * low

@@ -71,7 +71,10 @@ func _run_other(action: StringName, camera: Camera3D) -> void:
 			screenshot.take(camera)
 		&"view_selection":
 			turntable.stop()
-			views.bring(_session.get_box_of(_session.selection), camera)
+			if _session.selection.is_empty() or not _session.view.editing:
+				views.frame(camera)
+			else:
+				views.bring(_session.get_box_of(_session.selection), camera)
 		&"select_all":
 			_session.select_by("all")
 		&"grow_selection":

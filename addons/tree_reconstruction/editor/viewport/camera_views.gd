@@ -86,8 +86,31 @@ func look(action: StringName, camera: Camera3D) -> void:
 	_choose(menu, _ITEMS[action])
 	if action == &"view_home":
 		_turn_home(menu, camera)
-	var orthogonal: bool = camera.projection == Camera3D.PROJECTION_ORTHOGONAL
-	_lead(menu, camera, _get_box().get_center(), _distance_for(action, camera, orthogonal))
+	var angles: Vector2 = _ANGLES[action]
+	var turned: Basis = Basis.from_euler(Vector3(deg_to_rad(angles.x), deg_to_rad(angles.y), 0.0))
+	_lead(menu, camera, _get_box().get_center(), _distance_for(turned, camera))
+
+
+## Shows the whole tree, with its leaves, from where the camera looks now.
+func frame(camera: Camera3D) -> void:
+	var menu: PopupMenu = _get_menu(camera)
+	if menu == null:
+		return
+	var turned: Basis = camera.global_basis.orthonormalized()
+	_lead(menu, camera, _get_box().get_center(), _distance_for(turned, camera))
+
+
+## Whether the whole tree is inside of the picture, and large enough to be looked at.
+func is_framed(camera: Camera3D) -> bool:
+	var size: Vector2 = _session.picker.call(&"get_size", camera)
+	var seen: Rect2 = Rect2()
+	for corner: int in 8:
+		var place: Vector3 = _session.tree.get_aabb().get_endpoint(corner)
+		var at: Vector2 = _session.picker.call(&"project_place", camera, place)
+		if not at.is_finite() or not Rect2(Vector2.ZERO, size).has_point(at):
+			return false
+		seen = Rect2(at, Vector2.ZERO) if corner == 0 else seen.expand(at)
+	return maxf(seen.size.x / size.x, seen.size.y / size.y) > _LEAST_SHARE
 
 
 ## Brings a part of the tree into view, from where the camera looks now: what is in [param box], in
@@ -174,23 +197,36 @@ func _lead(menu: PopupMenu, camera: Camera3D, target: Vector3, distance: float) 
 	_left = _PATIENCE
 
 
-# How far off its centre the camera must be for the whole tree to be seen.
-func _distance_for(action: StringName, camera: Camera3D, orthogonal: bool) -> float:
-	var angles: Vector2 = _ANGLES[action]
-	var turned: Basis = Basis.from_euler(Vector3(deg_to_rad(angles.x), deg_to_rad(angles.y), 0.0))
+# How far off its centre the camera must be for the whole tree to be seen, which it looks at from
+# there turned so.
+func _distance_for(turned: Basis, camera: Camera3D) -> float:
+	var orthogonal: bool = camera.projection == Camera3D.PROJECTION_ORTHOGONAL
 	var to_camera: Transform3D = Transform3D(turned, _get_box().get_center()).affine_inverse()
 	to_camera *= _session.node.global_transform
 	var shape: Vector2 = camera.get_viewport().get_visible_rect().size
 	var up: float = tan(deg_to_rad(camera.fov) * 0.5)
 	var aside: float = up * shape.x / shape.y
+	var leaf: float = _get_leaf_length()
 	var places: PackedVector3Array = _session.tree.get_positions()
 	var distance: float = 0.1
 	@warning_ignore("integer_division")
 	for i: int in range(0, places.size(), maxi(1, places.size() / _PLACES)):
 		var place: Vector3 = to_camera * places[i]
-		var needed: float = maxf(absf(place.y) / up, absf(place.x) / aside) * _MARGIN
+		var needed: float = maxf((absf(place.y) + leaf) / up, (absf(place.x) + leaf) / aside)
+		needed *= _MARGIN
 		distance = maxf(distance, needed if orthogonal else needed + place.z)
 	return distance
+
+
+# How far leaves reach beyond the wood, in the scene's metres.
+func _get_leaf_length() -> float:
+	if not _session.view.leaves or not _session.node.leaves:
+		return 0.0
+	var tree: TreeReconstruction = _session.tree
+	var rule: LeafRule = tree.leaf_rule
+	var length: float = tree.leaf_size if rule == null else rule.leaf_size
+	var enabled: bool = tree.leaves_enabled if rule == null else rule.enabled
+	return length * _session.node.global_basis.get_scale().y if enabled else 0.0
 
 
 # The tree's box in the scene.

@@ -159,12 +159,13 @@ func _make_input() -> void:
 	_actions = Actions.new(_session)
 	_actions.views.set_sender(_send)
 	_router.asked.connect(_on_asked)
+	_router.missed.connect(_give_back)
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.connect(_on_tool_wants)
 	var select: SelectTool = _session.tools.get(&"select") as SelectTool
 	if select != null:
 		select.give_back = _give_back
-		select.are_arrows_shown = _transform_tools.are_shown
+	_picker.set(&"are_arrows_shown", _transform_tools.are_shown)
 	if _session.tool == null:
 		_session.choose(&"select")
 
@@ -319,19 +320,23 @@ func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) ->
 		# nuisance, so that only what was selected of it is let go.
 		selected.add_node(node)
 		EditorInterface.edit_node(node)
-		_session.clear_selection()
+		if _session.tool == _session.tools.get(&"select"):
+			_session.clear_selection()
 
 
 # A tree that is edited in a new scene is shown wholly; elsewhere the camera stays where the user
-# has left it.
+# has left it, unless a tree was just added that is not seen from there.
 func _look_home() -> void:
 	var camera: Camera3D = EditorInterface.get_editor_viewport_3d(0).get_camera_3d()
 	if _session.tree == null or camera == null or not camera.is_visible_in_tree():
 		_home_due = false
 	elif _surfaces.has(camera.get_viewport()):
 		_home_due = false
+		var added: bool = _session.view.take_wanted(_session.node)
 		if Actions.CameraViews.is_untouched(camera):
 			_actions.views.look(&"view_home", camera)
+		elif added and not _actions.views.is_framed(camera):
+			_actions.views.frame(camera)
 
 
 # Sends events to the editor, past our own keys and tools.

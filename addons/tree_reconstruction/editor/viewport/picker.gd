@@ -9,6 +9,15 @@ const Session: GDScript = preload("../session.gd")
 const NO_NODE: int = TreeReconstruction.NO_NODE
 ## How far off a click may be, in pixels at the editor's scale of 1.
 const REACH: float = 8.0
+## Within how many pixels of wood a click beside it was meant for it.
+const NEAR: float = 20.0
+# How far the arrows and rings of the editor's own gizmo reach from the node's origin, and in what
+# height of a viewport they begin to shrink.
+const _ARROWS: float = 115.0
+const _LOW: float = 400.0
+
+## Tells whether the editor shows its own arrows and rings at the node's origin.
+var are_arrows_shown: Callable
 
 var _session: Session
 
@@ -24,6 +33,26 @@ func pick(camera: Camera3D, position: Vector2) -> int:
 	return _session.tree.pick_node(
 		get_to_screen(camera), get_size(camera), position, REACH * get_scale()
 	)
+
+
+## Whether a click at [param position] is beside wood by so little that it was hardly meant for
+## what is behind.
+func is_near(camera: Camera3D, position: Vector2) -> bool:
+	if _session.tree == null or camera == null:
+		return false
+	var reach: float = NEAR * get_scale()
+	var id: int = _session.tree.pick_node(get_to_screen(camera), get_size(camera), position, reach)
+	return id != NO_NODE
+
+
+## Whether a press is for the arrows and rings by which the editor moves and turns the whole node.
+func is_on_arrows(camera: Camera3D, position: Vector2) -> bool:
+	if are_arrows_shown.is_valid() and not are_arrows_shown.call():
+		return false
+	var foot: Vector2 = project_place(camera, Vector3.ZERO)
+	# They shrink in low viewports.
+	var low: float = minf(get_size(camera).y / _LOW, 1.0)
+	return foot.distance_to(position) <= _ARROWS * get_scale() * low
 
 
 ## The nodes that are seen in a rectangle.
