@@ -244,6 +244,11 @@ func test_a_forest_of_any_numbers_ends() -> void:
 	await _grown(forest)
 	check_equal(forest.get_tree_count(), 2, "trees")
 	check_equal(forest.get_tree_transform(3).origin.x, 6.0, "where the last one stands")
+	# A forest that is tweened up from nothing.
+	forest.scale = Vector3.ZERO
+	forest.transforms = [Transform3D()]
+	await _grown(forest)
+	check_equal(forest.get_tree_count(), 1, "trees of a flat forest")
 	_clear()
 
 

@@ -27,7 +27,9 @@ class Slot:
 	func step(delta: float) -> void:
 		var wanted: float = 0.0
 		if pusher != null:
-			place = pusher.global_position
+			# A place that is none would push all trees of the world there.
+			if pusher.global_position.is_finite():
+				place = pusher.global_position
 			wanted = pusher.radius * pusher.strength if pusher.is_visible_in_tree() else 0.0
 		if wanted > size:
 			speed = 0.0

@@ -24,6 +24,7 @@ enum CollisionKind {
 	TRUNK_ONLY,
 }
 
+const Checked := preload("checked.gd")
 const Collision := preload("tree_collision.gd")
 const Felling := preload("tree_felling.gd")
 const BuildJob := preload("tree_build_job.gd")
@@ -71,7 +72,7 @@ static var threaded: bool = true
 ## each further one has about a quarter of the triangles and fewer, larger leaves.
 @export_range(-1, 4) var lod: int = -1:
 	set(value):
-		lod = value
+		lod = clampi(value, -1, Levels.MOST - 1)
 		rebuild()
 
 ## Whether the tree bears its leaves.
@@ -91,7 +92,7 @@ static var threaded: bool = true
 ## How many levels take turns by distance, where [member lod] is -1. The first is this node's mesh.
 @export_range(1, 5) var levels: int = Levels.COUNT:
 	set(value):
-		levels = value
+		levels = clampi(value, 1, Levels.MOST)
 		_levels.begin()
 
 ## The distances in metres from which on the next level is shown, one less than there are levels.
@@ -111,7 +112,7 @@ static var threaded: bool = true
 ## The level that casts the shadow at all distances, so that it doesn't change with the others.
 @export_range(0, 4) var shadow_level: int = 1:
 	set(value):
-		shadow_level = value
+		shadow_level = clampi(value, 0, Levels.MOST - 1)
 		_levels.begin()
 
 ## What is shown beyond the last of several levels: see [TreeImpostorBaker].
@@ -150,13 +151,13 @@ static var threaded: bool = true
 ## How many shapes the body has at most. They go where they are worth most.
 @export_range(1, 256) var collision_shapes: int = 32:
 	set(value):
-		collision_shapes = value
+		collision_shapes = clampi(value, 1, 256)
 		rebuild()
 
 ## Branches thinner than this, in metres from their middle, let everything through.
 @export_range(0.0, 1.0, 0.005, "or_greater", "suffix:m") var collision_minimum_radius: float = 0.03:
 	set(value):
-		collision_minimum_radius = value
+		collision_minimum_radius = Checked.number(value, 0.0, 1e3, collision_minimum_radius)
 		rebuild()
 
 ## The layers that the body is in.
@@ -264,7 +265,7 @@ func get_tree_height() -> float:
 
 ## The most triangles that a level may have, or 0.
 func get_level_budget(level: int) -> int:
-	return maxi(level_budgets[level], 0) if level < level_budgets.size() else 0
+	return maxi(level_budgets[level], 0) if level in range(level_budgets.size()) else 0
 
 
 ## The milliseconds that the bark took when it was built last.

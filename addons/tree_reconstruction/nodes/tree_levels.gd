@@ -27,8 +27,8 @@ static func distances(
 	var found: PackedFloat32Array = []
 	for level: int in clampi(count, 1, MOST + 1) - 1:
 		var wanted: float = _SWITCH[level] * maxf(height, _LEAST_HEIGHT)
-		if level < chosen.size():
-			wanted = chosen[level]
+		if level < chosen.size() and not is_nan(chosen[level]):
+			wanted = minf(chosen[level], 1e6)
 		# Each level has its turn, however short.
 		found.append(maxf(wanted, found[level - 1] if level > 0 else 0.0))
 	return found

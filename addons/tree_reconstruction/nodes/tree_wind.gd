@@ -34,6 +34,7 @@ enum Channel {
 	MOTION,  ## How far it has moved now: red, green and blue are 10 cm in x, y and z.
 }
 
+const Checked := preload("checked.gd")
 const Channels: GDScript = preload("wind_channels.gd")
 const _SHADERS: String = "res://addons/tree_reconstruction/shaders/"
 # After which the engine's TIME begins anew.
@@ -61,27 +62,28 @@ static var _winds: Array[TreeWind] = []
 ## How hard it blows: 0 is calm, 0.4 a breeze, 1 a storm.
 @export_range(0.0, 1.25, 0.01) var strength: float = 0.4:
 	set(value):
-		strength = value
+		strength = Checked.number(value, 0.0, 100.0, strength)
 		_write()
 
 ## Where it blows to, in world space (x, z).
 @export var direction: Vector2 = Vector2(1.0, 0.35):
 	set(value):
-		direction = value
+		direction = Checked.point(value, direction)
 		_write()
 
 ## How fast gusts and swings pass: 1 is natural.
 @export_range(0.0, 4.0, 0.01) var speed: float = 1.0:
 	set(value):
-		if speed != value:
-			_keep_clock(value)
-		speed = value
+		var faster: float = Checked.number(value, 0.0, 100.0, speed)
+		if speed != faster:
+			_keep_clock(faster)
+		speed = faster
 		_write()
 
 ## 0 is an even wind, 1 one of lulls and gusts.
 @export_range(0.0, 1.0, 0.01) var gustiness: float = 0.8:
 	set(value):
-		gustiness = value
+		gustiness = Checked.number(value, 0.0, 1.0, gustiness)
 		_write()
 
 ## Follows the wind of this [Area3D] ([member Area3D.wind_force_magnitude] and [member
@@ -96,7 +98,7 @@ static var _winds: Array[TreeWind] = []
 ## Which [member Area3D.wind_force_magnitude] is a strength of 1.
 @export_range(0.1, 100.0, 0.1, "or_greater") var area_storm: float = 10.0:
 	set(value):
-		area_storm = value
+		area_storm = Checked.number(value, 0.001, 1e6, area_storm)
 		_write()
 
 # The seconds by which the shaders' clock is ahead of TIME times the speed.
@@ -107,6 +109,9 @@ var _written: Dictionary = {}
 ## Colours a tree by what its shaders read, for looking for mistakes; nothing of it is saved.
 ## [param instance]: a [TreeInstance3D], whose children are coloured too.
 static func show_channel(instance: GeometryInstance3D, channel: Channel) -> void:
+	if instance == null or channel < Channel.NONE or channel > Channel.MOTION:
+		push_error("Give show_channel() a TreeInstance3D and one of TreeWind's channels.")
+		return
 	Channels.show(instance, channel)
 
 

@@ -462,7 +462,7 @@ func _find_viewer(camera: Node3D) -> Vector3:
 		from = _node.get_viewport().get_camera_3d()
 	if from == null or not from.is_inside_tree():
 		return Vector3.ZERO
-	return _node.global_transform.affine_inverse() * from.global_position
+	return Stand.into(_node.global_transform) * from.global_position
 
 
 # Around what trees have bodies.
@@ -470,7 +470,7 @@ func _find_bodied(viewer: Vector3) -> PackedVector3Array:
 	if _node.collision_group.is_empty():
 		return [viewer]
 	var found: PackedVector3Array = []
-	var here: Transform3D = _node.global_transform.affine_inverse()
+	var here: Transform3D = Stand.into(_node.global_transform)
 	for node: Node in _node.get_tree().get_nodes_in_group(_node.collision_group):
 		if node is Node3D:
 			found.append(here * (node as Node3D).global_position)

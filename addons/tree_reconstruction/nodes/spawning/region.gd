@@ -38,7 +38,7 @@ func read_scene(forest: Node3D, place: Node3D) -> void:
 	_space = forest.get_world_3d().direct_space_state
 	if not is_region(place):
 		return
-	var frame: Transform3D = _frame.affine_inverse() * place.global_transform
+	var frame: Transform3D = Stand.into(_frame) * place.global_transform
 	if place is MeshInstance3D:
 		scatter.corners = frame * (place as MeshInstance3D).mesh.get_faces()
 		return
@@ -128,7 +128,7 @@ func _cast(place: Vector3) -> void:
 	var hit: Dictionary = _space.intersect_ray(query)
 	if hit.is_empty():
 		return
-	var at: Vector3 = _frame.affine_inverse() * (hit["position"] as Vector3)
-	var normal: Vector3 = (_frame.basis.inverse() * (hit["normal"] as Vector3)).normalized()
+	var at: Vector3 = Stand.into(_frame) * (hit["position"] as Vector3)
+	var normal: Vector3 = (Stand.into(_frame).basis * (hit["normal"] as Vector3)).normalized()
 	if scatter.fits(at, normal):
 		stand.plant(at, normal)

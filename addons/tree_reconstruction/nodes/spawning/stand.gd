@@ -114,6 +114,11 @@ static func can_stand(frame: Transform3D) -> bool:
 	return frame.is_finite() and absf(frame.basis.determinant()) > 1e-9
 
 
+## From the world's frame to that of a forest that stands so; the world's own for one that can't.
+static func into(frame: Transform3D) -> Transform3D:
+	return frame.affine_inverse() if can_stand(frame) else Transform3D.IDENTITY
+
+
 ## Leaves an id out: no tree stands there.
 func skip() -> void:
 	buffer.resize(buffer.size() + FLOATS)
