@@ -10,7 +10,7 @@ func _shared_session(made: TreeReconstruction, others: int) -> Session:
 	for i: int in others:
 		_add_node(made)
 	_asked = []
-	session.ask_sharing = func(nodes: Array[Node], again: Callable) -> void:
+	session.consent.ask = func(nodes: Array[Node], again: Callable) -> void:
 		_asked.append([nodes, again])
 	return session
 
@@ -79,7 +79,7 @@ func test_who_agrees_is_asked_once_for_these_nodes() -> void:
 	var made: TreeReconstruction = grown_tree(3)
 	var session: Session = _shared_session(made, 1)
 	session.set_value("Leaves", made, &"leaf_size", 0.123)
-	session.agree_to_share()
+	session.consent.agree(session.tree, session.node)
 	_go_on()
 	check_near(made.leaf_size, 0.123, 1e-6, "the size of the leaves")
 	check_equal(session.tree, made, "the tree")

@@ -196,6 +196,19 @@ func get_other_scenes(tree: TreeReconstruction, node: Node) -> PackedStringArray
 	return paths
 
 
+## Whether other scenes than that of a node show the tree: [param node], or any that shows it. Its
+## steps then are no scene's.
+func is_in_other_scenes(tree: TreeReconstruction, node: Node = null) -> bool:
+	if not Engine.is_editor_hint() or not has_file(tree):
+		return false
+	if node == null:
+		var holders: Array[Node] = get_holders(tree)
+		if holders.is_empty():
+			return false
+		node = holders[0]
+	return not get_other_scenes(tree, node).is_empty()
+
+
 ## Steps of the tree go into the history of all scenes from now on.
 func note_outliving(tree: TreeReconstruction) -> void:
 	_outliving[tree.resource_path] = true

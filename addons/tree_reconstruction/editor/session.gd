@@ -30,6 +30,7 @@ const ScanData := preload("scan_data.gd")
 const Sentences := preload("translations/sentences.gd")
 const UndoStatus := preload("undo_status.gd")
 const ViewState := preload("view_state.gd")
+const Consent := preload("sharing/consent.gd")
 # What a reconstruction makes of a tree; all else is how it looks.
 const _MADE: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
 # So many branches that were picked are remembered.
@@ -52,17 +53,14 @@ var picker: RefCounted
 var scion: String = ""
 ## The L-strings that the Pick tool took last, the latest first.
 var picked: PackedStringArray = []
-## Asks what to change where other nodes show the edited tree, too: gets these nodes, and what to
-## call after [method make_unique] or [method agree_to_share]. Without it all of them change.
-var ask_sharing: Callable
+## What the user wants where other nodes show the edited tree, too.
+var consent: Consent
 
 var _undo_status: UndoStatus = UndoStatus.new()
 var _shown: TreeReconstruction
 var _tree_moved: bool = false
 # The drag under way.
 var _drag: Drag
-# By instance id of a tree: those of the nodes for all of which the user edits it.
-var _agreed: Dictionary[int, Array] = {}
 
 
 # What a drag did so far.
@@ -78,6 +76,7 @@ func _init(undo: Object) -> void:
 	history = History.new(undo)
 	# Methods, since functions made here would keep this session alive.
 	scan = ScanData.new(jobs, _warn)
+	consent = Consent.new(local_trees, _warn)
 	scan.changed.connect(_on_scan_changed)
 	view.changed.connect(_on_view_changed)
 
@@ -376,35 +375,13 @@ func make_unique() -> void:
 		say(tr("'%s' has a tree of its own now: %s.") % [node.name, own.resource_path])
 
 
-## Edits of the tree are meant for all nodes that show it.
-func agree_to_share() -> void:
-	if tree != null:
-		var ids: Array = [node.get_instance_id()]
-		for holder: Node in LocalTrees.get_holders(tree):
-			ids.append(holder.get_instance_id())
-		_agreed[tree.get_instance_id()] = ids
-
-
-## Whether other scenes than that of the edited node show the tree. Its steps then are no scene's.
-func is_shared_by_scenes(shared: TreeReconstruction) -> bool:
-	if not Engine.is_editor_hint() or not LocalTrees.has_file(shared):
-		return false
-	var holder: Node = node if shared == tree else null
-	if holder == null:
-		var holders: Array[Node] = LocalTrees.get_holders(shared)
-		if holders.is_empty():
-			return false
-		holder = holders[0]
-	return not local_trees.get_other_scenes(shared, holder).is_empty()
-
-
 ## Begins a step that changes a tree, [param edited], a copy of [param imported] or the same. Where
 ## other scenes show it, too, its steps are no scene's, but undone in whichever is shown.
 func begin_step(
 	title: String, edited: TreeReconstruction, imported: TreeReconstruction, merged: Array = []
 ) -> void:
 	var context: Object = node
-	if edited == imported and is_shared_by_scenes(edited):
+	if edited == imported and local_trees.is_in_other_scenes(edited, node):
 		context = edited
 		local_trees.note_outliving(edited)
 	history.begin(title, context, merged)
@@ -415,28 +392,9 @@ func begin_step(
 func _editable(again: Callable) -> TreeReconstruction:
 	var shown: TreeReconstruction = tree
 	if not LocalTrees.is_foreign(shown, node):
-		return shown if _is_settled(again) else null
+		return shown if consent.is_settled(shown, node, again) else null
 	node.reconstruction = local_trees.make_local(shown, node)
 	return node.reconstruction
-
-
-# Whether the user knows who else shows the tree.
-func _is_settled(again: Callable) -> bool:
-	if not ask_sharing.is_valid():
-		return true
-	var others: Array[Node] = LocalTrees.get_holders(tree)
-	others.erase(node)
-	var agreed: Array = _agreed.get(tree.get_instance_id(), [])
-	if others.any(func(other: Node) -> bool: return other.get_instance_id() not in agreed):
-		ask_sharing.call(others, again)
-		return false
-	if others.is_empty() and agreed.is_empty():
-		var scenes: PackedStringArray = local_trees.get_other_scenes(tree, node)
-		if not scenes.is_empty():
-			agree_to_share()
-			var names: String = ", ".join(scenes)
-			_warn(tr("The edited tree is also in other scenes and changes there, too: %s.") % names)
-	return true
 
 
 # The tree, and its rule, may be other ones now.

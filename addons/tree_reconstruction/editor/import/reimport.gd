@@ -125,7 +125,8 @@ func _update(
 	# It is saved with the scene.
 	_session.local_trees.watch(local)
 	_session.history.begin(
-		tr("Import Scan Again"), local if _session.is_shared_by_scenes(local) else node
+		tr("Import Scan Again"),
+		local if _session.local_trees.is_in_other_scenes(local, node) else node
 	)
 	_session.add_replacement(local, made)
 	_session.history.commit()

@@ -18,7 +18,7 @@ var _to_mark: Dictionary[String, bool] = {}
 func enter(plugin: EditorPlugin, session: Session) -> void:
 	_plugin = plugin
 	_session = session
-	_session.ask_sharing = ask
+	_session.consent.ask = ask
 	EditorInterface.get_resource_filesystem().filesystem_changed.connect(
 		_session.local_trees.scene_index.look_again
 	)
@@ -36,7 +36,7 @@ func exit() -> void:
 	EditorInterface.get_resource_filesystem().filesystem_changed.disconnect(
 		_session.local_trees.scene_index.look_again
 	)
-	_session.ask_sharing = Callable()
+	_session.consent.ask = Callable()
 	_close()
 	_session = null
 	_plugin = null
@@ -87,7 +87,7 @@ func _answer(is_unique: bool, again: Callable) -> void:
 	if is_unique:
 		_session.make_unique()
 	else:
-		_session.agree_to_share()
+		_session.consent.agree(_session.tree, _session.node)
 	if again.is_valid():
 		again.call()
 
@@ -103,7 +103,7 @@ func _close() -> void:
 func _on_trees_changed() -> void:
 	for path: String in _session.local_trees.get_unsaved():
 		var tree: TreeReconstruction = _session.local_trees.get_changed(path)
-		if not _session.is_shared_by_scenes(tree):
+		if not _session.local_trees.is_in_other_scenes(tree):
 			continue
 		for holder: Node in Session.LocalTrees.get_holders(tree):
 			_mark(holder.owner if holder.owner != null else holder)
@@ -135,7 +135,7 @@ func _mark_unseen(path: String) -> bool:
 func _on_scene_changed(scene: Node) -> void:
 	if scene != null and _to_mark.erase(scene.scene_file_path):
 		for path: String in _session.local_trees.get_unsaved_of(scene):
-			if _session.is_shared_by_scenes(_session.local_trees.get_changed(path)):
+			if _session.local_trees.is_in_other_scenes(_session.local_trees.get_changed(path)):
 				EditorInterface.mark_scene_as_unsaved()
 
 
