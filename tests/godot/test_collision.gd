@@ -442,3 +442,43 @@ func test_a_sapling_collides() -> void:
 	)
 	check_equal(forest.find_tree_of(found as Node), 0, "which tree of the forest was hit")
 	forest.free()
+
+
+# A crown of twigs that are too thin for shapes of their own lies on the ground, not in it.
+func test_thin_wood_does_not_sink() -> void:
+	var nodes: Array[Array] = [[-1, 0.0, 0.0, 0.0, 0.12, NODE_TRUNK | NODE_MEASURED]]
+	for i: int in range(1, 7):
+		nodes.append([i - 1, 0.0, 0.7 * i, 0.0, 0.12 - 0.01 * i, NODE_TRUNK])
+	for i: int in range(3, 7):
+		for side: int in 6:
+			var way: Vector3 = Vector3(cos(TAU * side / 6.0 + i), 0.5, sin(TAU * side / 6.0 + i))
+			var from: int = i
+			for step: int in range(1, 5):
+				var at: Vector3 = Vector3(0.0, 0.7 * i, 0.0) + 0.35 * step * way
+				nodes.append([from, at.x, at.y, at.z, 0.02 - 0.003 * step, 0])
+				from = nodes.size() - 1
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = skeleton(nodes)
+	var ground: StaticBody3D = _ground()
+	for kind: TreeInstance3D.CollisionKind in [0, 1]:
+		var instance: TreeInstance3D = await _instance(made)
+		instance.collision_kind = kind
+		await _settle(instance)
+		var body: RigidBody3D = instance.fell(1)
+		var fallen: TreeInstance3D = body.get_child(0)
+		var start: Vector3 = body.global_position
+		await _simulate(0.1)
+		check(body.global_position.distance_to(start) < 0.3, "It was thrown off.")
+		body.linear_velocity = Vector3(1.2, 0, 0.4)
+		await _simulate(6.0)
+		check(body.global_position.distance_to(start) < 6.0, "It went %s." % body.global_position)
+		check(body.global_basis.y.length() > 0.0 and body.global_position.y < 2.0, "It stands.")
+		var deepest: float = INF
+		for id: int in fallen.reconstruction.get_node_ids():
+			deepest = minf(
+				deepest, (fallen.global_transform * fallen.reconstruction.get_node_position(id)).y
+			)
+		check(deepest > -0.1, "Kind %d: twigs are %s m in the ground." % [kind, -deepest])
+		body.free()
+		instance.free()
+	ground.free()

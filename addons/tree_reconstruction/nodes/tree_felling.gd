@@ -2,6 +2,7 @@
 extends RefCounted
 ## Cuts a tree in two, and gives what comes off the body of a thing that falls.
 
+const BoughHulls := preload("bough_hulls.gd")
 const Collision := preload("tree_collision.gd")
 
 # Properties that the fallen piece takes over.
@@ -58,7 +59,13 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 	var place: Transform3D = tree.transform
 	if holder != null:
 		place = holder.transform * tree.transform
-	var parts: Array[Dictionary] = _parts_of(fallen)
+	# What collides of the stump must not throw the piece off.
+	var rest: Array[Dictionary] = []
+	if tree.collision or stump_body or holder != null:
+		rest = Collision.gather(
+			stump, tree.collision_kind, tree.collision_shapes, tree.collision_minimum_radius
+		)
+	var parts: Array[Dictionary] = _parts_of(fallen, rest)
 	_mount(body, fallen, place, parts, density)
 	if holder != null:
 		_share_motion(holder, body)
@@ -142,7 +149,7 @@ static func _lying(skeleton: Dictionary) -> Dictionary:
 
 
 # However thin it is, it has a shape: else it would fall through the ground.
-static func _parts_of(tree: TreeInstance3D) -> Array[Dictionary]:
+static func _parts_of(tree: TreeInstance3D, apart: Array[Dictionary] = []) -> Array[Dictionary]:
 	var of: TreeReconstruction = tree.reconstruction
 	var parts: Array[Dictionary] = Collision.gather(
 		of, tree.collision_kind, tree.collision_shapes, tree.collision_minimum_radius
@@ -151,6 +158,8 @@ static func _parts_of(tree: TreeInstance3D) -> Array[Dictionary]:
 		parts = Collision.gather(of, tree.collision_kind, 1, 0.0)
 	if tree.fallen:
 		_shorten(parts, of.get_node_position(of.get_root()))
+		if tree.collision_kind != Collision.Kind.TRUNK_ONLY:
+			parts.append_array(BoughHulls.gather(of, apart))
 	return parts
 
 
