@@ -71,6 +71,12 @@ func test_an_exported_model_is_as_bright_as_the_tree() -> void:
 	var state: GLTFState = GLTFState.new()
 	check_equal(document.append_from_file(path, state), OK, "reading it")
 	_open_stage(SIZE)
+	# A high sun and little else: what is turned away from it is black.
+	for node: Node in _viewport.get_children():
+		if node is WorldEnvironment:
+			(node as WorldEnvironment).environment.ambient_light_energy = 0.05
+		elif node is DirectionalLight3D:
+			(node as DirectionalLight3D).rotation_degrees = Vector3(-60, 30, 0)
 	_look_at_all(made)
 	var middle: Vector3 = made.get_aabb().get_center()
 	var baked: Node3D = _baked(made, false, Vector3.ZERO)
@@ -81,36 +87,47 @@ func test_an_exported_model_is_as_bright_as_the_tree() -> void:
 		_camera.look_at(middle)
 		model.visible = false
 		baked.visible = true
-		var wanted: Vector2 = _brightness(await _picture())
+		var wanted: PackedFloat32Array = _lights(await _picture())
 		baked.visible = false
 		model.visible = true
-		var given: Vector2 = _brightness(await _picture())
-		check(wanted.x > 0.05 and wanted.y > 0.05, "There is no tree in the picture.")
-		for half: int in 2:
+		var given: PackedFloat32Array = _lights(await _picture())
+		check(wanted.size() > 2000 and given.size() > 2000, "There is no tree in the picture.")
+		# The top of the crown, and all of it.
+		for share: float in [0.25, 1.0]:
+			var part: PackedFloat32Array = wanted.slice(0, roundi(share * wanted.size()))
+			var other: PackedFloat32Array = given.slice(0, roundi(share * given.size()))
+			var mean: float = _mean(part)
 			check(
-				given[half] > 0.6 * wanted[half] and given[half] < 1.7 * wanted[half],
-				(
-					"From height %.1f half %d has %.3f of light, the tree %.3f."
-					% [height, half, given[half], wanted[half]]
-				)
+				absf(_mean(other) / mean - 1.0) < 0.35,
+				"From height %.1f it has %.3f of light, not %.3f." % [height, _mean(other), mean]
 			)
+			if share < 1.0:
+				var dark: float = _below(other, 0.4 * mean)
+				check(dark < 0.33, "From height %.1f %.2f of the top is dark." % [height, dark])
 	_viewport.free()
 
 
-# How bright the upper and the lower half of what is shown of the tree are.
-static func _brightness(picture: Image) -> Vector2:
-	var rows: PackedInt32Array = []
-	var light: PackedFloat32Array = []
+# How bright the pixels are that show the tree, from top to bottom.
+static func _lights(picture: Image) -> PackedFloat32Array:
+	var lights: PackedFloat32Array = []
 	for y: int in picture.get_height():
 		for x: int in picture.get_width():
 			var pixel: Color = picture.get_pixel(x, y)
 			if _shows_tree(pixel):
-				rows.append(y)
-				light.append(pixel.get_luminance())
-	var sums: Vector2 = Vector2.ZERO
-	@warning_ignore("integer_division")
-	var half: int = rows.size() / 2
-	for i: int in rows.size():
-		# They come from top to bottom.
-		sums[0 if i < half else 1] += light[i]
-	return sums / maxf(half, 1.0)
+				lights.append(pixel.get_luminance())
+	return lights
+
+
+static func _mean(values: PackedFloat32Array) -> float:
+	var sum: float = 0.0
+	for value: float in values:
+		sum += value
+	return sum / maxf(values.size(), 1.0)
+
+
+# The share of values that are less.
+static func _below(values: PackedFloat32Array, least: float) -> float:
+	var count: int = 0
+	for value: float in values:
+		count += int(value < least)
+	return count / maxf(values.size(), 1.0)
