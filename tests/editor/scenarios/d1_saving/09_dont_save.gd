@@ -81,31 +81,33 @@ func _quit() -> void:
 # By the Import dock.
 func _import_with(preset: String) -> bool:
 	await click_file(SCAN)
-	var tabs: TabBar = null
-	var wanted: int = -1
-	for bar: Node in EditorInterface.get_base_control().find_children("*", "TabBar", true, false):
-		for i: int in (bar as TabBar).tab_count:
-			if (
-				(bar as TabBar).get_tab_title(i) == "Import"
-				and (bar as TabBar).is_visible_in_tree()
-			):
-				tabs = bar as TabBar
-				wanted = i
-	if not check(tabs != null, "There is no Import dock."):
+	if not await _show_dock("Import"):
 		return false
-	await user.click(tabs.get_screen_transform() * tabs.get_tab_rect(wanted).get_center())
-	var button: Callable = func(text: String) -> Button:
-		return find_control("Button", text) as Button
 	if not await until(
-		func() -> bool: return button.call("Reimport") != null, "the Import dock is shown"
+		func() -> bool: return find_control("Button", "Reimport") != null, "its options are shown"
 	):
 		return false
-	await press(button.call("Preset"))
+	await press(find_control("Button", "Preset"))
 	if not await choose(preset):
 		return false
 	await picture("preset")
-	await press(button.call("Reimport"))
-	return true
+	await press(find_control("Button", "Reimport"))
+	return await _show_dock("Scene")
+
+
+# Clicks on the tab of a dock.
+func _show_dock(dock: String) -> bool:
+	for node: Node in EditorInterface.get_base_control().find_children("*", "TabBar", true, false):
+		var bar: TabBar = node as TabBar
+		for i: int in bar.tab_count:
+			if bar.get_tab_title(i) == dock and bar.is_visible_in_tree():
+				# While it imports, a dialog takes the clicks.
+				for attempt: int in 10:
+					await user.click(bar.get_screen_transform() * bar.get_tab_rect(i).get_center())
+					await user.frames(10)
+					if bar.current_tab == i:
+						return true
+	return check(false, "The dock '%s' cannot be shown." % dock)
 
 
 # When this has come to its end: the editor ends, too.
