@@ -26,6 +26,13 @@ const int64_t kJoinedLeafFlags =
     (int64_t(Mesh::ARRAY_CUSTOM_RGBA_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM2_SHIFT) |
     (int64_t(Mesh::ARRAY_CUSTOM_R_FLOAT) << Mesh::ARRAY_FORMAT_CUSTOM3_SHIFT);
 
+treerec::NodeId node_of(const treerec::Tree& p_tree, int64_t p_id) {
+    if (!holds_node(p_tree, p_id)) {
+        throw treerec::Error("There is no node " + std::to_string(p_id) + " in this tree.");
+    }
+    return treerec::NodeId(p_id);
+}
+
 std::string to_std(const String& p_text) {
     const CharString bytes = p_text.utf8();
     return std::string(bytes.get_data(), size_t(bytes.length()));

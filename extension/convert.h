@@ -19,6 +19,14 @@ inline godot::Vector3 to_godot(const treerec::DVec3& p_vector) {
     return godot::Vector3(float(p_vector.x), float(p_vector.y), float(p_vector.z));
 }
 
+// An id that a script gives may be any number.
+inline bool holds_node(const treerec::Tree& p_tree, int64_t p_id) {
+    return p_id >= 0 && p_id < p_tree.id_end() && p_tree.contains(treerec::NodeId(p_id));
+}
+
+// Throws treerec::Error where the tree has no such node.
+treerec::NodeId node_of(const treerec::Tree& p_tree, int64_t p_id);
+
 inline godot::String to_godot(const std::string& p_text) {
     return godot::String::utf8(p_text.c_str(), int64_t(p_text.size()));
 }

@@ -13,6 +13,7 @@ namespace {
 
 treerec::LStringOptions options_of(LSystem::Dialect p_dialect) {
     treerec::LStringOptions options;
+    options.dialect_is_told = p_dialect != LSystem::DIALECT_TOLD;
     options.dialect = p_dialect == LSystem::DIALECT_PAPER ? treerec::LStringDialect::kPaper
                                                           : treerec::LStringDialect::kTurtle;
     return options;
@@ -35,7 +36,20 @@ Ref<TreeReconstruction> to_resource(treerec::LStringTree p_read, const Dictionar
     return made;
 }
 
+// A tree may have so many nodes: more than a game draws.
+constexpr size_t kMostNodes = 1'000'000;
+
 }  // namespace
+
+class LSystem::Work : public treerec::Progress {
+  public:
+    explicit Work(const LSystem& p_system) : system_(p_system), began_(p_system.cancels_) {}
+    bool cancelled() const override { return system_.cancels_ != began_; }
+
+  private:
+    const LSystem& system_;
+    const uint64_t began_;
+};
 
 LSystem::Settings LSystem::_get_settings() const {
     const std::lock_guard lock(mutex_);
@@ -91,36 +105,48 @@ double LSystem::get_maximum_seconds() const {
     return _get_settings().rewriting.most_seconds;
 }
 
-std::string LSystem::_rewrite(const Settings& p_settings, const treerec::Grammar& p_grammar, int64_t p_seed) {
+std::string LSystem::_rewrite(const Settings& p_settings, const treerec::Grammar& p_grammar, int64_t p_seed,
+                              Work& p_work) {
     treerec::RewriteOptions options = p_settings.rewriting;
     options.seed = p_seed == OWN ? p_grammar.seed : uint64_t(p_seed);
-    return treerec::rewrite(p_grammar, options);
+    return treerec::rewrite(p_grammar, options, &p_work);
 }
 
 String LSystem::generate(int64_t p_seed) const {
     return guarded(String(), [&] {
         const Settings settings = _get_settings();
-        return to_godot(_rewrite(settings, treerec::Grammar::parse(settings.grammar), p_seed));
+        Work work(*this);
+        return to_godot(_rewrite(settings, treerec::Grammar::parse(settings.grammar), p_seed, work));
     });
 }
 
 Ref<TreeReconstruction> LSystem::grow(int64_t p_seed) const {
     return guarded(Ref<TreeReconstruction>(), [&] {
         const Settings settings = _get_settings();
-        const treerec::Grammar grammar = treerec::Grammar::parse(settings.grammar);
+        treerec::Grammar grammar = treerec::Grammar::parse(settings.grammar);
+        grammar.turtle.most_nodes = kMostNodes;
+        Work work(*this);
         const int64_t seed = p_seed == OWN ? int64_t(grammar.seed) : p_seed;
         Dictionary provenance;
         provenance["source"] = "L-system";
         provenance["seed"] = seed;
-        Ref<TreeReconstruction> made = to_resource(
-            treerec::read_lstring_with_leaves(_rewrite(settings, grammar, p_seed), grammar.turtle),
-            provenance);
+        treerec::LStringTree read = treerec::read_lstring_with_leaves(
+            _rewrite(settings, grammar, p_seed, work), grammar.turtle, &work);
+        const int steps =
+            settings.rewriting.iterations >= 0 ? settings.rewriting.iterations : grammar.iterations;
+        treerec::require_wood(read.tree,
+                              "The string that the grammar makes in " + std::to_string(steps) + " steps");
+        Ref<TreeReconstruction> made = to_resource(std::move(read), provenance);
         made->set_seed(seed);
         if (!grammar.leaf_preset.empty()) {
             made->set_leaf_preset(to_godot(grammar.leaf_preset));
         }
         return made;
     });
+}
+
+void LSystem::cancel() {
+    cancels_++;
 }
 
 String LSystem::get_error_message() const {
@@ -144,16 +170,30 @@ String LSystem::get_preset(const String& p_name) {
     return guarded(String(), [&] { return to_godot(treerec::grammar_preset(to_std(p_name))); });
 }
 
-Ref<TreeReconstruction> LSystem::read_string(const String& p_text, Dialect p_dialect) {
+Ref<TreeReconstruction> LSystem::read_string(const String& p_text, Dialect p_dialect, double p_angle_spread,
+                                             double p_length_spread, int64_t p_seed) {
     return guarded(Ref<TreeReconstruction>(), [&] {
         Dictionary provenance;
         provenance["source"] = "L-string";
-        return to_resource(treerec::read_lstring_with_leaves(to_std(p_text), options_of(p_dialect)),
-                           provenance);
+        treerec::LStringOptions options = options_of(p_dialect);
+        if (!(p_angle_spread >= 0.0 && p_angle_spread <= 180.0 && p_length_spread >= 0.0 &&
+              p_length_spread <= 1.0)) {
+            throw treerec::Error(
+                "A string's angles vary by 0 to 180 degrees, its lengths by a share of 0 to 1.");
+        }
+        options.angle_spread = p_angle_spread;
+        options.length_spread = p_length_spread;
+        options.seed = uint64_t(p_seed);
+        treerec::LStringTree read = treerec::read_lstring_with_leaves(to_std(p_text), options);
+        treerec::require_wood(read.tree, "The L-string");
+        if (p_angle_spread > 0.0 || p_length_spread > 0.0) {
+            provenance["seed"] = p_seed;
+        }
+        return to_resource(std::move(read), provenance);
     });
 }
 
-String LSystem::write_string(const Ref<TreeReconstruction>& p_tree, int p_node, Dialect p_dialect) {
+String LSystem::write_string(const Ref<TreeReconstruction>& p_tree, int64_t p_node, Dialect p_dialect) {
     return guarded(String(), [&] {
         if (p_tree.is_null()) {
             throw treerec::Error("There is no tree to write as a string.");
@@ -162,11 +202,14 @@ String LSystem::write_string(const Ref<TreeReconstruction>& p_tree, int p_node, 
         if (tree->empty()) {
             throw treerec::Error("The tree is empty; there is nothing to write as a string.");
         }
+        // The heading says which dialect it is, wherever the string goes.
+        const treerec::LStringOptions options = options_of(p_dialect);
+        const std::string heading = treerec::heading(options);
         if (p_node == TreeReconstruction::NO_NODE || p_node == tree->root()) {
-            return to_godot(treerec::write_lstring(*tree, tree->root(), options_of(p_dialect)));
+            return to_godot(heading + treerec::write_lstring(*tree, tree->root(), options));
         }
-        const treerec::Tree scion = treerec::take_scion(*tree, p_node);
-        return to_godot(treerec::write_lstring(scion, scion.root(), options_of(p_dialect)));
+        const treerec::Tree scion = treerec::take_scion(*tree, node_of(*tree, p_node));
+        return to_godot(heading + treerec::write_lstring(scion, scion.root(), options));
     });
 }
 
@@ -181,11 +224,13 @@ void LSystem::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_maximum_seconds"), &LSystem::get_maximum_seconds);
     ClassDB::bind_method(D_METHOD("generate", "seed"), &LSystem::generate, DEFVAL(int(OWN)));
     ClassDB::bind_method(D_METHOD("grow", "seed"), &LSystem::grow, DEFVAL(int(OWN)));
+    ClassDB::bind_method(D_METHOD("cancel"), &LSystem::cancel);
     ClassDB::bind_method(D_METHOD("get_error_message"), &LSystem::get_error_message);
     ClassDB::bind_static_method("LSystem", D_METHOD("get_preset_names"), &LSystem::get_preset_names);
     ClassDB::bind_static_method("LSystem", D_METHOD("get_preset", "name"), &LSystem::get_preset);
-    ClassDB::bind_static_method("LSystem", D_METHOD("read_string", "text", "dialect"), &LSystem::read_string,
-                                DEFVAL(int(DIALECT_TURTLE)));
+    ClassDB::bind_static_method(
+        "LSystem", D_METHOD("read_string", "text", "dialect", "angle_spread", "length_spread", "seed"),
+        &LSystem::read_string, DEFVAL(int(DIALECT_TOLD)), DEFVAL(0.0), DEFVAL(0.0), DEFVAL(1));
     ClassDB::bind_static_method("LSystem", D_METHOD("write_string", "tree", "node", "dialect"),
                                 &LSystem::write_string, DEFVAL(int(TreeReconstruction::NO_NODE)),
                                 DEFVAL(int(DIALECT_TURTLE)));
@@ -202,5 +247,6 @@ void LSystem::_bind_methods() {
 
     BIND_ENUM_CONSTANT(DIALECT_TURTLE);
     BIND_ENUM_CONSTANT(DIALECT_PAPER);
+    BIND_ENUM_CONSTANT(DIALECT_TOLD);
     BIND_CONSTANT(OWN);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <godot_cpp/classes/resource.hpp>
 #include <godot_cpp/core/class_db.hpp>
 #include <godot_cpp/variant/packed_string_array.hpp>
@@ -15,7 +16,7 @@ class LSystem : public godot::Resource {
     GDCLASS(LSystem, godot::Resource)
 
   public:
-    enum Dialect { DIALECT_TURTLE, DIALECT_PAPER };
+    enum Dialect { DIALECT_TURTLE, DIALECT_PAPER, DIALECT_TOLD };
     enum { OWN = -1 };  // the grammar's own iterations or seed
 
     void set_grammar(const godot::String& p_grammar);
@@ -29,12 +30,15 @@ class LSystem : public godot::Resource {
 
     godot::String generate(int64_t p_seed) const;
     godot::Ref<TreeReconstruction> grow(int64_t p_seed) const;
+    void cancel();
     godot::String get_error_message() const;
 
     static godot::PackedStringArray get_preset_names();
     static godot::String get_preset(const godot::String& p_name);
-    static godot::Ref<TreeReconstruction> read_string(const godot::String& p_text, Dialect p_dialect);
-    static godot::String write_string(const godot::Ref<TreeReconstruction>& p_tree, int p_node,
+    static godot::Ref<TreeReconstruction> read_string(const godot::String& p_text, Dialect p_dialect,
+                                                      double p_angle_spread, double p_length_spread,
+                                                      int64_t p_seed);
+    static godot::String write_string(const godot::Ref<TreeReconstruction>& p_tree, int64_t p_node,
                                       Dialect p_dialect);
 
   protected:
@@ -46,10 +50,13 @@ class LSystem : public godot::Resource {
         treerec::RewriteOptions rewriting;
     };
     Settings _get_settings() const;
-    static std::string _rewrite(const Settings& p_settings, const treerec::Grammar& p_grammar,
-                                int64_t p_seed);
+    // Of what is under way when cancel() is called.
+    class Work;
+    static std::string _rewrite(const Settings& p_settings, const treerec::Grammar& p_grammar, int64_t p_seed,
+                                Work& p_work);
 
     mutable std::mutex mutex_;
+    std::atomic<uint64_t> cancels_ = 0;
     Settings settings_ = {"", {-1, 1, 1'000'000, size_t(256) << 20, 10.0}};
 };
 

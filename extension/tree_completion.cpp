@@ -54,7 +54,7 @@ struct Found {
     }
 };
 
-Found find_branch(const treerec::Tree& p_tree, const PackedVector3Array& p_points, int p_id,
+Found find_branch(const treerec::Tree& p_tree, const PackedVector3Array& p_points, int64_t p_id,
                   const Vector3& p_direction, const Dictionary& p_options) {
     treerec::PointCloud cloud;
     cloud.frame = p_tree.frame();
@@ -66,14 +66,14 @@ Found find_branch(const treerec::Tree& p_tree, const PackedVector3Array& p_point
     }
     Found found{p_tree, {}};
     const treerec::DVec3 direction(p_direction.x, p_direction.y, p_direction.z);
-    found.completion =
-        treerec::complete_branch(found.grown, cloud, p_id, direction, parse_options(p_options));
+    found.completion = treerec::complete_branch(found.grown, cloud, node_of(p_tree, p_id), direction,
+                                                parse_options(p_options));
     return found;
 }
 
 }  // namespace
 
-Dictionary TreeReconstruction::preview_completion(const PackedVector3Array& p_points, int p_id,
+Dictionary TreeReconstruction::preview_completion(const PackedVector3Array& p_points, int64_t p_id,
                                                   const Vector3& p_direction,
                                                   const Dictionary& p_options) const {
     std::string script, message, refusal;
@@ -99,7 +99,7 @@ Dictionary TreeReconstruction::preview_completion(const PackedVector3Array& p_po
     return result;
 }
 
-Ref<TreeEdit> TreeReconstruction::complete_branch(const PackedVector3Array& p_points, int p_id,
+Ref<TreeEdit> TreeReconstruction::complete_branch(const PackedVector3Array& p_points, int64_t p_id,
                                                   const Vector3& p_direction, const Dictionary& p_options) {
     return guarded(Ref<TreeEdit>(), [&] {
         const std::shared_ptr<const treerec::Tree> tree = _editable_tree();

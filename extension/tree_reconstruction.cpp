@@ -95,22 +95,22 @@ int TreeReconstruction::get_root() const {
     return get_tree()->root();
 }
 
-bool TreeReconstruction::has_node(int p_id) const {
-    return get_tree()->contains(p_id);
+bool TreeReconstruction::has_node(int64_t p_id) const {
+    return holds_node(*get_tree(), p_id);
 }
 
-std::optional<treerec::Node> TreeReconstruction::_find_node(int p_id) const {
+std::optional<treerec::Node> TreeReconstruction::_find_node(int64_t p_id) const {
     const std::shared_ptr<const Tree> tree = get_tree();
-    ERR_FAIL_COND_V_MSG(!tree->contains(p_id), std::nullopt, vformat("The tree has no node %d.", p_id));
-    return tree->node(p_id);
+    ERR_FAIL_COND_V_MSG(!holds_node(*tree, p_id), std::nullopt, vformat("The tree has no node %d.", p_id));
+    return tree->node(NodeId(p_id));
 }
 
-Vector3 TreeReconstruction::get_node_position(int p_id) const {
+Vector3 TreeReconstruction::get_node_position(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? to_godot(node->position) : Vector3();
 }
 
-PackedFloat64Array TreeReconstruction::get_node_scan_position(int p_id) const {
+PackedFloat64Array TreeReconstruction::get_node_scan_position(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     if (!node) {
         return PackedFloat64Array();
@@ -125,47 +125,48 @@ Vector3 TreeReconstruction::get_position_in_tree(const PackedFloat64Array& p_sca
         get_tree()->frame().to_tree({p_scan_position[0], p_scan_position[1], p_scan_position[2]}));
 }
 
-double TreeReconstruction::get_node_radius(int p_id) const {
+double TreeReconstruction::get_node_radius(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? node->radius : 0.0;
 }
 
-int TreeReconstruction::get_node_parent(int p_id) const {
+int TreeReconstruction::get_node_parent(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? node->parent : treerec::kNoNode;
 }
 
-PackedInt32Array TreeReconstruction::get_node_children(int p_id) const {
+PackedInt32Array TreeReconstruction::get_node_children(int64_t p_id) const {
     const std::shared_ptr<const Tree> tree = get_tree();
-    ERR_FAIL_COND_V_MSG(!tree->contains(p_id), PackedInt32Array(), vformat("The tree has no node %d.", p_id));
+    ERR_FAIL_COND_V_MSG(!holds_node(*tree, p_id), PackedInt32Array(),
+                        vformat("The tree has no node %d.", p_id));
     std::vector<NodeId> ids;
-    for (const NodeId id : tree->children(p_id)) {
+    for (const NodeId id : tree->children(NodeId(p_id))) {
         ids.push_back(id);
     }
     return to_godot(ids);
 }
 
-TreeReconstruction::NodeKind TreeReconstruction::get_node_kind(int p_id) const {
+TreeReconstruction::NodeKind TreeReconstruction::get_node_kind(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? NodeKind(node->kind()) : NODE_KIND_COMMON;
 }
 
-int TreeReconstruction::get_node_depth(int p_id) const {
+int TreeReconstruction::get_node_depth(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node ? node->depth : 0;
 }
 
-bool TreeReconstruction::is_trunk(int p_id) const {
+bool TreeReconstruction::is_trunk(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node && node->is_trunk();
 }
 
-bool TreeReconstruction::is_radius_measured(int p_id) const {
+bool TreeReconstruction::is_radius_measured(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node && node->is_measured();
 }
 
-bool TreeReconstruction::is_guess(int p_id) const {
+bool TreeReconstruction::is_guess(int64_t p_id) const {
     const std::optional<treerec::Node> node = _find_node(p_id);
     return node && node->is_guess();
 }

@@ -71,18 +71,18 @@ class TreeReconstruction : public godot::Resource {
     bool is_empty() const;
     int64_t get_node_count() const;
     int get_root() const;
-    bool has_node(int p_id) const;
-    godot::Vector3 get_node_position(int p_id) const;
-    godot::PackedFloat64Array get_node_scan_position(int p_id) const;
+    bool has_node(int64_t p_id) const;
+    godot::Vector3 get_node_position(int64_t p_id) const;
+    godot::PackedFloat64Array get_node_scan_position(int64_t p_id) const;
     godot::Vector3 get_position_in_tree(const godot::PackedFloat64Array& p_scan_position) const;
-    double get_node_radius(int p_id) const;
-    int get_node_parent(int p_id) const;
-    godot::PackedInt32Array get_node_children(int p_id) const;
-    NodeKind get_node_kind(int p_id) const;
-    int get_node_depth(int p_id) const;
-    bool is_trunk(int p_id) const;
-    bool is_radius_measured(int p_id) const;
-    bool is_guess(int p_id) const;
+    double get_node_radius(int64_t p_id) const;
+    int get_node_parent(int64_t p_id) const;
+    godot::PackedInt32Array get_node_children(int64_t p_id) const;
+    NodeKind get_node_kind(int64_t p_id) const;
+    int get_node_depth(int64_t p_id) const;
+    bool is_trunk(int64_t p_id) const;
+    bool is_radius_measured(int64_t p_id) const;
+    bool is_guess(int64_t p_id) const;
     godot::PackedInt32Array get_node_ids() const;
     godot::PackedInt32Array get_leaves() const;
     godot::PackedInt32Array get_branch_nodes() const;
@@ -102,10 +102,10 @@ class TreeReconstruction : public godot::Resource {
 #ifdef TREEREC_EDITOR
     godot::Dictionary measure_fidelity(const godot::PackedVector3Array& p_points, double p_tolerance) const;
     // tree_completion.cpp
-    godot::Dictionary preview_completion(const godot::PackedVector3Array& p_points, int p_id,
+    godot::Dictionary preview_completion(const godot::PackedVector3Array& p_points, int64_t p_id,
                                          const godot::Vector3& p_direction,
                                          const godot::Dictionary& p_options) const;
-    godot::Ref<TreeEdit> complete_branch(const godot::PackedVector3Array& p_points, int p_id,
+    godot::Ref<TreeEdit> complete_branch(const godot::PackedVector3Array& p_points, int64_t p_id,
                                          const godot::Vector3& p_direction,
                                          const godot::Dictionary& p_options);
 #endif
@@ -146,11 +146,11 @@ class TreeReconstruction : public godot::Resource {
     static godot::TypedArray<godot::Dictionary> get_edit_commands();
 
     // Grafting (tree_reconstruction_grafting.cpp).
-    godot::Ref<TreeEdit> make_twig(int p_id, const godot::Dictionary& p_options);
-    godot::Ref<TreeEdit> graft(int p_id, const godot::Dictionary& p_options);
+    godot::Ref<TreeEdit> make_twig(int64_t p_id, const godot::Dictionary& p_options);
+    godot::Ref<TreeEdit> graft(int64_t p_id, const godot::Dictionary& p_options);
     godot::Ref<TreeEdit> graft_many(const godot::PackedInt32Array& p_ids, const godot::Dictionary& p_options);
-    godot::String take_branch(int p_id) const;
-    godot::TypedArray<godot::Dictionary> find_collisions(int p_id, double p_clearance) const;
+    godot::String take_branch(int64_t p_id) const;
+    godot::TypedArray<godot::Dictionary> find_collisions(int64_t p_id, double p_clearance) const;
     static godot::Dictionary measure_branch(const godot::String& p_lstring);
     static godot::PackedByteArray draw_branch(const godot::String& p_lstring, int p_size);
     static godot::TypedArray<godot::Dictionary> get_twig_library();
@@ -160,7 +160,7 @@ class TreeReconstruction : public godot::Resource {
                   const godot::Vector2& p_position, double p_distance) const;
     godot::PackedInt32Array pick_nodes(const godot::Projection& p_to_screen, const godot::Vector2& p_viewport,
                                        const godot::Rect2& p_rect) const;
-    int get_node_order(int p_id) const;
+    int get_node_order(int64_t p_id) const;
     godot::Array build_selection_lines(const godot::PackedInt32Array& p_ids) const;
     godot::Dictionary preview_edit(const godot::String& p_command) const;
     godot::PackedByteArray draw(int p_size) const;
@@ -185,7 +185,7 @@ class TreeReconstruction : public godot::Resource {
     static const LeafValue kLeafValues[];
 
     // A node's data, or nothing and an error that names the id.
-    std::optional<treerec::Node> _find_node(int p_id) const;
+    std::optional<treerec::Node> _find_node(int64_t p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
     static godot::Array _to_joined_arrays(const treerec::JoinedLeaves& p_joined);
     std::vector<treerec::LeafPlacement> _place_leaves(const treerec::LeafRules& p_rules, int p_lod) const;

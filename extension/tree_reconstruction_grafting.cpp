@@ -60,17 +60,20 @@ Ref<TreeEdit> TreeReconstruction::_edit_with(const char* p_command, const Varian
         treerec::append_word(line, many ? "nodes" : "node", command_value(p_where));
         const Array keys = p_options.keys();
         for (int64_t i = 0; i < keys.size(); i++) {
-            treerec::append_word(line, to_std(String(keys[i])), command_value(p_options[keys[i]]));
+            // What is null was not given.
+            if (p_options[keys[i]].get_type() != Variant::NIL) {
+                treerec::append_word(line, to_std(String(keys[i])), command_value(p_options[keys[i]]));
+            }
         }
         return _edit(to_godot(line));
     });
 }
 
-Ref<TreeEdit> TreeReconstruction::make_twig(int p_id, const Dictionary& p_options) {
+Ref<TreeEdit> TreeReconstruction::make_twig(int64_t p_id, const Dictionary& p_options) {
     return _edit_with("twig", p_id, p_options);
 }
 
-Ref<TreeEdit> TreeReconstruction::graft(int p_id, const Dictionary& p_options) {
+Ref<TreeEdit> TreeReconstruction::graft(int64_t p_id, const Dictionary& p_options) {
     return _edit_with("graft", p_id, p_options);
 }
 
@@ -79,19 +82,22 @@ Ref<TreeEdit> TreeReconstruction::graft_many(const PackedInt32Array& p_ids, cons
     return _edit_with("graft_many", p_ids, p_options);
 }
 
-String TreeReconstruction::take_branch(int p_id) const {
+String TreeReconstruction::take_branch(int64_t p_id) const {
     return guarded(String(), [&] {
-        const treerec::Tree scion = treerec::take_scion(*_editable_tree(), p_id);
+        const std::shared_ptr<const treerec::Tree> tree = _editable_tree();
+        const treerec::Tree scion = treerec::take_scion(*tree, node_of(*tree, p_id));
         treerec::LStringOptions options;
         options.flags = false;
         return to_godot(treerec::write_lstring(scion, scion.root(), options));
     });
 }
 
-TypedArray<Dictionary> TreeReconstruction::find_collisions(int p_id, double p_clearance) const {
+TypedArray<Dictionary> TreeReconstruction::find_collisions(int64_t p_id, double p_clearance) const {
     return guarded(TypedArray<Dictionary>(), [&] {
         TypedArray<Dictionary> list;
-        for (const treerec::Collision& one : treerec::find_collisions(*_editable_tree(), p_id, p_clearance)) {
+        const std::shared_ptr<const treerec::Tree> tree = _editable_tree();
+        for (const treerec::Collision& one :
+             treerec::find_collisions(*tree, node_of(*tree, p_id), p_clearance)) {
             Dictionary entry;
             entry["node"] = one.grafted;
             entry["other"] = one.other;

@@ -33,6 +33,15 @@ std::shared_ptr<const treerec::VariantMaker> TreeReconstruction::_get_variant_ma
     return maker;
 }
 
+// What passes a limit by a rounding, as 1.2000000000000002 does, is the limit. What is no number stays one.
+static double within(double p_value, double p_least, double p_most) {
+    constexpr double kRounding = 1e-6;
+    if (p_value < p_least && p_value > p_least - kRounding) {
+        return p_least;
+    }
+    return p_value > p_most && p_value < p_most + kRounding ? p_most : p_value;
+}
+
 Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double p_amount,
                                                          double p_age) const {
     constexpr double kLeafSize = 0.08;
@@ -42,7 +51,9 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
                 "This tree was saved by a newer version of the addon, so it can't be varied here. Update the "
                 "addon.");
         }
-        treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), p_amount, p_age);
+        const double amount = within(p_amount, 0.0, 1.0);
+        const double age = within(p_age, treerec::VariantMaker::kLeastAge, treerec::VariantMaker::kMostAge);
+        treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), amount, age);
         Ref<TreeReconstruction> made;
         made.instantiate();
         const Ref<LeafRule> rule = get_leaf_rule();
@@ -53,9 +64,9 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
             made->seed_ = seed_;
             made->leaf_preset_ = leaf_preset_;
         }
-        if (p_amount > 0.0) {
+        if (amount > 0.0) {
             treerec::Random random(uint64_t(p_seed), 11);
-            made->leaf_rules_.leaf_size *= 1.0 + kLeafSize * p_amount * random.uniform(-1.0, 1.0);
+            made->leaf_rules_.leaf_size *= 1.0 + kLeafSize * amount * random.uniform(-1.0, 1.0);
             // A number that the inspector and a file hold whole.
             made->seed_ = int64_t(treerec::hash_seed(uint64_t(made->seed_), uint64_t(p_seed)) >> 33);
         }
@@ -63,9 +74,9 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
         made->foliage_ = std::make_shared<const treerec::Foliage>(std::move(variant.foliage));
         Dictionary how;
         how["seed"] = p_seed;
-        how["amount"] = p_amount;
-        if (p_age != 1.0) {
-            how["age"] = p_age;
+        how["amount"] = amount;
+        if (age != 1.0) {
+            how["age"] = age;
         }
         made->provenance_["variant"] = how;
         made->set_leaf_rule(rule);

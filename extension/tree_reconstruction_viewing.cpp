@@ -41,9 +41,9 @@ PackedInt32Array TreeReconstruction::pick_nodes(const Projection& p_to_screen, c
                                         {p_rect.position.x, p_rect.position.y}, {end.x, end.y}));
 }
 
-int TreeReconstruction::get_node_order(int p_id) const {
+int TreeReconstruction::get_node_order(int64_t p_id) const {
     const std::shared_ptr<const treerec::Tree> tree = get_tree();
-    ERR_FAIL_COND_V_MSG(!tree->contains(p_id), -1, vformat("The tree has no node %d.", p_id));
+    ERR_FAIL_COND_V_MSG(!holds_node(*tree, p_id), -1, vformat("The tree has no node %d.", p_id));
     const treerec::BranchList list = treerec::list_branches(*tree);
     return list.branches[size_t(list.branch_of[size_t(p_id)])].order;
 }

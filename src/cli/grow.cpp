@@ -40,8 +40,7 @@ struct Grown {
     std::string leaf_preset;
 };
 
-Grown grow(const std::string& name, const std::string& text, const Arguments& arguments,
-           const Progress& progress) {
+Grown grow(const std::string& name, const std::string& text, const Arguments& arguments, Progress& progress) {
     Grown grown;
     LStringOptions& options = grown.options;
     const bool grammatical = is_grammar(text);
@@ -50,8 +49,15 @@ Grown grow(const std::string& name, const std::string& text, const Arguments& ar
         grammar = Grammar::parse(text);
         options = grammar.turtle;
         if (!grammar.leaf_preset.empty()) grown.leaf_preset = grammar.leaf_preset;
+    } else {
+        options = with_heading(text, options, "'" + name + "'");
+        // What the command line says goes before what the file says.
+        options.heeds_heading = false;
     }
-    if (arguments.has("--dialect")) options.dialect = dialect_from(arguments);
+    if (arguments.has("--dialect")) {
+        options.dialect = dialect_from(arguments);
+        options.dialect_is_told = true;
+    }
     options.angle = arguments.number("--angle", options.angle, -360.0, 360.0);
     options.step = arguments.number("--step", options.step, 1e-6, 1e3);
     options.radius = arguments.number("--radius", options.radius, 1e-6, 1e3);
@@ -59,17 +65,24 @@ Grown grow(const std::string& name, const std::string& text, const Arguments& ar
     options.length_spread = arguments.number("--vary-length", 0.0, 0.0, 0.9);
     options.seed = arguments.whole("--seed", grammatical ? grammar.seed : 1, 0, UINT64_MAX);
     if (!grammatical) {
-        if (arguments.has("--iterations"))
-            throw UsageError("'" + name + "' is an L-string, which has no iterations.");
+        for (const char* option : {"--iterations", "--most-nodes", "--most-seconds"})
+            if (arguments.has(option))
+                throw UsageError(std::string(option) + " is for grammars; '" + name + "' is an L-string.");
         grown.read = parse_lstring_file(text, name, options, &progress);
+        require_wood(grown.read.tree, "The L-string '" + name + "'");
         return grown;
     }
     RewriteOptions rewriting;
     rewriting.seed = options.seed;
     rewriting.iterations = static_cast<int>(
         arguments.whole("--iterations", static_cast<uint64_t>(grammar.iterations), 0, 10000));
-    grown.string = rewrite(grammar, rewriting, &progress);
+    rewriting.most_seconds = arguments.number("--most-seconds", rewriting.most_seconds, 0.01, 1e6);
+    options.most_nodes = arguments.whole("--most-nodes", 1000000, 1, kLargestId);
+    SubProgress steps(&progress, 0.0, 0.4);
+    grown.string = rewrite(grammar, rewriting, &steps);
     grown.read = read_lstring_with_leaves(grown.string, options, &progress);
+    require_wood(grown.read.tree, "The string that the grammar '" + name + "' makes in " +
+                                      std::to_string(rewriting.iterations) + " steps");
     return grown;
 }
 
@@ -89,6 +102,8 @@ const Command& grow_command() {
           true},
          {"--seed", "N", "what is drawn by chance (default: the grammar's)"},
          {"--iterations", "N", "of the grammar (default: its own)"},
+         {"--most-nodes", "N", "a grammar's tree may have; it is refused with more (default 1000000)"},
+         {"--most-seconds", "S", "that a grammar may take (default 30)"},
          {"--dialect", "NAME", "of an L-string: turtle or paper (default: as it says itself, or turtle)"},
          {"--angle", "A", "degrees of + - & ^ \\ / without a number"},
          {"--step", "M", "metres of F without a number"},

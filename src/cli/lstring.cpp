@@ -59,7 +59,10 @@ void run_lstring(const std::vector<std::string>& words) {
         tree = take_scion(tree, static_cast<NodeId>(node));
     }
     if (out.empty()) {
-        std::printf("%s\n", write_lstring(tree, tree.root(), options, &progress).c_str());
+        LStringOptions told;
+        told.dialect = options.dialect;
+        std::printf("%s%s\n", heading(told).c_str(),
+                    write_lstring(tree, tree.root(), options, &progress).c_str());
         return;
     }
     write_lstring_file(out, tree, options, &progress);

@@ -101,6 +101,13 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.clean.remove_ground = clean && !arguments.has("--no-clean-ground");
     options.clean.pick = pick_from(arguments);
     options.complete = arguments.has("--complete");
+    if (arguments.has("--prune")) {
+        const std::string rule = arguments.text("--prune", "");
+        if (rule != "paper" && rule != "leader")
+            throw UsageError("--prune is paper or leader, not '" + rule + "'.");
+        options.prune.emplace();
+        options.prune->spare_leader = rule == "leader";
+    }
     options.tell_leaves = !arguments.has("--all-wood");
     // Enough for the summary; a report tells more exactly.
     if (!arguments.has("--report")) options.score_points = 1500;
@@ -132,6 +139,7 @@ void print_summary(const Reconstruction& result, const std::vector<std::string>&
         std::printf("%s, ",
                     m.height < kBreastHeight ? "lower than breast height" : "no stem at breast height");
     std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
+    if (result.pruned > 0) std::printf("%zu nodes of long twigs were cut away\n", result.pruned);
     if (result.leaf_points > 0)
         std::printf("%.0f %% of the points are leaves\n", 100.0 * static_cast<double>(result.leaf_points) /
                                                               static_cast<double>(result.cloud.size()));
@@ -176,6 +184,8 @@ const Command& reconstruct_command() {
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
          {"--complete", "", "look again for branches where points are left over"},
+         {"--prune", "RULE",
+          "cut twigs longer than the mean to it: paper (all, algorithm 3), leader (not the trunk's tip)"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
          {"--no-clean", "", "leave out all cleaning, or one step of it:"},

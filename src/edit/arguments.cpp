@@ -11,6 +11,14 @@ namespace treerec {
 
 namespace {
 
+// Of a limit: what passes it by less, as 0.1 + 0.8 passes 0.9, is the limit.
+constexpr double kRounding = 1e-9;
+
+double within_limits(double value, double least, double most) {
+    const auto near = [&](double limit) { return std::abs(value - limit) <= kRounding * std::abs(limit); };
+    return value < least && near(least) ? least : value > most && near(most) ? most : value;
+}
+
 Parameter bare(const char* name, ParameterType type, const char* help) {
     Parameter parameter;
     parameter.name = name;
@@ -179,6 +187,7 @@ EditArguments::Value EditArguments::read(const Tree& tree, const Parameter& para
             std::optional<double> value = read_number(text);
             if (value && parameter.type == ParameterType::kLength && options.written_in)
                 *value = length_between(*options.written_in, frame, *value);
+            if (value) *value = within_limits(*value, parameter.least, parameter.most);
             if (!value || *value < parameter.least || *value > parameter.most)
                 throw wrong("a number from " + number_text(parameter.least) + " to " +
                             number_text(parameter.most));

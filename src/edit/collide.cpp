@@ -243,6 +243,14 @@ StandingWood::StandingWood(const Tree& tree) {
         if (tree.node(id).parent != kNoNode) add(capsule_of(tree, id));
 }
 
+StandingWood::StandingWood(const Tree& tree, const Bounds& within) {
+    for (NodeId id = 0; id < tree.id_end(); id++) {
+        if (!tree.contains(id) || tree.node(id).parent == kNoNode) continue;
+        const Capsule capsule = capsule_of(tree, id);
+        if (overlap(bounds_of(capsule), within)) add(capsule);
+    }
+}
+
 void StandingWood::add(const Segment& segment) {
     if (runs_.empty() || runs_.back().segments.size() == kRunLength) {
         runs_.emplace_back();

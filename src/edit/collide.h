@@ -39,6 +39,8 @@ class StandingWood {
     };
 
     explicit StandingWood(const Tree& tree);
+    // Only what comes near the box: for a question about what lies within.
+    StandingWood(const Tree& tree, const Bounds& within);
     // The segments that end at `ids`, which are new in the tree and not its root.
     void add(const Tree& tree, const std::vector<NodeId>& ids);
 

@@ -89,7 +89,7 @@ void append_word(std::string& line, std::string_view key, std::string_view value
     line += ' ';
     line += key;
     line += '=';
-    if (!value.empty() && value.find_first_of(" \t\r\"#") == std::string_view::npos) {
+    if (!value.empty() && value.find_first_of(" \t\r\n\"#") == std::string_view::npos) {
         line += value;
         return;
     }

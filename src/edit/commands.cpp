@@ -36,18 +36,23 @@ const EditCommand& find_edit_command(const CommandLine& line) {
         line.column);
 }
 
-Edit perform_on_copy(const Tree& tree, std::string_view text, Tree& result, const BindOptions& options) {
+Edit perform_for_good(Tree& tree, std::string_view text, const BindOptions& options) {
     const std::optional<CommandLine> line = parse_command_line(text);
     if (!line) throw CommandError("There is no command in this line.", 1);
     const EditCommand& command = find_edit_command(*line);
     const EditArguments arguments(tree, *line, command.parameters, options);
     Edit edit;
-    Tree changed = tree;
-    edit.outcome = command.run(changed, arguments);
     edit.command = arguments.line();
     edit.named = arguments.named();
     edit.missing = arguments.missing();
     edit.frame = tree.frame();
+    edit.outcome = command.run(tree, arguments);
+    return edit;
+}
+
+Edit perform_on_copy(const Tree& tree, std::string_view line, Tree& result, const BindOptions& options) {
+    Tree changed = tree;
+    Edit edit = perform_for_good(changed, line, options);
     edit.delta = TreeDelta::between(tree, changed);
     result = std::move(changed);
     return edit;

@@ -49,6 +49,9 @@ struct Edit {
 // CommandError for a line that makes no command, Misfit for nodes that are not there, Error for what cannot
 // be done, Cancelled. Costs what the command does and a copy of the tree.
 Edit perform(Tree& tree, std::string_view line, const BindOptions& options = {});
+// The same in place, for one who keeps a copy or gives the tree up: costs what the command does, and there is
+// no way back. Edit::delta stays empty; when anything is thrown the tree may be changed in part.
+Edit perform_for_good(Tree& tree, std::string_view line, const BindOptions& options = {});
 // The same on a copy; `result` gets the edited tree.
 Edit perform_on_copy(const Tree& tree, std::string_view line, Tree& result, const BindOptions& options = {});
 

@@ -6,6 +6,7 @@
 #include "edit/command_lists.h"
 #include "edit/graft.h"
 #include "edit/scion.h"
+#include "edit/string_options.h"
 #include "edit/twig.h"
 #include "edit/twig_library.h"
 #include "lsystem/lstring.h"
@@ -30,8 +31,8 @@ std::vector<std::string> twig_names() {
     return names;
 }
 
-Tree read_scion(std::string_view string, const Progress* progress) {
-    Tree scion = read_lstring(string, {}, progress);
+Tree read_scion(std::string_view string, const LStringOptions& options, const Progress* progress) {
+    Tree scion = read_lstring(string, options, progress);
     require_scion(scion);
     return scion;
 }
@@ -42,12 +43,16 @@ std::vector<Parameter> graft_parameters() {
         text_parameter("string", {"F(0.3)[+(50)!(0.004)F(0.2)]F(0.3)"},
                        "the branch as an L-string, instead of one of the library's")
             .optional(),
+        dialect_parameter(),
         whole_parameter("seed", 1, 0, int64_t{1} << 53, "of what varies").slider(1, 100),
         number_parameter("angle", 12.0, 0.0, 180.0,
                          "degrees that its branches turn and bend by, at most, at random")
             .slider(0.0, 45.0),
         number_parameter("stretch", 0.15, 0.0, 0.9,
                          "share that its branches become longer or shorter by, at most, at random"),
+        word_parameter("vary", {"branches", "segments"},
+                       "what varies: branches, which bend and stretch as a whole; or every segment by itself "
+                       "(algorithm 6)"),
         word_parameter("aim", kAims,
                        "where it goes: auto: on from a tip, else off to a side; onward: the host's way; "
                        "own: by the angle it grew at; lean: into the widest gap; direction: as told"),
@@ -64,6 +69,10 @@ std::vector<Parameter> graft_parameters() {
         number_parameter("joint_ratio", 0.0, 0.0, 1.0,
                          "its radius at the joint over the host's, at most; 0 for what suits"),
         switch_parameter("smooth", true, "whether its radii are blended into the host's"),
+        number_parameter(
+            "thinning", 0.0, 0.0, 1.0,
+            "each node's radius over the one before it, down from the host's (algorithm 8: 0.8); "
+            "0 for radii of its own"),
         length_parameter("clearance", 0.0, 0.0, 1e3, "metres of air to keep from other branches")
             .slider(0.0, 0.1),
         whole_parameter("tries", 1, 1, 1000, "seeds to try until it is clear of other branches")
@@ -74,7 +83,7 @@ std::vector<Parameter> graft_parameters() {
 GraftOptions graft_options(const EditArguments& given) {
     GraftOptions options;
     options.seed = static_cast<uint64_t>(given.whole("seed"));
-    options.variation = {given.number("angle"), given.number("stretch")};
+    options.variation = {given.number("angle"), given.number("stretch"), given.text("vary") == "segments"};
     options.aim = choice<GraftAim>(kAims, given.text("aim"));
     options.lean = given.number("lean");
     if (given.has("direction")) options.direction = given.vector("direction");
@@ -87,6 +96,8 @@ GraftOptions graft_options(const EditArguments& given) {
     options.factor = given.number("factor");
     options.joint_ratio = given.number("joint_ratio");
     options.smooth = given.on("smooth");
+    options.thinning = given.number("thinning");
+    options.most_nodes = static_cast<size_t>(given.whole("most"));
     options.clearance = given.number("clearance");
     options.tries = static_cast<int>(given.whole("tries"));
     return options;
@@ -121,6 +132,7 @@ EditOutcome run_twig(Tree& tree, const EditArguments& given) {
     if (given.has("direction")) options.direction = given.vector("direction");
     if (given.has("view")) options.view = given.vector("view");
     if (given.has("up")) options.up = given.vector("up");
+    options.as_printed = given.text("size") == "paper";
     options.length = given.number("length");
     options.radius = given.number("radius");
     EditOutcome outcome;
@@ -137,9 +149,9 @@ EditOutcome run_graft(Tree& tree, const EditArguments& given) {
     if (given.has("from"))
         scion = take_scion(tree, given.node("from"));
     else if (given.has("string"))
-        scion = read_scion(given.text("string"), given.progress());
+        scion = read_scion(given.text("string"), string_options(given), given.progress());
     else
-        scion = read_scion(find_library_twig(given.text("twig")).string, given.progress());
+        scion = read_scion(find_library_twig(given.text("twig")).string, {}, given.progress());
     return outcome_of({graft(tree, given.node("node"), scion, graft_options(given), given.progress())});
 }
 
@@ -149,14 +161,13 @@ EditOutcome run_graft_many(Tree& tree, const EditArguments& given) {
         for (NodeId id : given.nodes("from"))
             scions.push_back(take_scion(tree, id));
     } else if (given.has("string")) {
-        scions.push_back(read_scion(given.text("string"), given.progress()));
+        scions.push_back(read_scion(given.text("string"), string_options(given), given.progress()));
     } else {
         for (std::string_view name : split(given.text("twigs"), ','))
-            scions.push_back(read_scion(find_library_twig(name).string, given.progress()));
+            scions.push_back(read_scion(find_library_twig(name).string, {}, given.progress()));
     }
     const std::vector<NodeId>& hosts = given.nodes("nodes");
-    GraftOptions options = graft_options(given);
-    options.most_nodes = static_cast<size_t>(given.whole("most"));
+    const GraftOptions options = graft_options(given);
     return outcome_of(graft_many(tree, hosts, scions, options, given.progress()));
 }
 
@@ -182,13 +193,17 @@ std::vector<EditCommand> graft_commands() {
           direction_parameter("up", "what is up in the view; 0,1,0 where it is not given").optional(),
           direction_parameter("direction", "where it goes, instead of to a side").optional(),
           length_parameter("length", 0.0, 0.0, 1e6, "metres; 0 for what suits its host").slider(0.0, 1.0),
-          length_parameter("radius", 0.0, 0.0, 1e6, "metres; 0 for what suits its host").slider(0.0, 0.05)},
+          length_parameter("radius", 0.0, 0.0, 1e6, "metres; 0 for what suits its host").slider(0.0, 0.05),
+          word_parameter("size", {"suited", "paper"},
+                         "where length or radius is 0: what suits its host; or 0.6 of the next segment and "
+                         "0.8 of the host's radius, as algorithm 5 says")},
          run_twig},
         {"graft", "graft",
          "Puts a branch onto a node: one of the library, an L-string, or a copy of another one of this tree.",
          joined({node_parameter("node", "the node that gets it"),
                  word_parameter("twig", twig_names(), "a branch of the library"),
-                 node_parameter("from", "the lowest node of a branch to copy, instead").optional()},
+                 node_parameter("from", "the lowest node of a branch to copy, instead").optional(),
+                 whole_parameter("most", 1000000, 1, kLargestId, "nodes that it may add").slider(100, 10000)},
                 graft_parameters()),
          run_graft},
         {"graft_many", "graft", "Puts a branch onto each of many nodes, no two alike.",

@@ -1,6 +1,7 @@
 // The command that puts an L-string in a branch's place.
 #include "edit/command_lists.h"
 #include "edit/scion.h"
+#include "edit/string_options.h"
 #include "lsystem/lstring.h"
 
 namespace treerec {
@@ -8,8 +9,10 @@ namespace treerec {
 namespace {
 
 EditOutcome run_lstring(Tree& tree, const EditArguments& given) {
-    LStringOptions options;
-    options.dialect = parse_lstring_dialect(given.text("dialect"));
+    LStringOptions options = string_options(given);
+    options.angle_spread = given.number("vary_angle");
+    options.length_spread = given.number("vary_length");
+    options.seed = static_cast<uint64_t>(given.whole("seed"));
     const Tree scion = read_lstring(given.text("string"), options, given.progress());
     require_scion(scion);
 
@@ -20,19 +23,22 @@ EditOutcome run_lstring(Tree& tree, const EditArguments& given) {
     const ScionPlacement placement{whole ? DMat3(1.0) : frame_about(direction_at(tree, joint)),
                                    given.number("unit")};
     const bool on_trunk = tree.node(node).is_trunk();
-    std::vector<NodeId> gone, behind;
+    std::vector<NodeId> gone, before;
     for (NodeId child : tree.children(joint))
         if (whole || child == node)
             gone.push_back(child);
-        else if (!gone.empty())
-            behind.push_back(child);
+        else if (gone.empty())
+            before.push_back(child);
 
     EditOutcome outcome;
     for (NodeId child : gone)
         remove_wood(tree, child, outcome.removed);
     outcome.nodes = place_scion(tree, joint, scion, placement);
-    for (NodeId sibling : behind)
-        tree.reparent(sibling, joint);
+    // In the place of what went: behind its elder siblings, before the younger ones.
+    for (const NodeId added : outcome.nodes)
+        if (tree.node(added).parent == joint) before.push_back(added);
+    for (auto child = before.rbegin(); child != before.rend(); ++child)
+        tree.make_first_child(*child);
     const std::vector<NodeId> order = scion.depth_first();
     for (size_t i = 1; i < order.size(); i++)
         if (on_trunk && scion.node(order[i]).is_trunk())
@@ -58,7 +64,14 @@ std::vector<EditCommand> lstring_commands() {
           text_parameter("string",
                          {"F(0.3)[+(50)!(0.004)F(0.2)]F(0.3)", "!(0.02)&(20)F(0.4)[-(40)F(0.2)]^(10)F(0.3)"},
                          "the branch that comes, from the joint on, as an L-string"),
-          word_parameter("dialect", {"turtle", "paper"}, "the string's; paper: absolute yaw and pitch"),
+          dialect_parameter(),
+          number_parameter("vary_angle", 0.0, 0.0, 90.0,
+                           "degrees that every segment's yaw and pitch change by, at most, at random "
+                           "(algorithm 6)")
+              .slider(0.0, 30.0),
+          number_parameter("vary_length", 0.0, 0.0, 0.9,
+                           "share that every segment becomes longer or shorter by, at most, at random"),
+          whole_parameter("seed", 1, 0, int64_t{1} << 53, "of what varies").slider(1, 100),
           length_parameter("unit", 1.0, 1e-6, 1e6, "metres of a length of 1 in the string").slider(0.1, 3.0)},
          run_lstring}};
 }

@@ -36,6 +36,7 @@ void require_options(const GraftOptions& options) {
     require(options.factor > 0.0 && std::isfinite(options.factor), "The scale factor must be positive.");
     require(options.joint_ratio >= 0.0 && options.joint_ratio <= 1.0,
             "The joint's ratio of radii must be 0 to 1.");
+    require(options.thinning >= 0.0 && options.thinning <= 1.0, "The thinning must be a ratio from 0 to 1.");
     require(options.clearance >= 0.0 && std::isfinite(options.clearance),
             "The clearance must be a length in metres that is not negative.");
     require(options.tries >= 1 && options.tries <= kMostTries, "The number of tries must be 1 to 1000.");
@@ -165,7 +166,10 @@ Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed,
         made.wood.set_radius(id, std::max(radius, std::min(node.radius, kLeastRadius)));
     }
     const Node& host = joint.tree.node(joint.host);
-    if (joint.options.smooth) smooth_joint(made.wood, host.radius, joint.ratio, joint.tip);
+    if (joint.options.thinning > 0.0)
+        smooth_by_depth(made.wood, host.radius, joint.options.thinning);
+    else if (joint.options.smooth)
+        smooth_joint(made.wood, host.radius, joint.ratio, joint.tip);
     Tree there = made.wood;
     for (NodeId id : there.depth_first())
         there.set_position(id, there.node(id).position + host.position);
@@ -187,12 +191,37 @@ void require_host(const Tree& tree, NodeId host) {
         throw Error("There is no node " + std::to_string(host) + " in this tree to graft onto.");
 }
 
-GraftResult graft_beside(Tree& tree, StandingWood& standing, NodeId host, const Tree& scion,
-                         const GraftOptions& options, const Progress* progress) {
+std::string too_many(size_t nodes, const GraftOptions& options, bool several) {
+    return std::string(several ? "These grafts" : "This graft") + " would add " + std::to_string(nodes) +
+           " nodes, more than the " + std::to_string(options.most_nodes) + " that are allowed: graft " +
+           (several ? "onto fewer nodes, graft smaller branches" : "a smaller branch") + ", or allow more.";
+}
+
+Joint plan_graft(const Tree& tree, NodeId host, const Tree& scion, const GraftOptions& options) {
     require_host(tree, host);
     require_scion(scion);
     require_options(options);
-    const Joint joint = plan_joint(tree, host, scion, options);
+    // Before the work, which grows with the branch.
+    require_room(tree, scion.size() - 1);
+    return plan_joint(tree, host, scion, options);
+}
+
+// Whatever the seed, the scion stays within this.
+Bounds reach_of(const Joint& joint) {
+    double thickest = 0.0;
+    for (const NodeId id : joint.scion.depth_first())
+        thickest = std::max(thickest, joint.scion.node(id).radius);
+    const double longest = scion_length(joint.scion) * (1.0 + joint.options.variation.length);
+    const Node& host = joint.tree.node(joint.host);
+    Bounds box;
+    box.add(host.position,
+            1.001 * joint.scale * (longest + thickest) + host.radius + joint.options.clearance);
+    return box;
+}
+
+GraftResult graft_beside(Tree& tree, StandingWood& standing, const Joint& joint, const Progress* progress) {
+    const NodeId host = joint.host;
+    const GraftOptions& options = joint.options;
     Attempt best;
     int tries = 0;
     while (tries < options.tries && (tries == 0 || !best.collisions.empty())) {
@@ -251,11 +280,21 @@ void smooth_joint(Tree& wood, double host_radius, double ratio, bool blend) {
     }
 }
 
+void smooth_by_depth(Tree& wood, double host_radius, double ratio) {
+    if (wood.empty()) return;
+    const int first = wood.node(wood.root()).depth;
+    for (const NodeId id : wood.depth_first()) {
+        const double share = portable::pow(ratio, wood.node(id).depth - first);
+        wood.set_radius(id, std::max(host_radius * share, std::min(host_radius, kLeastRadius)));
+    }
+}
+
 GraftResult graft(Tree& tree, NodeId host, const Tree& scion, const GraftOptions& options,
                   const Progress* progress) {
-    require_host(tree, host);
-    StandingWood standing(tree);
-    return graft_beside(tree, standing, host, scion, options, progress);
+    const Joint joint = plan_graft(tree, host, scion, options);
+    if (scion.size() - 1 > options.most_nodes) throw Error(too_many(scion.size() - 1, options, false));
+    StandingWood standing(tree, reach_of(joint));
+    return graft_beside(tree, standing, joint, progress);
 }
 
 std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, std::span<const Tree> scions,
@@ -274,10 +313,8 @@ std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, s
         chosen.push_back(&scions[which]);
         nodes += scions[which].size() - 1;
     }
-    if (nodes > options.most_nodes)
-        throw Error("These grafts would add " + std::to_string(nodes) + " nodes, more than the " +
-                    std::to_string(options.most_nodes) + " that are allowed: graft onto fewer nodes, " +
-                    "graft smaller branches, or allow more.");
+    if (nodes > options.most_nodes) throw Error(too_many(nodes, options, true));
+    require_room(tree, nodes);
     const Tree before = tree;
     StandingWood standing(tree);
     std::vector<GraftResult> results;
@@ -285,7 +322,8 @@ std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, s
         GraftOptions own = options;
         for (size_t i = 0; i < hosts.size(); i++) {
             own.seed = seeds[i];
-            results.push_back(graft_beside(tree, standing, hosts[i], *chosen[i], own, progress));
+            const Joint joint = plan_graft(tree, hosts[i], *chosen[i], own);
+            results.push_back(graft_beside(tree, standing, joint, progress));
         }
     } catch (...) {
         tree = before;

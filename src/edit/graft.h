@@ -4,7 +4,7 @@
 // Differences from the paper, on purpose: algorithm 7 offsets the scion by 1.001 times the node's position,
 // which moves it off the node the farther the node is from the origin; here it starts at the node. Algorithm
 // 8 gives every node the radius ratio^depth, so that a finely divided branch thins in no time; here radii
-// keep their own profile, blended into the host's over a length.
+// keep their own profile, blended into the host's over a length, unless `thinning` asks for that.
 #pragma once
 
 #include <cstdint>
@@ -52,11 +52,14 @@ struct GraftOptions {
     // Radii: never thicker than the joint allows, and none thicker than its parent's; on a tip the main
     // branch blends from the host's radius into its own. Off: they are the scion's, scaled.
     bool smooth = true;
+    // Above 0: algorithm 8 as printed, in place of `smooth`: each node's radius is the host's times this to
+    // the power of how many nodes it lies beyond the host. 0..1; the paper's is 0.8.
+    double thinning = 0.0;
     double clearance = 0.0;  // metres of air that collisions are reported within
     // Up to so many seeds are tried, from `seed` on, until one is free of collisions; else the best stays.
     // Each further one also turns the scion about its own direction. 1..1000.
     int tries = 1;
-    // graft_many() refuses to add more.
+    // More are not added.
     size_t most_nodes = size_t{1} << 22;
 };
 
@@ -84,5 +87,9 @@ std::vector<GraftResult> graft_many(Tree& tree, std::span<const NodeId> hosts, s
 // is thicker than most = ratio * host_radius; where it is thinner and `blend`, thickens the start of its main
 // branch to that; and leaves no node thicker than its parent, the host being the root's. Radii only.
 void smooth_joint(Tree& wood, double host_radius, double ratio, bool blend);
+
+// Algorithm 8 as printed: every node gets host_radius * ratio^depth, depth being 0 at the scion's root, which
+// lies on the host; at least a nanometre. Radii only.
+void smooth_by_depth(Tree& wood, double host_radius, double ratio);
 
 }  // namespace treerec

@@ -18,6 +18,26 @@ DVec3 some_perpendicular(const DVec3& direction, double turn) {
     return across * portable::cos(turn) + glm::cross(direction, across) * portable::sin(turn);
 }
 
+Tree vary_segments(const Tree& scion, const Variation& variation, uint64_t seed) {
+    Tree varied = scion;
+    Random random(seed);
+    for (const NodeId id : scion.depth_first()) {
+        const NodeId parent = scion.node(id).parent;
+        if (parent == kNoNode) continue;
+        const DVec3 way = scion.node(id).position - scion.node(parent).position;
+        const double spread = variation.angle * kPi / 180.0;
+        const double yaw = portable::atan2(way.z, way.x) + random.uniform(-spread, spread);
+        const double pitch =
+            portable::atan2(way.y, portable::hypot(way.x, way.z)) + random.uniform(-spread, spread);
+        const double length = glm::length(way) * (1.0 + random.uniform(-variation.length, variation.length));
+        varied.set_position(
+            id, varied.node(parent).position + length * DVec3(portable::cos(pitch) * portable::cos(yaw),
+                                                              portable::sin(pitch),
+                                                              portable::cos(pitch) * portable::sin(yaw)));
+    }
+    return varied;
+}
+
 }  // namespace
 
 void require_variation(const Variation& variation) {
@@ -31,6 +51,7 @@ Tree vary_scion(const Tree& scion, const Variation& variation, uint64_t seed) {
     require_variation(variation);
     Tree varied = scion;
     if (variation.none() || scion.empty()) return varied;
+    if (variation.by_segment) return vary_segments(scion, variation, seed);
     const double most = variation.angle * kPi / 180.0;
     const BranchList list = list_branches(scion);
     // By node: how the wood there is turned from where it stood.

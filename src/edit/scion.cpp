@@ -105,13 +105,17 @@ void require_scion(const Tree& scion) {
     if (scion.size() < 2) throw Error("The branch to graft is a single node: it has no wood to graft.");
 }
 
+void require_room(const Tree& tree, size_t nodes) {
+    if (static_cast<int64_t>(tree.id_end()) + static_cast<int64_t>(nodes) > int64_t{kLargestId} + 1)
+        throw Error("The tree would have more than " + std::to_string(kLargestId) +
+                    " nodes, which no file could hold: graft less, or lighten the tree first.");
+}
+
 std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
                                 const ScionPlacement& placement) {
     if (!tree.contains(joint)) throw Error("There is no node " + std::to_string(joint) + " in this tree.");
     require_scion(scion);
-    if (static_cast<int64_t>(tree.id_end()) + static_cast<int64_t>(scion.size()) > int64_t{kLargestId} + 2)
-        throw Error("The tree would have more than " + std::to_string(kLargestId) +
-                    " nodes, which no file could hold: graft less, or lighten the tree first.");
+    require_room(tree, scion.size() - 1);
     const DVec3 foot = scion.node(scion.root()).position;
     const DVec3 place = tree.node(joint).position;
     const std::vector<NodeId> order = scion.depth_first();

@@ -41,6 +41,9 @@ double scion_length(const Tree& scion);
 // Throws Error, with a sentence that names `scion` as the culprit, unless it has a root and wood on it.
 void require_scion(const Tree& scion);
 
+// Throws Error where so many nodes more would be too many for a tree.
+void require_room(const Tree& tree, size_t nodes);
+
 // Where a scion is put: p becomes position-of-joint + axes * (scale * p), a radius r becomes scale * r.
 struct ScionPlacement {
     DMat3 axes{1.0};

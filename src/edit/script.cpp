@@ -69,14 +69,33 @@ std::optional<int> version_of(std::string_view line) {
     return version;
 }
 
+// Where the line ends that the text begins with: not within quotes, so that a text may have several lines.
+// A quote that never ends makes no more than its own line wrong.
+size_t end_of_line(std::string_view text) {
+    const size_t first = text.find('\n');
+    if (text.substr(0, first).find('"') == std::string_view::npos) return first;
+    bool quoted = false;
+    for (size_t at = text.starts_with(kUnfit) ? kUnfit.size() : 0; at < text.size(); at++) {
+        if (text[at] == '"') quoted = !quoted;
+        if (quoted) continue;
+        if (text[at] == '\n') return at;
+        if (text[at] == '#') return text.find('\n', at);
+    }
+    return first;
+}
+
 // Splits off the next line, without its end.
 std::string_view take_line(std::string_view& text) {
-    const size_t end = text.find('\n');
+    const size_t end = end_of_line(text);
     std::string_view line = text.substr(0, end);
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     while (!line.empty() && line.back() == '\r')
         line.remove_suffix(1);
     return line;
+}
+
+size_t lines_in(std::string_view text) {
+    return 1 + static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
 std::string place_of(size_t line, size_t column) {
@@ -109,10 +128,11 @@ EditLog EditLog::parse(std::string_view text) {
     EditLog log;
     ScanFrame frame;
     std::string reason;
-    size_t number = 0;
+    size_t number = 0, lines = 1;
     for (std::string_view rest = text; !rest.empty();) {
         const std::string_view line = take_line(rest);
-        number++;
+        number += lines;
+        lines = lines_in(line);
         if (version_of(line).value_or(0) > kLogVersion) {
             log.entries_.clear();
             log.newer_ = text;
@@ -148,11 +168,15 @@ ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions
     ScriptResult result;
     Tree now = tree;
     std::optional<ScanFrame> written_in;
-    size_t number = 0;
+    size_t number = 0, lines = 1;
     std::string_view rest = script;
     while (!rest.empty()) {
-        number++;
         std::string_view text = take_line(rest);
+        number += lines;
+        lines = lines_in(text);
+        if (options.progress)
+            options.progress->update(
+                1.0 - static_cast<double>(rest.size()) / static_cast<double>(script.size()), "Editing");
         if (options.progress) options.progress->check();
         if (version_of(text).value_or(0) > kLogVersion)
             throw Error("This log was written by a newer version (" + std::to_string(*version_of(text)) +
@@ -176,7 +200,15 @@ ScriptResult run_script(Tree& tree, std::string_view script, const ScriptOptions
             bind.written_in = written_in ? &*written_in : nullptr;
             bind.progress = options.progress;
             bind.keep_going = options.keep_going;
-            const Edit edit = perform(now, text, bind);
+            // A script that fails is given up, so that no command needs a way back; one that goes on does.
+            const std::optional<Tree> before = options.keep_going ? std::optional(now) : std::nullopt;
+            Edit edit;
+            try {
+                edit = perform_for_good(now, text, bind);
+            } catch (const Error&) {
+                if (before) now = *before;
+                throw;
+            }
             result.done++;
             result.log.add(edit);
             if (edit.missing > 0)

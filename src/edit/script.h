@@ -1,6 +1,7 @@
 // Commands in a row: scripts that users write, and the log of what was done to a tree.
 //
-// A script is lines of commands (edit/command_text.h); # begins a comment. A line
+// A script is lines of commands (edit/command_text.h); # begins a comment. A text in quotes may run over
+// several lines. A line
 //     frame origin=x,y,z unit=0.01 up=z
 // says in which frame the places and lengths that follow are written, so that they stay where they were in
 // the scan; without it they are in the tree's own. A log is a script that begins with "# treerec edit log 1";
@@ -50,7 +51,7 @@ struct ScriptOptions {
     // What does not fit is left out and told, instead of failing: a node of a list, or else the command. "#?"
     // lines are tried again.
     bool keep_going = false;
-    const Progress* progress = nullptr;
+    Progress* progress = nullptr;
 };
 
 struct LeftOut {

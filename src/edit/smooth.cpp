@@ -185,7 +185,14 @@ std::vector<NodeId> subdivide(Tree& tree, const std::vector<NodeId>& nodes, doub
     for (const NodeId id : nodes)
         wanted += std::max(std::ceil(segment_length(tree, id) / length) - 1.0, 0.0);
     if (!(wanted <= kMostNodes)) throw Error("Segments that short would take more than a million nodes.");
-    std::vector<NodeId> added;
+    if (static_cast<double>(tree.id_end()) + wanted > kLargestId)
+        throw Error("The tree would have more than " + std::to_string(kLargestId) +
+                    " nodes, which no file could hold: choose longer segments.");
+    // What comes into the segment below a node, from its begin to its end.
+    std::vector<size_t> begin(static_cast<size_t>(tree.id_end()), 0), end = begin;
+    std::vector<DVec3> new_places;
+    std::vector<double> new_radii;
+    std::vector<uint8_t> new_flags;
     for (const Branch& branch : list.branches) {
         const std::span<const NodeId> chain = list.nodes_of(branch);
         for (size_t i = 0; i < chain.size(); i++) {
@@ -197,17 +204,47 @@ std::vector<NodeId> subdivide(Tree& tree, const std::vector<NodeId>& nodes, doub
             const NodeId lowest = i > 1 ? chain[i - 2] : i == 1 ? branch.attach : kNoNode;
             const DVec3 before = lowest != kNoNode ? places[lowest] : from - (to - from);
             const DVec3 after = i + 1 < chain.size() ? places[chain[i + 1]] : to + (to - from);
-            const Node first = tree.node(lower), last = tree.node(id);
+            const Node &first = tree.node(lower), &last = tree.node(id);
+            begin[id] = new_places.size();
             for (int part = 1; part < parts; part++) {
                 const double share = static_cast<double>(part) / parts;
-                const DVec3 place =
-                    curved ? catmull_rom(before, from, to, after, share) : glm::mix(from, to, share);
+                new_places.push_back(curved ? catmull_rom(before, from, to, after, share)
+                                            : glm::mix(from, to, share));
                 // A side branch starts with its own thickness, not with that of the wood it grows from.
-                const double radius = i == 0 ? last.radius : glm::mix(first.radius, last.radius, share);
-                added.push_back(tree.insert_before(id, place, radius, flags_between(first, last)));
+                new_radii.push_back(i == 0 ? last.radius : glm::mix(first.radius, last.radius, share));
+                new_flags.push_back(flags_between(first, last));
             }
+            end[id] = new_places.size();
         }
     }
+    std::vector<NodeId> added;
+    if (new_places.empty()) return added;
+    // All at once: one after the other, each would change the depth of all above it.
+    const size_t count = tree.size() + new_places.size();
+    std::vector<NodeId> ids, parents, index(static_cast<size_t>(tree.id_end()), kNoNode);
+    std::vector<DVec3> positions;
+    std::vector<double> radii;
+    std::vector<uint8_t> flags;
+    ids.reserve(count), parents.reserve(count), positions.reserve(count), radii.reserve(count);
+    flags.reserve(count);
+    const auto add = [&](NodeId id, NodeId parent, const DVec3& place, double radius, uint8_t marks) {
+        ids.push_back(id), parents.push_back(parent), positions.push_back(place), radii.push_back(radius);
+        flags.push_back(marks);
+        return static_cast<NodeId>(ids.size() - 1);
+    };
+    for (const NodeId id : tree.depth_first()) {
+        const Node& node = tree.node(id);
+        NodeId below = node.parent == kNoNode ? kNoNode : index[node.parent];
+        for (size_t i = begin[id]; i < end[id]; i++)
+            below =
+                add(tree.id_end() + static_cast<NodeId>(i), below, new_places[i], new_radii[i], new_flags[i]);
+        index[id] = add(id, below, node.position, node.radius, node.flags);
+    }
+    for (size_t i = 0; i < new_places.size(); i++)
+        added.push_back(tree.id_end() + static_cast<NodeId>(i));
+    Tree finer = Tree::from_arrays(parents, positions, radii, flags, &ids);
+    finer.set_frame(tree.frame());
+    tree = std::move(finer);
     return added;
 }
 

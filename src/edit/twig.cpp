@@ -69,12 +69,18 @@ NodeId make_twig(Tree& tree, NodeId node, const TwigOptions& options) {
     const DVec3 direction =
         options.direction ? unit(*options.direction, "A twig's direction") : side_direction(along, options);
     double radius = options.radius;
+    if (options.as_printed && options.length == 0.0 && host.child_count == 0)
+        throw Error(
+            "A twig's length by algorithm 5 is a share of the way to the node's child, and a tip has none: "
+            "give it a length.");
+    if (options.as_printed && radius == 0.0) radius = kRadiusShare * host.radius;
     if (radius == 0.0) {
         const double share = kRadiusShare * std::sqrt(std::min(1.0, kThinRadius / host.radius));
         radius = host.radius * std::max(share, kLeastShare);
     }
     radius = std::min(radius, host.radius);
     double length = options.length;
+    if (options.as_printed && length == 0.0) length = kLengthShare * segment;
     if (length == 0.0) length = std::max(kLengthShare * segment, host.radius + 4.0 * radius);
     const DVec3 place = host.position + direction * length;
     return tree.add_child(node, place, radius);

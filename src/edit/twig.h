@@ -18,6 +18,9 @@ struct TwigOptions {
     TwigSide side = TwigSide::kRight;
     DVec3 view{0.0, 0.0, -1.0};
     DVec3 up{0.0, 1.0, 0.0};
+    // Where length or radius is 0: 0.6 of the way to the node's first child and 0.8 of the node's radius, as
+    // algorithm 5 prints it, in place of what suits the host. A tip has no such length.
+    bool as_printed = false;
     // Metres; 0 for what suits the host: 0.6 of the branch's segment there, and at least out of the bark by
     // twice the twig's thickness.
     double length = 0.0;
@@ -26,7 +29,8 @@ struct TwigOptions {
 };
 
 // Adds one node as the last child of `node` and returns its id. Nothing else changes. Throws Error, before
-// anything changes, for an unknown node, a direction or view of no length, or a negative length or radius.
+// anything changes, for an unknown node, a direction or view of no length, a negative length or radius, or a
+// tip's printed length.
 NodeId make_twig(Tree& tree, NodeId node, const TwigOptions& options);
 
 }  // namespace treerec

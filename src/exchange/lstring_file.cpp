@@ -10,103 +10,43 @@ namespace treerec {
 
 namespace {
 
-constexpr std::string_view kBegin = "# L-string;";
 constexpr size_t kLineLength = 100;
 
-// The words of the comment behind the stamp, one after the other.
-class Header {
-  public:
-    Header(std::string_view line, const std::string& path) : rest_(line), path_(path) {}
-
-    std::string_view word() {
-        const size_t begin = std::min(rest_.find_first_not_of(" \t"), rest_.size());
-        const size_t end = std::min(rest_.find_first_of(" \t", begin), rest_.size());
-        const std::string_view found = rest_.substr(begin, end - begin);
-        rest_.remove_prefix(end);
-        return found;
-    }
-
-    double number() {
-        const std::string_view text = word();
-        const std::optional<double> value = parse_number(text);
-        if (!value || !std::isfinite(*value))
-            throw Error("'" + path_ + "', line 1: " + quote_word(text) + " is no number.");
-        return *value;
-    }
-
-    DVec3 vector() {
-        const double x = number();
-        const double y = number();
-        return {x, y, number()};
-    }
-
-  private:
-    std::string_view rest_;
-    const std::string& path_;
-};
-
-void read_header(std::string_view line, const std::string& path, ScanFrame& frame, LStringOptions& options) {
+// What the heading says of the place in the scan. A heading without a stamp says nothing of it.
+void read_place(std::string_view line, const std::string& path, ScanFrame& frame) {
+    const bool stamped = line.find(" treerec ") != std::string_view::npos;
     FileStamp stamp{frame.up, frame.metres_per_unit, frame.tilt};
+    if (!stamped) return;
     if (!read_stamp(line, stamp, path)) throw Error("'" + path + "', line 1, is damaged.");
     frame.up = stamp.up;
     frame.metres_per_unit = stamp.metres_per_unit;
     frame.tilt = stamp.tilt;
-    Header header(line, path);
-    for (std::string_view word = header.word(); !word.empty(); word = header.word()) {
-        if (word == "origin")
-            frame.origin = header.vector();
-        else if (word == "dialect")
-            options.dialect = parse_lstring_dialect(header.word());
-        else if (word == "angle")
-            options.angle = header.number();
-        else if (word == "step")
-            options.step = header.number();
-        else if (word == "radius")
-            options.radius = header.number();
-        else if (word == "thinning")
-            options.thinning = header.number();
-        else if (word == "leaf")
-            options.leaf_symbols = header.word();
-        else if (word == "tropism") {
-            options.tropism = header.vector();
-            options.elasticity = header.number();
-        }
+    constexpr std::string_view kOrigin = " origin";
+    const size_t at = line.find(" origin ");
+    if (at == std::string_view::npos) return;
+    std::string_view rest = line.substr(at + kOrigin.size());
+    for (int axis = 0; axis < 3; axis++) {
+        rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+        const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r"));
+        const std::optional<double> value = parse_number(word);
+        if (!value || !std::isfinite(*value))
+            throw Error("'" + path + "', line 1: " + quote_word(word) + " is no number.");
+        frame.origin[axis] = *value;
+        rest.remove_prefix(word.size());
     }
-}
-
-void append_word(std::string& text, const char* name, double value, double usual) {
-    if (value == usual) return;
-    text += ' ';
-    text += name;
-    text += ' ';
-    append_number(text, value);
 }
 
 }  // namespace
 
 std::string lstring_file_text(std::string_view string, const ScanFrame& frame,
                               const LStringOptions& options) {
-    const LStringOptions usual;
-    std::string text(kBegin);
-    text += ' ' + stamp_text(frame) + " origin";
+    std::string text = "# L-string; " + stamp_text(frame) + " origin";
     for (int axis = 0; axis < 3; axis++) {
         text += ' ';
         append_number(text, frame.origin[axis]);
     }
-    text += options.dialect == LStringDialect::kPaper ? " dialect paper" : " dialect turtle";
-    append_word(text, "angle", options.angle, usual.angle);
-    append_word(text, "step", options.step, usual.step);
-    append_word(text, "radius", options.radius, usual.radius);
-    append_word(text, "thinning", options.thinning, usual.thinning);
-    if (!options.leaf_symbols.empty()) text += " leaf " + options.leaf_symbols;
-    if (options.elasticity != 0.0) {
-        text += " tropism";
-        for (const double value :
-             {options.tropism.x, options.tropism.y, options.tropism.z, options.elasticity}) {
-            text += ' ';
-            append_number(text, value);
-        }
-    }
+    if (options.dialect == LStringDialect::kTurtle) text += " dialect turtle";
+    text += heading_words(options);
     text += '\n';
     text.reserve(text.size() + string.size() + string.size() / kLineLength + 2);
     bool inside = false;
@@ -146,13 +86,14 @@ LStringTree read_lstring_file(const std::string& path, const LStringOptions& opt
 
 LStringTree parse_lstring_file(std::string_view bytes, const std::string& path, const LStringOptions& options,
                                const Progress* progress) {
-    LStringOptions told = options;
     ScanFrame frame;
     try {
-        if (is_lstring_file(bytes)) {
-            std::string_view rest = bytes;
-            read_header(next_line(rest).value_or(""), path, frame, told);
+        LStringOptions told = options;
+        if (has_heading(bytes)) {
+            read_place(bytes.substr(0, bytes.find('\n')), path, frame);
+            if (options.heeds_heading) told = with_heading(bytes, options, "'" + path + "'");
         }
+        told.heeds_heading = false;
         LStringTree read = read_lstring_with_leaves(bytes, told, progress);
         read.tree.set_frame(frame);
         return read;
@@ -166,7 +107,7 @@ LStringTree parse_lstring_file(std::string_view bytes, const std::string& path, 
 }
 
 bool is_lstring_file(std::string_view bytes) {
-    return bytes.starts_with(kBegin);
+    return has_heading(bytes);
 }
 
 }  // namespace treerec

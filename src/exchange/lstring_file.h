@@ -16,7 +16,7 @@ std::string lstring_file_text(std::string_view string, const ScanFrame& frame, c
 void write_lstring_file(const std::string& path, const Tree& tree, const LStringOptions& options = {},
                         const Progress* progress = nullptr);
 
-// The tree and its leaves; what the comment says goes before `options`. Without such a comment the tree's
+// The tree and its leaves; options that heed the heading are told by it. Without a place in it the tree's
 // axes are the scan's. Throws Error that names the file, line and column, and Cancelled.
 LStringTree read_lstring_file(const std::string& path, const LStringOptions& options = {},
                               const Progress* progress = nullptr);

@@ -71,13 +71,13 @@ struct RewriteOptions {
     // Where it is stopped with an Error instead of filling the machine.
     size_t most_symbols = 5'000'000;
     size_t most_bytes = size_t{512} << 20;
-    double most_seconds = 60.0;
+    double most_seconds = 30.0;
 };
 
 // The string after so many steps. The same grammar and seed give the same string. Throws Error where a limit
 // is passed or a parameter becomes infinite, and Cancelled.
 std::string rewrite(const Grammar& grammar, const RewriteOptions& options,
-                    const Progress* progress = nullptr);
+                    Progress* progress = nullptr);
 
 // Whether the text is a grammar (and not an L-string): one of its lines sets the axiom.
 bool is_grammar(std::string_view text);

@@ -14,6 +14,7 @@
 //
 // Without a parameter F, f, +, ... take the options' values and ! thins by the options' ratio. Other letters
 // and digits are skipped, as a turtle skips the symbols of a grammar. Blanks are skipped, # begins a comment.
+// A first line such as "# L-string; dialect paper angle 30" is a heading: it says how the rest is read.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +40,11 @@ LStringDialect parse_lstring_dialect(std::string_view name);
 
 struct LStringOptions {
     LStringDialect dialect = LStringDialect::kTurtle;
+    // Reading: the string is of that dialect, whatever its heading says. Without that, and without a heading,
+    // a turtle refuses numbers that stand as in the paper, +45: it would skip them as other symbols.
+    bool dialect_is_told = false;
+    // Reading: what a heading says goes before the numbers below (with_heading()).
+    bool heeds_heading = true;
 
     // Reading: what a symbol without a parameter means.
     double angle = 25.0;    // degrees
@@ -81,6 +87,18 @@ struct LStringTree {
     std::vector<LStringLeaf> leaves;
 };
 
+// The options with what the text's heading says in place of theirs, but for a dialect that is told; the same
+// where there is no heading. Unknown words of it are skipped. who: begins a sentence about it, "The
+// L-string". Throws Error.
+LStringOptions with_heading(std::string_view text, const LStringOptions& options,
+                            const std::string& who = "The L-string");
+// Whether the text begins with a heading.
+bool has_heading(std::string_view text);
+// What a heading says of the options where they are not as usual: " dialect paper angle 30".
+std::string heading_words(const LStringOptions& options);
+// The line itself, or nothing where all is as usual.
+std::string heading(const LStringOptions& options);
+
 // The tree that the string draws: its root at the origin, its axis along +Y, +Z its up. A continuation
 // without brackets is the first child of its node, branches in brackets follow in their order. Throws Error
 // with line and column for what is no such string, and Cancelled.
@@ -94,6 +112,9 @@ LStringTree read_lstring_with_leaves(std::string_view text, const LStringOptions
 // Throws Error where there is no such node.
 std::string write_lstring(const Tree& tree, NodeId from, const LStringOptions& options = {},
                           const Progress* progress = nullptr);
+
+// Throws Error for a tree without wood: nothing was drawn, or without length. who: "The L-string".
+void require_wood(const Tree& tree, const std::string& who);
 
 // "line 3, column 7", both from 1, of the byte at `offset`.
 std::string place_in_text(std::string_view text, size_t offset);

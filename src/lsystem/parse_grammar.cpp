@@ -21,7 +21,11 @@ bool is_symbol(char c) {
 
 class GrammarParser {
   public:
-    explicit GrammarParser(std::string_view text) : text_(text), whole_(text) {}
+    explicit GrammarParser(std::string_view text) : text_(text), whole_(text) {
+        // Its digits are symbols, also behind a turn, and what it writes has no heading.
+        grammar_.turtle.dialect_is_told = true;
+        grammar_.turtle.heeds_heading = false;
+    }
 
     Grammar parse() {
         while (next_statement())

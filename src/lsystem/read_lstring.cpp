@@ -21,20 +21,27 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
 bool is_letter_or_digit(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || is_digit(c);
 }
 
 class Reader {
   public:
     Reader(std::string_view text, const LStringOptions& options, const Progress* progress)
-        : text_(text), options_(options), progress_(progress), random_(options.seed) {
-        require_usable(options);
+        : text_(text),
+          options_(options.heeds_heading ? with_heading(text, options) : options),
+          progress_(progress),
+          random_(options.seed) {
+        require_usable(options_);
         parents_.reserve(text.size() / 24 + 1);
         positions_.reserve(text.size() / 24 + 1);
         radii_.reserve(text.size() / 24 + 1);
         flags_.reserve(text.size() / 24 + 1);
-        state_.radius = options.radius;
+        state_.radius = options_.radius;
         add_node(kNoNode, false);
     }
 
@@ -117,6 +124,18 @@ class Reader {
         return value;
     }
 
+    // Of a turn, which takes its number in brackets. A string of the paper's that nothing says so of would be
+    // another branch.
+    double turn() {
+        const double angle = parameter(options_.angle);
+        if (!has_parameter_ && !options_.dialect_is_told && skip_blanks() &&
+            (is_digit(text_[at_]) || text_[at_] == '.'))
+            fail(begin_,
+                 std::string("a number without brackets, as the paper's dialect writes it. Read the ") +
+                     "string as dialect paper, or write " + text_[begin_] + "(45).");
+        return angle;
+    }
+
     // The first of the parameters behind a symbol, or `otherwise`.
     double parameter(double otherwise) {
         has_parameter_ = skip_blanks() && text_[at_] == '(';
@@ -135,7 +154,7 @@ class Reader {
 
     // The paper writes both +(45) and +45.
     double paper_parameter(double otherwise) {
-        if (skip_blanks() && ((text_[at_] >= '0' && text_[at_] <= '9') || text_[at_] == '.')) {
+        if (skip_blanks() && (is_digit(text_[at_]) || text_[at_] == '.')) {
             has_parameter_ = true;
             return number();
         }
@@ -251,13 +270,13 @@ class Reader {
             case 'f':
                 return draw(parameter(options_.step), true);
             case '+':
-                return turtle.turn_left(parameter(options_.angle));
+                return turtle.turn_left(turn());
             case '-':
-                return turtle.turn_left(-parameter(options_.angle));
+                return turtle.turn_left(-turn());
             case '&':
-                return turtle.pitch_up(-parameter(options_.angle));
+                return turtle.pitch_up(-turn());
             case '^':
-                return turtle.pitch_up(parameter(options_.angle));
+                return turtle.pitch_up(turn());
             case '\\':
                 return turtle.roll_left(parameter(options_.angle));
             case '/':
@@ -370,7 +389,7 @@ class Reader {
     }
 
     std::string_view text_;
-    const LStringOptions& options_;
+    LStringOptions options_;
     const Progress* progress_;
     Random random_;
     size_t at_ = 0;

@@ -35,7 +35,7 @@ struct ModuleString {
 
 class Rewriter {
   public:
-    Rewriter(const Grammar& grammar, const RewriteOptions& options, const Progress* progress)
+    Rewriter(const Grammar& grammar, const RewriteOptions& options, Progress* progress)
         : grammar_(grammar),
           options_(options),
           progress_(progress),
@@ -57,6 +57,7 @@ class Rewriter {
             append(module, "the axiom");
         std::swap(now_, next_);
         for (step_ = 1; step_ <= steps_; step_++) {
+            if (progress_) progress_->update(static_cast<double>(step_ - 1) / steps_, "Growing");
             next_.clear();
             find_brackets();
             if (has_context_) find_neighbours();
@@ -268,7 +269,7 @@ class Rewriter {
 
     const Grammar& grammar_;
     const RewriteOptions& options_;
-    const Progress* progress_;
+    Progress* progress_;
     Random random_;
     std::chrono::steady_clock::time_point start_;
     std::array<std::vector<const GrammarRule*>, 256> rules_of_;
@@ -289,7 +290,7 @@ class Rewriter {
 
 }  // namespace
 
-std::string rewrite(const Grammar& grammar, const RewriteOptions& options, const Progress* progress) {
+std::string rewrite(const Grammar& grammar, const RewriteOptions& options, Progress* progress) {
     return Rewriter(grammar, options, progress).rewrite();
 }
 

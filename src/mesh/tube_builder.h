@@ -76,6 +76,7 @@ struct Builder {
     std::vector<std::vector<CollarVertex>> collars;  // by chunk of branches
     std::vector<float> widened;     // by branch: how many times its width it is drawn; 0: not at all
     std::vector<float> node_along;  // by node id: metres along its branch's axis
+    std::vector<NodeId> continues;  // by node id: the next one of its branch, or kNoNode
 
     Builder(const Tree& t, const TubeOptions& o)
         : tree(t),
@@ -88,7 +89,12 @@ struct Builder {
           rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
           collars(rings.size()),
           widened(share_twigs(t, list, crown, o.twig_level < 0.0 ? o.level : o.twig_level)),
-          node_along(static_cast<size_t>(t.id_end()), 0.0f) {}
+          node_along(static_cast<size_t>(t.id_end()), 0.0f),
+          continues(static_cast<size_t>(t.id_end()), kNoNode) {
+        for (const Branch& branch : list.branches)
+            for (int32_t i = branch.begin; i + 1 < branch.end; i++)
+                continues[list.nodes[i]] = list.nodes[i + 1];
+    }
 
     const Ring* rings_of(size_t branch) const {
         return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
@@ -100,11 +106,10 @@ struct Builder {
         const Node& node = tree.node(attach);
         double radius = node.radius;
         const Branch& parent = list.branches[list.branch_of[attach]];
-        for (NodeId child : tree.children(attach)) {
-            if (list.branch_of[child] != list.branch_of[attach]) continue;
-            const double distance = glm::distance(tree.node(child).position, node.position);
+        if (const NodeId next = continues[attach]; next != kNoNode) {
+            const double distance = glm::distance(tree.node(next).position, node.position);
             const double t = distance > reach ? reach / distance : 1.0;
-            radius = std::min(radius, radius + (tree.node(child).radius - radius) * t);
+            radius = std::min(radius, radius + (tree.node(next).radius - radius) * t);
         }
         const double thickest = tree.node(list.nodes[parent.begin]).radius;
         return 0.92 * polygon_flat(sides_of(thickest, options)) * radius;

@@ -287,6 +287,11 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
             result.completed_length += branch.length;
         clock.stop("Completion", result.tree.size());
     }
+    if (options.prune) {
+        result.pruned = prune_twigs(result.tree, *options.prune).nodes.size();
+        result.tree = result.tree.compacted();
+        clock.stop("Pruning", result.tree.size());
+    }
     return result;
 }
 

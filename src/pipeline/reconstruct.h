@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "edit/prune.h"
 #include "fidelity/score.h"
 #include "foliage/foliage.h"
 #include "pipeline/export.h"
@@ -27,6 +29,8 @@ struct ReconstructOptions {
     // Walk over what the tree does not explain and add what is found (skeleton/complete_all.h); not for
     // palms.
     bool complete = false;
+    // Cut twigs that are longer than the mean at last (papers/000, algorithm 3).
+    std::optional<PruneOptions> prune;
     bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;
     size_t score_points = 200000;  // about how many points the fit is measured on
@@ -51,6 +55,7 @@ struct Reconstruction {
     double noise = 0.0;            // metres, where the scan is noisy all over; else 0
     size_t completed = 0;          // branches that were added afterwards
     double completed_length = 0.0;
+    size_t pruned = 0;  // nodes that were cut away at last
     ReadCloudReport read;
     OrientReport orient;
     CleanReport clean;

@@ -61,6 +61,7 @@ Json options_json(const ReportDetails& details) {
     json["leaves"] = details.leaves;
     json["tell_leaves"] = options.tell_leaves;
     json["complete"] = options.complete;
+    json["prune"] = !options.prune ? Json(nullptr) : Json(options.prune->spare_leader ? "leader" : "paper");
     const PickOptions& pick = options.clean.pick;
     json["tree"] = !pick.enabled || pick.position ? Json(nullptr) : Json(pick.number);
     json["tree_at"] = pick.position ? vector_json(*pick.position) : Json(nullptr);

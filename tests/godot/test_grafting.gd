@@ -151,3 +151,100 @@ func test_refuses_what_makes_no_sense() -> void:
 	expect_error("pixels wide")
 	check(TreeReconstruction.draw_branch("F(1)", 5).is_empty(), "A tiny picture was drawn.")
 	check_equal(made.skeleton["positions"], before, "the tree")
+
+
+func test_the_papers_algorithms_by_name() -> void:
+	var made: TreeReconstruction = grown_tree(5)
+	var tip: int = made.get_leaves()[1]
+	var options: Dictionary = {"twig": "oak", "thinning": 0.8, "vary": "segments", "seed": 3}
+	var edit: TreeEdit = made.graft(tip, options)
+	check(edit != null, "Nothing was grafted.")
+	if edit == null:
+		return
+	for id: int in edit.get_result_nodes():
+		var depth: int = made.get_node_depth(id) - made.get_node_depth(tip)
+		var printed: float = maxf(made.get_node_radius(tip) * pow(0.8, depth), 1e-9)
+		check_near(made.get_node_radius(id), printed, 1e-9, "a radius")
+	var node: int = made.get_trunk_nodes()[4]
+	var next: int = made.get_node_children(node)[0]
+	var twig: TreeEdit = made.make_twig(node, {"size": "paper"})
+	check(twig != null, "There is no twig.")
+	if twig == null:
+		return
+	var end: int = twig.get_result_nodes()[0]
+	check_near(made.get_node_radius(end), 0.8 * made.get_node_radius(node), 1e-9, "its radius")
+	var foot: Vector3 = made.get_node_position(node)
+	check_near(
+		made.get_node_position(end).distance_to(foot),
+		0.6 * made.get_node_position(next).distance_to(foot),
+		1e-5,
+		"its length"
+	)
+
+
+func test_ids_are_heard_whole() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	for id: int in [5 + (1 << 32), -(1 << 40), 1 << 62, -2]:
+		check(not made.has_node(id), "%d is a node." % id)
+		expect_error("The tree has no node %d" % id)
+		check_equal(made.get_node_position(id), Vector3(), "its position")
+		expect_error("The tree has no node %d" % id)
+		check(made.get_node_children(id).is_empty(), "It has children.")
+		expect_error("There is no node %d in this tree." % id)
+		check_equal(made.take_branch(id), "", "its branch")
+		expect_error("There is no node %d in this tree." % id)
+		check(made.find_collisions(id).is_empty(), "It collides.")
+		expect_error(str(id))
+		check(made.graft(id) == null, "Something was grafted.")
+		expect_error("There is no node %d in this tree." % id)
+		check_equal(LSystem.write_string(made, id), "", "its string")
+
+
+func test_what_is_no_number_is_told() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	var before: PackedInt64Array = made.skeleton["positions"]
+	var tip: int = made.get_leaves()[0]
+	var none: Dictionary = {
+		"angle": NAN,
+		"stretch": INF,
+		"roll": NAN,
+		"seed": NAN,
+		"clearance": -INF,
+		"direction": Vector3(NAN, 0, 1),
+		"thinning": NAN,
+		"tries": 1 << 40,
+		"most": 1 << 40
+	}
+	for key: String in none:
+		expect_error("'%s' must be" % key)
+		check(made.graft(tip, {key: none[key]}) == null, "%s was taken." % key)
+	for line: String in ["thicken factor=nan", "move nodes=1 by=nan,0,0", "sag load=inf"]:
+		expect_error("must be")
+		check(made.edit(line) == null, "%s was done." % line)
+	for amount: float in [NAN, INF, -0.5, 1.5]:
+		expect_error("amount of variation")
+		check(made.make_variant(1, amount) == null, "A variant of %s was made." % amount)
+	for age: float in [NAN, INF, 0.0, 1.5]:
+		expect_error("age of a variant")
+		check(made.make_variant(1, 0.5, age) == null, "A variant of age %s was made." % age)
+	expect_error("clearance")
+	check(made.find_collisions(tip, NAN).is_empty(), "It collides.")
+	check_equal(made.skeleton["positions"], before, "the tree")
+
+
+func test_roundings_and_nulls_pass() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	var oldest: TreeReconstruction = made.make_variant(1, 1.0000000000000002, 1.2000000000000002)
+	check(oldest != null, "1.2000000000000002 is not 1.2.")
+	if oldest != null:
+		var plain: TreeReconstruction = made.make_variant(1, 1.0, 1.2)
+		check_equal(oldest.skeleton["positions"], plain.skeleton["positions"], "the oldest one")
+	var tip: int = made.get_leaves()[0]
+	var options: Dictionary = {"stretch": 0.9000000000000001, "twig": null, "direction": null}
+	check(made.graft(tip, options) != null, "Nothing was grafted.")
+	expect_error("There is no tree to take a branch of")
+	check_equal(Twig.from_branch(null, 3).lstring, "", "a branch of nothing")
+	expect_error("There is no list to fill")
+	TwigLibrary.presets().fill(null)
+	expect_error("There is no edit to apply")
+	check_equal(made.apply_edit(null), ERR_INVALID_PARAMETER, "no edit")

@@ -182,3 +182,81 @@ func test_grows_on_a_thread_while_it_changes() -> void:
 	for i: int in 200:
 		system.grammar = "axiom: F\nF -> FF" if i % 2 == 0 else LSystem.get_preset("monopodial")
 	check(thread.wait_to_finish(), "A string of neither grammar came out.")
+
+
+func test_a_heading_says_the_dialect() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var paper: String = LSystem.write_string(made, -1, LSystem.DIALECT_PAPER)
+	check(paper.begins_with("# L-string; dialect paper\n"), "It begins with %s." % paper.left(40))
+	var told: TreeReconstruction = LSystem.read_string(paper)
+	check_near(told.get_aabb().size.y, made.get_aabb().size.y, 0.1, "its height")
+	check(not LSystem.write_string(made).contains("#"), "A turtle's string has a heading.")
+	var turtle: TreeReconstruction = LSystem.read_string(paper, LSystem.DIALECT_TURTLE)
+	check(
+		absf(turtle.get_aabb().size.y - made.get_aabb().size.y) > 0.1, "The argument was not heard."
+	)
+	expect_error("dialect paper")
+	check(LSystem.read_string("[+45&60F(0.5)]") == null, "It was misread.")
+	check_equal(
+		LSystem.read_string("[+45&60F(0.5)]", LSystem.DIALECT_PAPER).get_node_count(), 2, "as told"
+	)
+	# Wherever a string goes.
+	check_equal(
+		TreeReconstruction.measure_branch("# L-string; step 2\nFF")["length"],
+		4.0,
+		"a twig's length"
+	)
+	var tip: int = made.get_leaves()[0]
+	var count: int = made.get_node_count()
+	var edit: TreeEdit = made.graft(tip, {"string": "# L-string; dialect paper\n&90F(0.1)F(0.1)"})
+	check(edit != null and made.get_node_count() == count + 2, "It was not grafted.")
+	var again: TreeReconstruction = grown_tree(3)
+	check_equal(again.replay(made.edit_log)["done"], 1, "replayed with its two lines")
+	check_equal(again.skeleton["positions"], made.skeleton["positions"], "the same graft")
+
+
+func test_segments_vary_by_a_seed() -> void:
+	var text: String = LSystem.write_string(grown_tree(4))
+	var plain: TreeReconstruction = LSystem.read_string(text)
+	var one: TreeReconstruction = LSystem.read_string(text, LSystem.DIALECT_TOLD, 8.0, 0.2, 4)
+	var same: TreeReconstruction = LSystem.read_string(text, LSystem.DIALECT_TOLD, 8.0, 0.2, 4)
+	var other: TreeReconstruction = LSystem.read_string(text, LSystem.DIALECT_TOLD, 8.0, 0.2, 5)
+	check_equal(one.skeleton["positions"], same.skeleton["positions"], "the same seed")
+	check(one.skeleton["positions"] != other.skeleton["positions"], "Two seeds give one branch.")
+	check_equal(one.get_node_count(), plain.get_node_count(), "the nodes")
+	for node: int in one.get_node_ids():
+		var parent: int = one.get_node_parent(node)
+		if parent == TreeReconstruction.NO_NODE:
+			continue
+		var length: float = plain.get_node_position(node).distance_to(
+			plain.get_node_position(parent)
+		)
+		var varied: float = one.get_node_position(node).distance_to(one.get_node_position(parent))
+		check(absf(varied - length) <= 0.2 * length + 1e-5, "Node %d: %f." % [node, varied])
+	for spread: float in [NAN, -1.0, 181.0, INF]:
+		expect_error("0 to 180 degrees")
+		check(LSystem.read_string("F(1)", LSystem.DIALECT_TOLD, spread) == null, str(spread))
+
+
+func test_what_draws_nothing_is_told() -> void:
+	for text: String in ["", "+(3)", "F(0)", "# F(1)"]:
+		expect_error("The L-string draws no wood")
+		check(LSystem.read_string(text) == null, "'%s' is a tree." % text)
+	var system: LSystem = LSystem.new()
+	system.grammar = "iterations: 2\naxiom: F(1)\nF(x) -> *"
+	expect_error("The string that the grammar makes in 2 steps draws no wood")
+	check(system.grow() == null, "Nothing is a tree.")
+
+
+func test_growing_is_cancelled() -> void:
+	var system: LSystem = LSystem.new()
+	system.grammar = "iterations: 10000\naxiom: FFFFFFFFFFFFFFFFFFFFFFFFFFFFFFFF\nF -> F"
+	system.maximum_seconds = 3600.0
+	system.grammar = system.grammar.replace("axiom: ", "axiom: " + "F".repeat(20000))
+	expect_error("Cancelled.")
+	var thread: Thread = Thread.new()
+	thread.start(system.generate)
+	while thread.is_alive():
+		system.cancel()
+		OS.delay_msec(20)
+	check_equal(thread.wait_to_finish(), "", "the string")

@@ -226,5 +226,28 @@ TEST(EditGraftTwig, GoesWhereItIsToldAsLongAndThickAsAsked) {
     EXPECT_EQ(tree.size(), 4u);
 }
 
+TEST(EditTwig, IsAsLongAndThickAsAlgorithm5Prints) {
+    for (uint64_t seed = 1; seed <= 300; seed++) {
+        Random random(seed);
+        Tree tree = test::random_tree(seed, 60);
+        const std::vector<NodeId> ids = tree.depth_first();
+        const NodeId node = ids[random.below(static_cast<uint32_t>(ids.size()))];
+        TwigOptions options;
+        options.as_printed = true;
+        options.direction = random.direction();
+        const NodeId child = tree.node(node).first_child;
+        if (child == kNoNode) {
+            EXPECT_THROW(make_twig(tree, node, options), Error);
+            options.length = 0.1;
+            EXPECT_NO_THROW(make_twig(tree, node, options));
+            continue;
+        }
+        const double segment = glm::distance(tree.node(node).position, tree.node(child).position);
+        const NodeId twig = make_twig(tree, node, options);
+        EXPECT_NEAR(glm::distance(tree.node(twig).position, tree.node(node).position), 0.6 * segment, 1e-12);
+        EXPECT_EQ(tree.node(twig).radius, 0.8 * tree.node(node).radius);
+    }
+}
+
 }  // namespace
 }  // namespace treerec

@@ -8,6 +8,7 @@
 #include "edit/graft.h"
 #include "edit/scion.h"
 #include "error.h"
+#include "lsystem/lstring.h"
 #include "random_tree.h"
 
 namespace treerec {
@@ -404,6 +405,76 @@ TEST(EditGraft, RefusesWhatMakesNoSense) {
     const Stop stop;
     EXPECT_THROW(graft(tree, 3, scion, {}, &stop), Cancelled);
     EXPECT_TRUE(same_bits(tree, start));
+}
+
+// The scion written as algorithm 4 does and read as algorithm 6 does.
+TEST(EditGraft, SegmentsVaryAsInAlgorithm6) {
+    for (uint64_t seed = 1; seed <= 200; seed++) {
+        Random random(seed);
+        const Tree tree = test::random_tree(seed, 80);
+        const Tree scion = take_scion(tree, some_node(tree, random));
+        LStringOptions options;
+        options.dialect = LStringDialect::kPaper;
+        options.accuracy = 1e-11;
+        const std::string string = write_lstring(scion, scion.root(), options);
+        options.angle_spread = random.uniform(0.0, 40.0);
+        options.length_spread = random.uniform(0.0, 0.9);
+        options.seed = random.next();
+        const Tree read = read_lstring(string, options);
+        const Tree varied =
+            vary_scion(scion, {options.angle_spread, options.length_spread, true}, options.seed);
+        ASSERT_EQ(varied.check(), std::nullopt);
+        const std::vector<NodeId> in_read = read.depth_first(), in_varied = varied.depth_first();
+        ASSERT_EQ(in_read.size(), in_varied.size());
+        for (size_t i = 0; i < in_read.size(); i++) {
+            ASSERT_LT(glm::distance(read.node(in_read[i]).position, varied.node(in_varied[i]).position), 1e-7)
+                << "seed " << seed;
+            ASSERT_TRUE(same_bits(varied.node(in_varied[i]).radius, scion.node(in_varied[i]).radius));
+        }
+    }
+}
+
+TEST(EditGraft, RadiiFallByDepthAsInAlgorithm8) {
+    for (uint64_t seed = 1; seed <= 300; seed++) {
+        Random random(seed);
+        Tree tree = seed % 2 ? test::random_tree(seed, 60) : test::wild_tree(seed, 60);
+        const Tree scion = take_scion(test::random_tree(seed + 1000, 60), 0);
+        GraftOptions options = random_options(random);
+        options.thinning = seed % 5 ? random.uniform(0.05, 1.0) : 0.8;
+        const NodeId host = some_node(tree, random);
+        const Node before = tree.node(host);
+        const GraftResult result = graft(tree, host, scion, options);
+        ASSERT_EQ(tree.check(), std::nullopt);
+        EXPECT_TRUE(same_bits(tree.node(host).radius, before.radius));
+        for (const NodeId id : result.added) {
+            const double printed =
+                before.radius * std::pow(options.thinning, tree.node(id).depth - before.depth);
+            ASSERT_NEAR(tree.node(id).radius, std::max(printed, 1e-9), 1e-12 * before.radius)
+                << "seed " << seed;
+        }
+    }
+    Tree wood = test::random_tree(1, 20);
+    GraftOptions options;
+    options.thinning = 1.5;
+    EXPECT_THROW(graft(wood, 0, take_scion(wood, 0), options), Error);
+}
+
+// A branch that is refused costs nothing: it is never varied, nor tried against what stands.
+TEST(EditGraft, RefusesTooManyNodesFirst) {
+    Tree tree = test::random_tree(1, 50);
+    const Tree scion = take_scion(test::random_tree(2, 40), 0);
+    GraftOptions options;
+    options.most_nodes = scion.size() - 2;
+    const Tree before = tree;
+    try {
+        graft(tree, 3, scion, options);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("or allow more"), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(same_bits(tree, before));
+    options.most_nodes = scion.size() - 1;
+    EXPECT_EQ(graft(tree, 3, scion, options).added.size(), scion.size() - 1);
 }
 
 }  // namespace

@@ -340,5 +340,78 @@ TEST(EditScript, HostileScriptsNeverHarmTheTree) {
     }
 }
 
+// A script runs in place; its commands one by one, each with a way back, give the same.
+TEST(EditScript, IsItsCommandsOneByOne) {
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        Tree tree = random_tree(seed, 150), other = tree, third = tree;
+        std::string script;
+        Random random(seed);
+        for (int i = 0; i < 12; i++) {
+            const std::string node = std::to_string(random.below(120));
+            const std::string line = i % 4 == 0   ? "graft node=" + node + " twig=dead tries=3 seed=" + node
+                                     : i % 4 == 1 ? "thicken factor=1.1"
+                                     : i % 4 == 2 ? "lstring node=root string=\"F(1)[+F(0.5)]F\""
+                                                  : "graft node=root string=\"F(1)\\nF(2)\" vary=segments";
+            if (i % 4 == 2 && i < 8) continue;
+            script += line + "\n";
+        }
+        size_t done = 0;
+        for (size_t at = 0; at < script.size(); at = script.find('\n', at) + 1) {
+            try {
+                perform(other, script.substr(at, script.find('\n', at) - at));
+                done++;
+            } catch (const Error&) {
+            }
+        }
+        ScriptOptions options;
+        options.keep_going = true;
+        EXPECT_EQ(run_script(tree, script, options).done, done);
+        EXPECT_TRUE(identical(tree, other)) << "seed " << seed;
+    }
+}
+
+// A string of several lines, with a comment and a heading, is one text of one command.
+TEST(EditScript, ATextMayHaveSeveralLines) {
+    const Tree start = random_tree(3, 80);
+    const std::string string = "# L-string; dialect paper\n+45F(0.3) # \"\"up\"\"\n[&80F(0.2)]";
+    Tree tree = start, again = start;
+    Edit edit = perform(tree, "graft node=5 string=\"" + string + "\"");
+    EXPECT_EQ(edit.outcome.nodes.size(), 2u);
+    EditLog log;
+    log.add(edit);
+    log.add(perform(tree, "thicken factor=2"));
+    EXPECT_EQ(EditLog::parse(log.text()).text(), log.text());
+    EXPECT_EQ(EditLog::parse(log.text()).entries().size(), 2u);
+    const ScriptResult result = run_script(again, log.text());
+    EXPECT_EQ(result.done, 2u);
+    EXPECT_TRUE(identical(tree, again));
+    // What does not fit is kept with all its lines, and tried again.
+    Tree small;
+    small.add_root(DVec3(0.0), 0.1);
+    ScriptOptions options;
+    options.keep_going = true;
+    const ScriptResult left = run_script(small, log.text(), options);
+    ASSERT_EQ(left.left_out.size(), 1u);
+    EXPECT_EQ(left.left_out[0].line, 3u);
+    Tree later = start;
+    EXPECT_EQ(run_script(later, left.log.text(), options).done, 2u);
+    // Lines are still counted, and a quote that never ends spoils no more than its own.
+    try {
+        run_script(again, "graft node=5 string=\"F(1)\n\nF(1)\"\nprune factor=x");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with("Line 4, column 14: ")) << error.what();
+    }
+    EXPECT_EQ(run_script(again, "graft node=5 string=\"F(1)\nthicken factor=2\n", options).done, 1u);
+}
+
+TEST(EditArguments, ALimitIsNotMissedByARounding) {
+    Tree tree = random_tree(3, 40);
+    EXPECT_NO_THROW(perform(tree, "graft node=5 stretch=0.9000000000000001"));
+    EXPECT_THROW(perform(tree, "graft node=5 stretch=0.90001"), Error);
+    EXPECT_THROW(perform(tree, "graft node=5 stretch=nan"), Error);
+    EXPECT_THROW(perform(tree, "graft node=4294967301"), Error);
+}
+
 }  // namespace
 }  // namespace treerec

@@ -337,5 +337,40 @@ TEST(EditSag, ThinWoodBendsMoreAndNeverPastStraightDown) {
     }
 }
 
+// As if each node was put into its segment alone, but in time that grows with the tree.
+TEST(EditSmooth, SubdivisionIsOneInsertionAfterAnother) {
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        Tree tree = seed % 3 ? random_tree(seed, 100) : wild_tree(seed, 100);
+        tree.remove_subtree(tree.depth_first().back());  // so that an id is free
+        Tree slow = tree;
+        const std::vector<NodeId> added = subdivide(tree, select(tree, "all").ids, 0.1, false);
+        const BranchList list = list_branches(slow);
+        const Tree before = slow;
+        std::vector<NodeId> expected;
+        for (const Branch& branch : list.branches)
+            for (const NodeId id : list.nodes_of(branch)) {
+                const NodeId parent = before.node(id).parent;
+                if (parent == kNoNode) continue;
+                const DVec3 from = before.node(parent).position, to = before.node(id).position;
+                const int parts = static_cast<int>(std::ceil(glm::distance(from, to) / 0.1));
+                for (int part = 1; part < parts; part++) {
+                    const NodeId middle = static_cast<NodeId>(before.id_end() + expected.size());
+                    const Node& made = tree.node(middle);
+                    expected.push_back(slow.insert_before(id, made.position, made.radius, made.flags));
+                    ASSERT_LT(glm::distance(made.position, glm::mix(from, to, double(part) / parts)), 1e-12);
+                }
+            }
+        EXPECT_EQ(added, expected);
+        EXPECT_TRUE(identical(tree, slow)) << "seed " << seed;
+    }
+    // A stem of many pieces, each of which lies under all that follow.
+    Tree stem;
+    NodeId at = stem.add_root(DVec3(0.0), 0.1);
+    for (int i = 1; i <= 100000; i++)
+        at = stem.add_child(at, DVec3(0.0, i, 0.0), 0.1);
+    EXPECT_EQ(subdivide(stem, select(stem, "all").ids, 0.5, true).size(), 100000u);
+    EXPECT_EQ(stem.node(at).depth, 200001);
+}
+
 }  // namespace
 }  // namespace treerec

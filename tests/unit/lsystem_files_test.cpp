@@ -160,6 +160,55 @@ TEST_F(LStringCli, GrammarsGrow) {
         EXPECT_EQ(run("grow " + name + " -o " + name + ".ply --quiet").code, 0) << get("stderr.log");
 }
 
+TEST_F(LStringCli, WhatDrawsNothingIsRefused) {
+    put("empty.lstring", "+(3) A # F\n");
+    put("flat.lstring", "F(0)[+F(0)]F(0)");
+    put("empty.lsys", "iterations: 3\naxiom: F(1)\nF(x) -> *\n");
+    for (const char* name : {"empty.lstring", "flat.lstring", "empty.lsys"}) {
+        EXPECT_EQ(run(std::string("grow ") + name + " -o x.glb -o x.lstring").code, 1) << name;
+        EXPECT_NE(get("stderr.log").find(name), std::string::npos) << get("stderr.log");
+        EXPECT_NE(get("stderr.log").find("draws no wood"), std::string::npos) << get("stderr.log");
+        EXPECT_FALSE(fs::exists(path("x.glb")) || fs::exists(path("x.lstring"))) << name;
+    }
+}
+
+TEST_F(LStringCli, TheDialectIsTheFilesOrAsToldAndNeverGuessed) {
+    const Tree tree = test::random_tree(5, 200);
+    LStringOptions paper;
+    paper.dialect = LStringDialect::kPaper;
+    const std::string string = write_lstring(tree, tree.root(), paper);
+    put("bare.lstring", string);
+    put("headed.lstring", heading(paper) + string);
+    put("thesis.lstring", "[+45&60F(0.5)[-30&80F(0.2)]]");
+    ASSERT_EQ(run("grow bare.lstring --dialect paper -o a.csv").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow headed.lstring -o b.csv").code, 0) << get("stderr.log");
+    ASSERT_EQ(run("grow headed.lstring --dialect turtle -o c.csv").code, 0) << get("stderr.log");
+    EXPECT_EQ(get("a.csv"), get("b.csv"));
+    EXPECT_NE(get("a.csv"), get("c.csv"));
+    EXPECT_EQ(run("grow thesis.lstring -o d.csv").code, 1);
+    EXPECT_NE(get("stderr.log").find("dialect paper"), std::string::npos) << get("stderr.log");
+    EXPECT_EQ(run("grow thesis.lstring --dialect paper -o d.csv").code, 0) << get("stderr.log");
+    // What the terminal shows reads as a file does.
+    ASSERT_EQ(run("lstring b.csv --up y --dialect paper").code, 0) << get("stderr.log");
+    EXPECT_TRUE(get("stdout.log").starts_with("# L-string; dialect paper\n"));
+    // The command line goes before the heading.
+    put("angle.lstring", "# L-string; angle 90\nF+F");
+    put("plain.lstring", "F+F");
+    ASSERT_EQ(run("grow angle.lstring --angle 30 -o e.csv").code, 0);
+    ASSERT_EQ(run("grow plain.lstring --angle 30 -o f.csv").code, 0);
+    EXPECT_EQ(get("e.csv"), get("f.csv"));
+}
+
+TEST_F(LStringCli, AGrammarHasItsBounds) {
+    put("many.lsys", "iterations: 12\naxiom: F\nF -> FF\n");
+    EXPECT_EQ(run("grow many.lsys --most-nodes 1000 -o a.csv").code, 1);
+    EXPECT_NE(get("stderr.log").find("more than 1000 nodes"), std::string::npos) << get("stderr.log");
+    EXPECT_EQ(run("grow many.lsys --most-nodes 5000 -o a.csv").code, 0) << get("stderr.log");
+    put("long.lsys", "iterations: 10000\naxiom: F\nF -> FF : 0.01\nF -> F : 0.99\n");
+    EXPECT_EQ(run("grow long.lsys --most-seconds 0.2 -o b.csv").code, 1);
+    EXPECT_NE(get("stderr.log").find("takes longer than"), std::string::npos) << get("stderr.log");
+}
+
 TEST_F(LStringCli, WrongCommandLinesAreTold) {
     put("a.lstring", "F[");
     put("b.lstring", "F(1)[+F(1)]");

@@ -383,5 +383,73 @@ TEST(LString, HearsACancel) {
     EXPECT_THROW(write_lstring(test::random_tree(1, 20000), 0, {}, &stop), Cancelled);
 }
 
+LStringOptions paper_dialect() {
+    LStringOptions options;
+    options.dialect = LStringDialect::kPaper;
+    return options;
+}
+
+TEST(LString, AHeadingSaysHowItIsRead) {
+    for (uint64_t seed = 1; seed <= 200; seed++) {
+        const Tree tree = test::random_tree(seed, 60);
+        const std::string string = write_lstring(tree, tree.root(), paper_dialect());
+        const std::string text = heading(paper_dialect()) + string;
+        ASSERT_TRUE(has_heading(text));
+        // Whoever reads it need not know.
+        const Tree told = read_lstring(text), known = read_lstring(string, paper_dialect());
+        ASSERT_EQ(write_lstring(told, 0), write_lstring(known, 0));
+        expect_same(tree, tree.root(), told, 1e-5, 0.0, false);
+        // Who insists gets what was asked for, and who says nothing a turtle's.
+        LStringOptions turtle;
+        turtle.dialect_is_told = true;
+        ASSERT_EQ(write_lstring(read_lstring(text, turtle), 0), write_lstring(read_lstring(string), 0));
+        ASSERT_NE(write_lstring(read_lstring(string), 0), write_lstring(known, 0));
+    }
+    LStringOptions options;
+    options.angle = 90.0;
+    options.step = 0.3;
+    options.radius = 0.02;
+    options.thinning = 0.5;
+    options.leaf_symbols = "L";
+    options.tropism = {0, -1, 0};
+    options.elasticity = 0.25;
+    const LStringOptions back = with_heading(heading(options) + "F", {});
+    EXPECT_EQ(heading(back), heading(options));
+    EXPECT_EQ(heading({}), "");
+    const std::string text = heading(options) + "F+F!F";
+    options.heeds_heading = false;
+    EXPECT_EQ(write_lstring(read_lstring(text), 0), write_lstring(read_lstring(text, options), 0));
+    EXPECT_EQ(sentence_of("# L-string; radius x\nF"), "The L-string, line 1: 'x' is no number.");
+    EXPECT_EQ(sentence_of("# L-string; dialect french\nF"),
+              "There is no dialect 'french' of L-strings; there are turtle and paper.");
+}
+
+// The paper's +45 would be a turn by the usual angle, and two symbols to skip.
+TEST(LString, NumbersWithoutBracketsAreNotMisread) {
+    for (const char* text : {"+45F(1)", "F(1)[-.5F(1)]", "& 30F", "^9F"})
+        EXPECT_NE(sentence_of(text).find("dialect paper"), std::string::npos) << text;
+    EXPECT_EQ(sentence_of("F(1)-45F"),
+              "The L-string, line 1, column 5: a number without brackets, as the paper's dialect writes it. "
+              "Read the string as dialect paper, or write -(45).");
+    EXPECT_EQ(sentence_of("F1+(45)2F0"), "no error");
+    LStringOptions turtle;
+    turtle.dialect_is_told = true;
+    EXPECT_EQ(sentence_of("+45F(1)", turtle), "no error");
+    EXPECT_EQ(sentence_of("+45F(1)", paper_dialect()), "no error");
+}
+
+TEST(LString, WhatDrawsNothingIsTold) {
+    const auto told = [](const std::string& text) {
+        return sentence_of([&] { require_wood(read_lstring(text), "The L-string"); });
+    };
+    for (const char* text : {"", "+(3)", "AB", "{F(1)F(1)}", "%F(1)", "# F(1)"})
+        EXPECT_EQ(
+            told(text),
+            "The L-string draws no wood: there is no F in it outside of leaves. F(0.5) draws half a metre.")
+            << text;
+    EXPECT_EQ(told("F(0)[F(0)]F(0)"), "The L-string draws no wood: every F in it has a length of 0.");
+    EXPECT_EQ(told("F(0)F(0.001)"), "no error");
+}
+
 }  // namespace
 }  // namespace treerec

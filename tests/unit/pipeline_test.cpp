@@ -151,6 +151,25 @@ TEST_F(Pipeline, SameBytesWhateverTheThreadsAndTheOrderOfThePoints) {
         EXPECT_TRUE(files[i] == files[i % 3]) << "file " << i;
 }
 
+// What `prune` does to the tree that comes without.
+TEST_F(Pipeline, LongTwigsAreCutAtLast) {
+    const Reconstruction plain = reconstruct_tree(path("scan.ply"), {});
+    for (const bool spared : {false, true}) {
+        ReconstructOptions options;
+        options.prune.emplace();
+        options.prune->spare_leader = spared;
+        const Reconstruction pruned = reconstruct_tree(path("scan.ply"), options);
+        Tree expected = plain.tree;
+        EXPECT_EQ(prune_twigs(expected, *options.prune).nodes.size(), pruned.pruned);
+        EXPECT_GT(pruned.pruned, 0u);
+        ASSERT_EQ(pruned.tree.size(), expected.size());
+        ASSERT_EQ(pruned.tree.check(), std::nullopt);
+        const std::vector<NodeId> there = expected.depth_first(), here = pruned.tree.depth_first();
+        for (size_t i = 0; i < here.size(); i++)
+            ASSERT_EQ(pruned.tree.node(here[i]).position, expected.node(there[i]).position);
+    }
+}
+
 TEST_F(Pipeline, ASkeletonIsNoCloud) {
     for (const char* name : {"truth.ply", "truth.txt", "truth.csv"}) {
         export_tree(path(name), truth_, leaf_preset("none"), 1);

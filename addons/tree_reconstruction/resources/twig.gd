@@ -51,6 +51,9 @@ var _measures: Dictionary = {}
 static func from_branch(tree: TreeReconstruction, id: int, called: String = "") -> Twig:
 	var twig: Twig = Twig.new()
 	twig.title = called
+	if tree == null:
+		push_error("There is no tree to take a branch of.")
+		return twig
 	twig.lstring = tree.take_branch(id)
 	if not twig.lstring.is_empty():
 		twig.draw_thumbnail()

@@ -48,6 +48,9 @@ func find(called: String) -> Twig:
 
 ## Fills [param list] with names and pictures; each item's metadata is its [Twig].
 func fill(list: ItemList) -> void:
+	if list == null:
+		push_error("There is no list to fill.")
+		return
 	list.clear()
 	for twig: Twig in twigs:
 		if twig == null:

@@ -8,12 +8,18 @@ const MOST: int = 10_000
 # A node takes about so many characters.
 const _EACH: int = 36
 const _DIALECTS: PackedStringArray = ["turtle", "paper"]
+# How a text begins that says by itself how it is read.
+const _HEADING: String = "# L-string;"
 
 var text: CodeEdit = CodeEdit.new()
 var apply: Button
 var revert: Button
 var anyway: Button
 var dialect: OptionButton
+## Every segment varies by so many degrees and by this share of its length, at random by the seed.
+var vary_angle: SpinBox
+var vary_length: SpinBox
+var vary_seed: SpinBox
 
 var _what: Label
 var _error: Label
@@ -64,6 +70,27 @@ func _build() -> void:
 	revert.pressed.connect(_on_revert_pressed)
 	anyway = Widgets.button("Show it anyway", "Shows the whole text. Typing in it may be slow.")
 	anyway.pressed.connect(_on_anyway_pressed)
+	vary_angle = Widgets.number(0.0, 90.0, 0.5, "°")
+	vary_length = Widgets.number(0.0, 0.9, 0.01)
+	vary_seed = Widgets.number(1, 999, 1)
+	var fields: Array[SpinBox] = [vary_angle, vary_length, vary_seed]
+	for field: SpinBox in fields:
+		field.value_changed.connect(_on_vary_changed)
+	body.add_child(
+		Widgets.line(
+			"Vary angles",
+			"How far every segment turns by chance, at most, when applied.",
+			vary_angle
+		)
+	)
+	body.add_child(
+		Widgets.line(
+			"Vary lengths",
+			"By which share every segment becomes longer or shorter by chance, when applied.",
+			vary_length
+		)
+	)
+	body.add_child(Widgets.line("Seed", "Each seed varies the branch in another way.", vary_seed))
 	body.add_child(buttons([dialect, apply, revert, anyway]))
 	session.string_picked.connect(_on_string_picked)
 
@@ -118,7 +145,7 @@ func _show_branch(node: int) -> void:
 
 
 func _show_edited() -> void:
-	apply.disabled = not _edited
+	apply.disabled = not _edited and not (_varies() and text.editable)
 	revert.disabled = not _edited
 
 
@@ -153,6 +180,14 @@ func _on_text_changed() -> void:
 	_show_edited()
 
 
+func _varies() -> bool:
+	return vary_angle.value > 0.0 or vary_length.value > 0.0
+
+
+func _on_vary_changed(_value: float) -> void:
+	_show_edited()
+
+
 func _on_dialect_selected(_index: int) -> void:
 	if _tree != null and _tree == session.tree and _tree.has_node(_node):
 		_show_branch(_node)
@@ -161,11 +196,18 @@ func _on_dialect_selected(_index: int) -> void:
 func _on_apply_pressed() -> void:
 	if session.tree == null or not session.tree.has_node(_node):
 		return
-	var flat: String = on_one_line(text.text)
+	# A heading is needed whole, and says which dialect it is.
+	var headed: bool = text.text.begins_with(_HEADING)
+	var flat: String = text.text.replace('"', '""') if headed else on_one_line(text.text)
 	var words: String = "root" if _node == session.tree.get_root() else str(_node)
 	var command: String = 'lstring node=%s string="%s"' % [words, flat]
-	if dialect.selected == LSystem.DIALECT_PAPER:
+	if dialect.selected == LSystem.DIALECT_PAPER and not headed:
 		command += " dialect=paper"
+	if _varies():
+		command += (
+			" vary_angle=%s vary_length=%s seed=%d"
+			% [String.num(vary_angle.value, 3), String.num(vary_length.value, 4), vary_seed.value]
+		)
 	var sentence: String = session.tree.check_edit(command)
 	if not sentence.is_empty():
 		_show_error(sentence, _column_in(sentence))
@@ -174,6 +216,9 @@ func _on_apply_pressed() -> void:
 	if edit == null:
 		return
 	_edited = false
+	if _varies():
+		# No two alike.
+		vary_seed.value = wrapi(int(vary_seed.value) + 1, 1, 1000)
 	var made: PackedInt32Array = edit.get_result_nodes()
 	if not made.is_empty():
 		session.select([made[0]])

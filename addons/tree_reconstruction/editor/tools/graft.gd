@@ -4,6 +4,7 @@ extends "wood_tool.gd"
 
 const BranchChoice := preload("branch_choice.gd")
 
+const _VARY: PackedStringArray = ["branches", "segments"]
 const _ROLL_STEP: float = 15.0
 
 # Made with the first strip: it reads pictures.
@@ -44,6 +45,7 @@ func get_defaults() -> Dictionary[StringName, Variant]:
 		&"seed": 1,
 		&"angle": 12.0,
 		&"stretch": 0.15,
+		&"vary": 0,
 		&"roll": 0.0,
 		&"mirror": false,
 		&"clear": false
@@ -80,6 +82,13 @@ func make_settings() -> Control:
 		0.01,
 		values[&"stretch"],
 		set_setting.bind(&"stretch")
+	)
+	strip.add_choice(
+		tr("Vary"),
+		tr("Whole branches bend and stretch, or every segment varies by itself."),
+		PackedStringArray([tr("Branches"), tr("Segments")]),
+		values[&"vary"],
+		set_setting.bind(&"vary")
 	)
 	_roll_box = strip.add_number(
 		tr("Roll (°)"),
@@ -157,12 +166,13 @@ func _words_of_graft(twig_key: String) -> String:
 	else:
 		source = 'string="%s"' % _in_one_line(source).replace('"', '""')
 	return (
-		"%s seed=%d angle=%s stretch=%s roll=%s mirror=%s tries=%d"
+		"%s seed=%d angle=%s stretch=%s vary=%s roll=%s mirror=%s tries=%d"
 		% [
 			source,
 			values[&"seed"],
 			String.num(values[&"angle"], 3),
 			String.num(values[&"stretch"], 4),
+			_VARY[values[&"vary"]],
 			String.num(values[&"roll"], 3),
 			"yes" if values[&"mirror"] else "no",
 			12 if values[&"clear"] else 1
@@ -172,6 +182,9 @@ func _words_of_graft(twig_key: String) -> String:
 
 # A command is one line, and comments of an L-string end with theirs.
 static func _in_one_line(lstring: String) -> String:
+	# But a heading says how the rest is read, and is needed whole.
+	if lstring.begins_with("# L-string;"):
+		return lstring
 	var lines: PackedStringArray = []
 	for line: String in lstring.split("\n"):
 		lines.append(line.get_slice("#", 0).strip_edges())
