@@ -76,8 +76,7 @@ struct RewriteOptions {
 
 // The string after so many steps. The same grammar and seed give the same string. Throws Error where a limit
 // is passed or a parameter becomes infinite, and Cancelled.
-std::string rewrite(const Grammar& grammar, const RewriteOptions& options,
-                    Progress* progress = nullptr);
+std::string rewrite(const Grammar& grammar, const RewriteOptions& options, Progress* progress = nullptr);
 
 // Whether the text is a grammar (and not an L-string): one of its lines sets the axiom.
 bool is_grammar(std::string_view text);
