@@ -161,6 +161,25 @@ void write_columns(ParsedOptions& r_options, const Variant& p_value) {
     r_options.pipeline.read.columns = treerec::parse_columns(to_std(p_value));
 }
 
+Variant read_classes(const ParsedOptions& p_options) {
+    const std::optional<std::vector<uint8_t>>& classes = p_options.pipeline.read.classes;
+    if (!classes) {
+        return String();
+    }
+    if (classes->size() == 256) {
+        return "all";
+    }
+    PackedStringArray names;
+    for (const uint8_t point_class : *classes) {
+        names.push_back(to_godot(std::to_string(point_class)));
+    }
+    return String(",").join(names);
+}
+
+void write_classes(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.read.classes = treerec::parse_classes(to_std(p_value));
+}
+
 Variant read_leaves(const ParsedOptions& p_options) {
     return p_options.leaves;
 }
@@ -177,7 +196,7 @@ const Option kOptions[] = {
     {"up", read_up, write_up, PROPERTY_HINT_ENUM, "auto,x,y,z,-x,-y,-z",
      "The scan's axis that points to the sky; auto detects it."},
     {"scale", read_scale, write_scale, PROPERTY_HINT_RANGE, "0,1000,0.0001,or_greater",
-     "Length of one unit of the scan in metres; 0 guesses it from the size."},
+     "Length of one unit of the scan in metres; 0 takes what the file says, or guesses it from the size."},
     {"known_height", read_known_height, write_known_height, PROPERTY_HINT_RANGE,
      "0,100,0.01,or_greater,suffix:m",
      "The tree's height, which sets the scale of a scan that has none; 0 is not known."},
@@ -186,6 +205,10 @@ const Option kOptions[] = {
      "not known."},
     {"columns", read_columns, write_columns, PROPERTY_HINT_NONE, "",
      "Text files only: the columns' names in order, such as x,y,z,r,g,b; - skips one. Empty detects them."},
+    {"classes", read_classes, write_classes, PROPERTY_HINT_NONE, "",
+     "LAS and LAZ files only: the classes of points that are read, such as 2,4-5, or all. Empty leaves out "
+     "noise "
+     "(7 and 18)."},
     {"remove_extreme_colors", OPTION_MEMBER(clean.remove_extreme_colors, bool), PROPERTY_HINT_NONE, "",
      "Removes points that are nearly white or nearly black."},
     {"white_above", OPTION_MEMBER(clean.white_above, int), PROPERTY_HINT_RANGE, "0,256,1",

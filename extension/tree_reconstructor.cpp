@@ -207,13 +207,22 @@ int64_t TreeReconstructor::get_cache_size() const {
     return cache_bytes_;
 }
 
-Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path, const String& p_up_axis) {
+Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path, const String& p_up_axis,
+                                                           int64_t p_tree_number) {
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
     Ref<TreeReconstruction> made;
     try {
-        treerec::Tree tree =
-            treerec::read_skeleton(file_path(p_path), treerec::parse_up_axis(to_std(p_up_axis)));
+        if (p_tree_number < 0) {
+            throw treerec::Error("The number of a tree in a file is 1 or more, or 0 for the largest.");
+        }
+        treerec::SkeletonReport report;
+        treerec::Tree tree = treerec::read_skeleton(
+            file_path(p_path), {treerec::parse_up_axis(to_std(p_up_axis)), size_t(p_tree_number)}, &report);
+        {
+            const std::lock_guard lock(mutex_);
+            report_json_ = treerec::skeleton_report_json(report);
+        }
         made.instantiate();
         made->set_tree(std::move(tree));
         Dictionary provenance;
@@ -341,8 +350,8 @@ void TreeReconstructor::_bind_methods() {
                          DEFVAL(500000));
     ClassDB::bind_method(D_METHOD("clear_cache"), &TreeReconstructor::clear_cache);
     ClassDB::bind_method(D_METHOD("get_cache_size"), &TreeReconstructor::get_cache_size);
-    ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis"), &TreeReconstructor::import_skeleton,
-                         DEFVAL("z"));
+    ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis", "tree_number"),
+                         &TreeReconstructor::import_skeleton, DEFVAL("z"), DEFVAL(0));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path", "levels", "pictures_beside"),
                          &TreeReconstructor::export_file, DEFVAL(1), DEFVAL(false));
     ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);

@@ -9,12 +9,18 @@
 #include "cli/arguments.h"
 #include "geometry/scan_frame.h"
 #include "lsystem/lstring.h"
+#include "scan/read_cloud.h"
+#include "tree/tree.h"
 
 namespace treerec {
 
-// What several commands read in the same way: "--up x" (default z) and "--columns x,y,z". Throw UsageError.
+// What several commands read in the same way: "--up x" (default z), "--columns x,y,z" and "--classes 4-5" of
+// clouds, "--tree 2" of skeletons. Throw UsageError.
 UpAxis up_axis_from(const Arguments& arguments);
-std::vector<std::string> columns_from(const Arguments& arguments);
+ReadCloudOptions read_options_from(const Arguments& arguments);
+// The skeleton at `path`, of the number that `option` names ("" takes the largest); what there is to say of
+// it goes to stderr. Throws Error, and UsageError.
+Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option = "--tree");
 // "--levels" of a model.
 int levels_from(const Arguments& arguments);
 // "--dialect paper" (default turtle). Throws UsageError.

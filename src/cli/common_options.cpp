@@ -1,7 +1,9 @@
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "cli/commands.h"
+#include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "pipeline/export.h"
 #include "scan/read_cloud.h"
@@ -16,8 +18,24 @@ UpAxis up_axis_from(const Arguments& arguments) {
     }
 }
 
-std::vector<std::string> columns_from(const Arguments& arguments) {
-    return parse_columns(arguments.text("--columns", ""));
+ReadCloudOptions read_options_from(const Arguments& arguments) {
+    ReadCloudOptions options;
+    options.columns = parse_columns(arguments.text("--columns", ""));
+    try {
+        options.classes = parse_classes(arguments.text("--classes", ""));
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+    return options;
+}
+
+Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option) {
+    const SkeletonChoice choice(up_axis_from(arguments), arguments.whole(option, 0, 1, 1'000'000'000));
+    SkeletonReport report;
+    Tree tree = read_skeleton(path, choice, &report);
+    for (const std::string& warning : report.warnings)
+        std::fprintf(stderr, "Warning: %s\n", warning.c_str());
+    return tree;
 }
 
 int levels_from(const Arguments& arguments) {

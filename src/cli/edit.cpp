@@ -72,6 +72,7 @@ const Command& edit_command() {
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
+         {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
          {"--commands", "", "lists the commands and what they take"},
          {"--quiet", "", "print errors only"}},
         "IN: a skeleton (see 'treerec info'). Places and lengths in a script are metres from the tree's "
@@ -121,7 +122,7 @@ void run_edit(const std::vector<std::string>& words) {
         for (const std::string& line : arguments.all("-c"))
             scripts.emplace_back("", line);
 
-    Tree tree = read_skeleton(arguments.positional()[0], up_axis_from(arguments));
+    Tree tree = skeleton_from(arguments, arguments.positional()[0]);
     const size_t before = tree.size();
     EditLog log;
     size_t done = 0, left_out = 0;

@@ -27,6 +27,7 @@ const Command& lighten_command() {
           "the plain merging by angle and distance instead, which moves tips to their middles"},
          {"--pixels", "N", "of the pictures in which the outline is compared (default 1024)"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
+         {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
          {"--quiet", "", "print errors only"}},
         "IN: a skeleton (see 'treerec info'). Tells how much of the bark's outline, seen from four sides, "
         "differs."};
@@ -54,7 +55,7 @@ void run_lighten(const std::vector<std::string>& words) {
 
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    const Tree before = read_skeleton(arguments.positional()[0], up_axis_from(arguments));
+    const Tree before = skeleton_from(arguments, arguments.positional()[0]);
     if (arguments.has("--share"))
         options.nodes =
             std::max<size_t>(2, static_cast<size_t>(std::lround(share * static_cast<double>(before.size()))));

@@ -31,6 +31,7 @@ const Command& lstring_command() {
           "how far a node may lie off, relative to the length of its segment (default 0.00001)"},
          {"--no-flags", "", "without the marks of trunk, measured radii and guesses"},
          {"--up", "AXIS", "the axis to the sky of a tree file that does not say: x y z -x -y -z (default z)"},
+         {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
          {"--quiet", "", "print errors only"}},
         "TREE: a tree file (.txt), a skeleton (.ply), a table (.csv), an L-string. 'treerec grow STRING -o "
         "OUT' makes the tree again, in its own coordinates."};
@@ -53,7 +54,7 @@ void run_lstring(const std::vector<std::string>& words) {
 
     const bool quiet = arguments.has("--quiet") || out.empty();
     TerminalProgress progress(quiet);
-    Tree tree = read_skeleton(positional[0], up_axis_from(arguments));
+    Tree tree = skeleton_from(arguments, positional[0]);
     if (arguments.has("--node")) {
         const uint64_t node = arguments.whole("--node", 0, 0, kLargestId);
         tree = take_scion(tree, static_cast<NodeId>(node));

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
@@ -63,6 +64,20 @@ KnownLength known_length_from(const Arguments& arguments) {
     return known;
 }
 
+constexpr std::pair<std::string_view, double> kUnits[] = {
+    {"m", 1.0},     {"cm", 0.01},  {"mm", 0.001}, {"km", 1000.0}, {"ft", 0.3048}, {"us-ft", 1200.0 / 3937.0},
+    {"in", 0.0254}, {"yd", 0.9144}};
+
+double unit_from(const Arguments& arguments) {
+    const std::string word = arguments.text("--unit", "");
+    std::string known;
+    for (const auto& [name, metres] : kUnits) {
+        if (name == word) return metres;
+        known += (known.empty() ? "" : " ") + std::string(name);
+    }
+    throw UsageError("--unit is one of " + known + ", not " + quote_word(word) + ".");
+}
+
 PickOptions pick_from(const Arguments& arguments) {
     if (arguments.has("--one-tree") + arguments.has("--tree") + arguments.has("--tree-at") > 1)
         throw UsageError("--one-tree, --tree and --tree-at say which tree is meant; give one of them.");
@@ -78,14 +93,17 @@ PickOptions pick_from(const Arguments& arguments) {
 
 ReconstructOptions options_from(const Arguments& arguments) {
     ReconstructOptions options;
-    options.read.columns = columns_from(arguments);
+    options.read = read_options_from(arguments);
     if (arguments.text("--up", "auto") != "auto") options.orient.up = up_axis_from(arguments);
     if (arguments.has("--scale"))
         options.orient.metres_per_unit = arguments.number("--scale", 1.0, 1e-9, 1e9);
+    if (arguments.has("--unit")) options.orient.metres_per_unit = unit_from(arguments);
     if (arguments.has("--height")) options.orient.known_height = arguments.number("--height", 0.0, 1e-3, 1e3);
     if (arguments.has("--length")) options.orient.known_length = known_length_from(arguments);
-    if (arguments.has("--scale") + arguments.has("--height") + arguments.has("--length") > 1)
-        throw UsageError("--scale, --height and --length all set the scale; give one of them.");
+    if (arguments.has("--scale") + arguments.has("--unit") + arguments.has("--height") +
+            arguments.has("--length") >
+        1)
+        throw UsageError("--scale, --unit, --height and --length all set the scale; give one of them.");
     options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
     options.skeleton.method =
         as_usage([&] { return parse_skeleton_method(arguments.text("--skeleton", "delaunay")); });
@@ -141,8 +159,12 @@ void print_summary(const Reconstruction& result, const std::vector<std::string>&
     std::printf("crown radius %.2f m, wood %.3f m3\n", m.crown_radius, m.volume);
     if (result.pruned > 0) std::printf("%zu nodes of long twigs were cut away\n", result.pruned);
     if (result.leaf_points > 0)
-        std::printf("%.0f %% of the points are leaves\n", 100.0 * static_cast<double>(result.leaf_points) /
-                                                              static_cast<double>(result.cloud.size()));
+        std::printf(
+            "%.0f %% of the points are leaves%s\n",
+            100.0 * static_cast<double>(result.leaf_points) / static_cast<double>(result.cloud.size()),
+            result.leaf_column.empty()
+                ? ""
+                : (", as the column " + quote_word(result.leaf_column) + " says").c_str());
     std::printf("%.0f %% of the %s lie within 2 cm of the bark, half within %.1f mm\n",
                 100.0 * result.fit.explained_2cm, result.leaf_points > 0 ? "others" : "points",
                 result.fit.median_mm);
@@ -175,6 +197,8 @@ const Command& reconstruct_command() {
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
+         {"--unit", "NAME",
+          "of the scan: m cm mm km ft us-ft in yd (default: as its file says, or found out)"},
          {"--height", "M", "the tree's height in metres: sets the scale of scans that have none"},
          {"--length", "LIST", "a length in the scan that sets the scale: x,y,z,x,y,z,metres"},
          {"--leaves", "PRESET", leaf_names() + "or auto, the default: palm for a palm, else generic"},
@@ -188,6 +212,8 @@ const Command& reconstruct_command() {
           "cut twigs longer than the mean to it: paper (all, algorithm 3), leader (not the trunk's tip)"},
          {"--spacing", "M", "thin the cloud to this many metres between points (default: found out)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
+         {"--classes", "LIST",
+          "classes of LAS points to read, such as 2,4-5, or all (default: all but noise, 7 and 18)"},
          {"--no-clean", "", "leave out all cleaning, or one step of it:"},
          {"--no-clean-colors", "", "near white and near black points stay"},
          {"--no-clean-outliers", "", "lone points stay"},

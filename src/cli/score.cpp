@@ -188,8 +188,9 @@ void print_text(const ScanReport& report, const Tree& tree) {
     }
 }
 
-Tree read_scaled(const std::string& path, UpAxis up, double metres_per_unit) {
-    Tree tree = read_skeleton(path, up);
+Tree read_scaled(const Arguments& arguments, const std::string& path, const std::string& option,
+                 double metres_per_unit) {
+    Tree tree = skeleton_from(arguments, path, option);
     if (metres_per_unit > 0.0) tree.scale(metres_per_unit / tree.frame().metres_per_unit);
     return tree;
 }
@@ -208,7 +209,11 @@ const Command& score_command() {
          {"--photos", "FOLDER", "a COLMAP model in the scan's coordinates, for I, R_3d and Q; with --masks"},
          {"--masks", "FOLDER", "white-on-black pictures of the tree's outline in these photos: PHOTO.png"},
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
+         {"--tree", "N", "which tree of a model's file with several, in its order (default: the largest)"},
+         {"--reference-tree", "N", "likewise of a reference's file"},
          {"--columns", "LIST", "names of a text scan's columns, such as x,y,z,r,g,b; - skips one"},
+         {"--classes", "LIST",
+          "classes of LAS points to read, such as 2,4-5, or all (default: all but noise, 7 and 18)"},
          {"--quiet", "", "no progress"}},
         "MODEL: a tree file (.txt), a skeleton (.ply) or a table of nodes or of cylinders (.csv), as "
         "'reconstruct' writes "
@@ -239,16 +244,16 @@ void run_score(const std::vector<std::string>& words) {
     if (photos.empty() != masks.empty())
         throw UsageError(
             "--photos and --masks belong together: R_3d needs the outline of the tree in each photo.");
-    const Tree tree = read_scaled(model, UpAxis::kZ, scale);
+    const Tree tree = read_scaled(arguments, model, "--tree", scale);
     TerminalProgress progress(arguments.has("--quiet") || as_json);
     if (is_skeleton_file(reference)) {
-        const Tree wanted = read_scaled(reference, UpAxis::kZ, scale);
+        const Tree wanted = read_scaled(arguments, reference, "--reference-tree", scale);
         const SkeletonScore score = score_skeleton(tree, wanted, &progress);
         progress.clear();
         print_skeleton_score(score, as_json);
     } else {
         SubProgress reading(&progress, 0.0, 0.3);
-        const PointCloud cloud = read_cloud(reference, {columns_from(arguments)}, nullptr, &reading);
+        const PointCloud cloud = read_cloud(reference, read_options_from(arguments), nullptr, &reading);
         ScanReport report;
         report.noise = noise;
         if (!photos.empty()) report.photos = measure_photos(cloud, photos, masks, &progress);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 
@@ -336,6 +337,15 @@ void write_json(const std::string& path, Builder& model, const Progress* progres
 void write_gltf(const std::string& path, const ModelFile& file, const Progress* progress) {
     const std::string extension = extension_of(path);
     if (extension != "glb" && extension != "gltf") throw Error("'" + path + "' must end in .glb or .gltf.");
+    const auto check = [&](const Mesh* mesh) {
+        if (mesh && !mesh->indices.empty()) require_finite(*mesh, path);
+    };
+    check(file.bark);
+    check(file.leaves);
+    for (const ModelFile::Level& level : file.coarser) {
+        check(level.bark);
+        check(level.leaves);
+    }
     Builder model(file);
     if (extension == "gltf" || file.pictures_beside) write_pictures(path, model, progress);
     if (extension == "glb")

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/text_scan.h"
 #include "file_bytes.h"
 
@@ -70,6 +71,7 @@ std::string lstring_file_text(std::string_view string, const ScanFrame& frame,
 void write_lstring_file(const std::string& path, const Tree& tree, const LStringOptions& options,
                         const Progress* progress) {
     if (tree.empty()) throw Error("The tree is empty; there is nothing to write to '" + path + "'.");
+    require_sound_measures(tree, path);
     const std::string string = write_lstring(tree, tree.root(), options, progress);
     ScanFrame frame = tree.frame();
     frame.origin = frame.to_scan(tree.node(tree.root()).position);

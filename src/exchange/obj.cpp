@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 
@@ -120,6 +121,8 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
     const std::string stem = stem_of(path);
     const bool bark = model.bark && !model.bark->indices.empty();
     const bool leaves = model.leaves && !model.leaves->indices.empty();
+    if (bark) require_finite(*model.bark, path);
+    if (leaves) require_finite(*model.leaves, path);
     std::string out = "# Metres, Y up.\n";
     std::string materials;
     if (bark || leaves) {

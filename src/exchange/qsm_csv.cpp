@@ -3,7 +3,9 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/qsm_columns.h"
+#include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "exchange/text_scan.h"
@@ -15,6 +17,7 @@
 namespace treerec {
 
 void write_qsm_csv(const std::string& path, const Tree& tree) {
+    require_sound_measures(tree, path);
     std::string text =
         "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent_1based,branch,order,measured\n";
     text.reserve(text.size() + 160 * tree.size());
@@ -47,11 +50,14 @@ void write_qsm_csv(const std::string& path, const Tree& tree) {
     write_file(path, text);
 }
 
-Tree read_qsm_csv(const std::string& path, UpAxis up) {
-    return parse_qsm_csv(read_file(path).view(), path, up);
+Tree read_qsm_csv(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
+    return parse_qsm_csv(read_file(path).view(), path, choice, report);
 }
 
-Tree parse_qsm_csv(std::string_view bytes, const std::string& path, UpAxis up) {
+Tree parse_qsm_csv(std::string_view bytes, const std::string& path, const SkeletonChoice& choice,
+                   SkeletonReport* report) {
+    if (looks_like_qsm_sections(bytes)) return parse_qsm_sections(bytes, path, choice, report);
+    choose_tree({1}, choice, path, report);
     std::string_view rest = bytes;
     const std::optional<std::string_view> head = next_line(rest);
     const std::optional<QsmColumns> columns = head ? find_qsm_columns(*head) : std::nullopt;
@@ -130,7 +136,7 @@ Tree parse_qsm_csv(std::string_view bytes, const std::string& path, UpAxis up) {
     }
     if (!has_root)
         throw Error("'" + path + "' holds no cylinder without a parent, where the tree would begin.");
-    Tree tree = tree_of(table, {up, 1.0}, path);
+    Tree tree = tree_of(table, {choice.up, 1.0}, path);
     if (at.order < 0) mark_trunk(tree);
     return tree;
 }

@@ -72,8 +72,29 @@ std::vector<NodeId> reach(NodeId from, const Neighbours& neighbours, std::vector
 
 }  // namespace
 
+size_t choose_tree(const std::vector<size_t>& sizes, const SkeletonChoice& choice, const std::string& path,
+                   SkeletonReport* report) {
+    const size_t count = sizes.size();
+    const auto nodes = [&](size_t i) {
+        return std::to_string(sizes[i]) + (sizes[i] == 1 ? " node" : " nodes");
+    };
+    if (choice.tree > count)
+        throw Error("'" + path + "' holds " + (count == 1 ? "one tree" : std::to_string(count) + " trees") +
+                    "; there is no tree " + std::to_string(choice.tree) + ".");
+    const size_t largest = static_cast<size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+    const size_t taken = choice.tree > 0 ? choice.tree - 1 : largest;
+    if (!report) return taken;
+    report->trees = count;
+    report->taken = taken + 1;
+    if (count > 1 && choice.tree == 0)
+        report->warnings.push_back("'" + path + "' holds " + std::to_string(count) +
+                                   " trees; the largest, tree " + std::to_string(taken + 1) + " with " +
+                                   nodes(taken) + ", was taken. Ask for another one by its number (--tree).");
+    return taken;
+}
+
 SkeletonTable tree_of_graph(const SkeletonTable& table, const std::vector<std::pair<NodeId, NodeId>>& edges,
-                            UpAxis up, const std::string& path) {
+                            const SkeletonChoice& choice, const std::string& path, SkeletonReport* report) {
     const size_t count = table.positions.size();
     for (size_t i = 0; i < count; i++)
         if (!is_finite(table.positions[i]) || !(table.radii[i] >= 0.0))
@@ -86,17 +107,22 @@ SkeletonTable tree_of_graph(const SkeletonTable& table, const std::vector<std::p
     for (const auto& [a, b] : edges)
         if (first[a] != first[b]) joined.emplace_back(first[a], first[b]);
     const Neighbours neighbours(count, joined);
-    std::vector<NodeId> piece, reached_by(count, kNoNode);
+    std::vector<NodeId> reached_by(count, kNoNode);
+    std::vector<size_t> sizes;
+    std::vector<NodeId> firsts;
     for (size_t i = 0; i < count; i++) {
         const NodeId id = static_cast<NodeId>(i);
         if (reached_by[i] != kNoNode || neighbours.degree(id) == 0) continue;
-        std::vector<NodeId> found = reach(id, neighbours, reached_by);
-        if (found.size() > piece.size()) piece = std::move(found);
+        sizes.push_back(reach(id, neighbours, reached_by).size());
+        firsts.push_back(id);
     }
-    if (piece.empty()) throw Error("'" + path + "' holds no skeleton: no edge joins two nodes.");
+    if (sizes.empty()) throw Error("'" + path + "' holds no skeleton: no edge joins two nodes.");
 
+    std::fill(reached_by.begin(), reached_by.end(), kNoNode);
+    const std::vector<NodeId> piece =
+        reach(firsts[choose_tree(sizes, choice, path, report)], neighbours, reached_by);
     ScanFrame frame;
-    frame.up = up;
+    frame.up = choice.up;
     frame.origin = table.positions[piece[0]];
     const auto height = [&](NodeId id) { return frame.to_tree(table.positions[id]).y; };
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -132,7 +158,8 @@ SkeletonTable tree_of_graph(const SkeletonTable& table, const std::vector<std::p
     return tree;
 }
 
-SkeletonTable largest_tree(const SkeletonTable& table, const std::string& path) {
+SkeletonTable chosen_tree(const SkeletonTable& table, const SkeletonChoice& choice, const std::string& path,
+                          SkeletonReport* report) {
     const size_t count = table.parents.size();
     std::vector<NodeId> root(count, kNoNode);
     std::vector<NodeId> way;
@@ -149,14 +176,21 @@ SkeletonTable largest_tree(const SkeletonTable& table, const std::string& path) 
         for (NodeId id : way)
             root[id] = found;
     }
-    std::vector<size_t> sizes(count, 0);
+    std::vector<NodeId> roots;
+    std::vector<size_t> sizes, number(count, 0);
+    for (size_t i = 0; i < count; i++) {
+        if (table.parents[i] != kNoNode) continue;
+        number[i] = roots.size();
+        roots.push_back(static_cast<NodeId>(i));
+        sizes.push_back(0);
+    }
     for (size_t i = 0; i < count; i++)
-        sizes[root[i]]++;
-    const NodeId largest = static_cast<NodeId>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+        sizes[number[root[i]]]++;
+    const NodeId wanted = roots[choose_tree(sizes, choice, path, report)];
     SkeletonTable tree;
     std::vector<NodeId> row(count, kNoNode);
     for (size_t i = 0; i < count; i++) {
-        if (root[i] != largest) continue;
+        if (root[i] != wanted) continue;
         row[i] = static_cast<NodeId>(tree.positions.size());
         tree.positions.push_back(table.positions[i]);
         tree.radii.push_back(table.radii[i]);

@@ -7,18 +7,25 @@
 #include <vector>
 
 #include "exchange/skeleton_table.h"
+#include "exchange/tree_files.h"
 
 namespace treerec {
 
-// Gives the table parents: vertices at one place are one node, with the largest of their radii; the piece
-// with the most nodes is the tree; it begins at its end (a node with one neighbour) in its lowest fiftieth,
-// along `up`, that is thickest. Of edges that close a ring one is left out. table.parents is not read. Throws
-// Error where no edge joins two nodes; `path` is for the sentence.
-SkeletonTable tree_of_graph(const SkeletonTable& table, const std::vector<std::pair<NodeId, NodeId>>& edges,
-                            UpAxis up, const std::string& path);
+// Which tree of a file is read, as an index. sizes: their nodes, in the file's order, at least one tree. Says
+// so where there is another one. Throws Error for a number that there is not.
+size_t choose_tree(const std::vector<size_t>& sizes, const SkeletonChoice& choice, const std::string& path,
+                   SkeletonReport* report);
 
-// The tree with the most nodes of a table whose parents may name several roots. Throws Error where nodes hang
-// in a ring.
-SkeletonTable largest_tree(const SkeletonTable& table, const std::string& path);
+// Gives the table parents: vertices at one place are one node, with the largest of their radii; the chosen
+// one of the pieces, in the order of their first vertices, is the tree; it begins at its end (a node with one
+// neighbour) in its lowest fiftieth, upwards, that is thickest. Of edges that close a ring one is left out.
+// table.parents is not read. Throws Error where no edge joins two nodes; `path` is for the sentence.
+SkeletonTable tree_of_graph(const SkeletonTable& table, const std::vector<std::pair<NodeId, NodeId>>& edges,
+                            const SkeletonChoice& choice, const std::string& path, SkeletonReport* report);
+
+// The chosen tree of a table whose parents may name several roots, in the order of these. Throws Error where
+// nodes hang in a ring.
+SkeletonTable chosen_tree(const SkeletonTable& table, const SkeletonChoice& choice, const std::string& path,
+                          SkeletonReport* report);
 
 }  // namespace treerec

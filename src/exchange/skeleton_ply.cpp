@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
@@ -93,6 +94,7 @@ void read_element(ValueReader& reader, const PlyElement& element, Row row) {
 }  // namespace
 
 void write_skeleton_ply(const std::string& path, const Tree& tree) {
+    require_sound_measures(tree, path);
     const SkeletonTable table = table_of(tree);
     const size_t count = table.positions.size();
     const size_t edges = count > 0 ? count - 1 : 0;
@@ -116,14 +118,15 @@ void write_skeleton_ply(const std::string& path, const Tree& tree) {
     write_file(path, bytes);
 }
 
-Tree read_skeleton_ply(const std::string& path, UpAxis up) {
-    return parse_skeleton_ply(read_file(path).view(), path, up);
+Tree read_skeleton_ply(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
+    return parse_skeleton_ply(read_file(path).view(), path, choice, report);
 }
 
-Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis up) {
+Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, const SkeletonChoice& choice,
+                        SkeletonReport* report) {
     if (!is_ply(bytes)) throw Error("'" + path + "' is no skeleton PLY: it does not start with 'ply'.");
     const PlyHeader header = read_ply_header(bytes, path);
-    FileStamp stamp{up, 1.0};
+    FileStamp stamp{choice.up, 1.0};
     bool is_ours = false;
     for (const std::string& comment : header.comments)
         is_ours = read_stamp(comment, stamp, path) || is_ours;
@@ -186,11 +189,12 @@ Tree parse_skeleton_ply(std::string_view bytes, const std::string& path, UpAxis 
     }
     is_directed = is_directed && edges.size() + 1 == table.positions.size();
     if (is_ours || is_directed) {
+        choose_tree({1}, choice, path, report);
         Tree tree = tree_of(table, stamp, path);
         if (!has_flags) mark_trunk(tree);
         return tree;
     }
-    Tree tree = tree_of(tree_of_graph(table, edges, stamp.up, path), stamp, path);
+    Tree tree = tree_of(tree_of_graph(table, edges, {stamp.up, choice.tree}, path, report), stamp, path);
     if (!has_flags) mark_trunk(tree);
     return tree;
 }

@@ -9,6 +9,10 @@ namespace treerec {
 namespace {
 
 constexpr double kLeastRadius = 1e-4;  // metres
+// Beyond these a number is damage, in units of the file: from zero and from the root, as in clouds
+// (scan/read_cloud.cpp).
+constexpr double kLargestCoordinate = 1e12;
+constexpr double kLargestOffset = 1e9;
 
 }  // namespace
 
@@ -43,6 +47,22 @@ Tree tree_of(const SkeletonTable& table, const FileStamp& stamp, const std::stri
             frame.origin = table.positions[i];
             break;
         }
+    if (count < 2)
+        throw Error("'" + path + "' holds " + (count == 0 ? "no node" : "a single node") +
+                    "; a tree has two or more.");
+    bool has_length = false;
+    for (size_t i = 0; i < count; i++) {
+        const DVec3 &p = table.positions[i], offset = p - frame.origin;
+        const auto within = [](const DVec3& v, double limit) {
+            return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
+        };
+        if (!within(p, kLargestCoordinate) || !within(offset, kLargestOffset) ||
+            !(std::abs(table.radii[i]) <= kLargestOffset))
+            throw Error("'" + path + "' holds no sound skeleton: the place or the radius of its node " +
+                        std::to_string(i + 1) + " is no number that a tree can have.");
+        has_length = has_length || offset != DVec3(0.0);
+    }
+    if (!has_length) throw Error("'" + path + "' holds no wood: all its nodes lie at one place.");
     for (size_t i = 0; i < count; i++) {
         positions[i] = frame.to_tree(table.positions[i]);
         radii[i] = table.radii[i] * frame.metres_per_unit;

@@ -20,7 +20,8 @@ struct SkeletonTable {
 // In depth-first order, so that parents come first and children keep their order.
 SkeletonTable table_of(const Tree& tree);
 // The tree, its origin at its root, the stamp's axis up. A radius of zero, as some programs write for tips,
-// becomes a tenth of a millimetre. Throws Error where the table is no tree; `path` is for the sentence.
+// becomes a tenth of a millimetre. Throws Error where the table is no tree, or one of a single node, without
+// length or of impossible measures; `path` is for the sentence.
 Tree tree_of(const SkeletonTable& table, const FileStamp& stamp, const std::string& path);
 
 }  // namespace treerec

@@ -60,12 +60,13 @@ bool looks_like_swc(std::string_view bytes, bool whole_file) {
     return root;
 }
 
-Tree read_swc(const std::string& path, UpAxis up) {
-    return parse_swc(read_file(path).view(), path, up);
+Tree read_swc(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
+    return parse_swc(read_file(path).view(), path, choice, report);
 }
 
-Tree parse_swc(std::string_view bytes, const std::string& path, UpAxis up) {
-    FileStamp stamp{up, 1.0};
+Tree parse_swc(std::string_view bytes, const std::string& path, const SkeletonChoice& choice,
+               SkeletonReport* report) {
+    FileStamp stamp{choice.up, 1.0};
     SkeletonTable table;
     std::vector<double> parents;
     std::unordered_map<double, NodeId> row_of;  // looked up only, never walked
@@ -98,7 +99,7 @@ Tree parse_swc(std::string_view bytes, const std::string& path, UpAxis up) {
             throw Error("'" + path + "' is damaged: a node hangs on one that is not there.");
         table.parents[i] = parent->second;
     }
-    Tree tree = tree_of(largest_tree(table, path), stamp, path);
+    Tree tree = tree_of(chosen_tree(table, choice, path, report), stamp, path);
     mark_trunk(tree);
     return tree;
 }

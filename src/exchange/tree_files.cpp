@@ -6,8 +6,10 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/lstring_file.h"
 #include "exchange/qsm_columns.h"
+#include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "file_bytes.h"
@@ -97,6 +99,7 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 }  // namespace
 
 void write_treefile(const std::string& path, const Tree& tree) {
+    require_sound_measures(tree, path);
     const SkeletonTable table = table_of(tree);
     std::string text = "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) +
                        "\nx,y,z,radius,parent_id,flags\n";
@@ -117,15 +120,17 @@ void write_treefile(const std::string& path, const Tree& tree) {
     write_file(path, text);
 }
 
-Tree read_treefile(const std::string& path, UpAxis up) {
-    return parse_treefile(read_file(path).view(), path, up);
+Tree read_treefile(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
+    return parse_treefile(read_file(path).view(), path, choice, report);
 }
 
-Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up) {
+Tree parse_treefile(std::string_view bytes, const std::string& path, const SkeletonChoice& choice,
+                    SkeletonReport* report) {
     std::string_view rest = bytes;
-    FileStamp stamp{up, 1.0};
+    FileStamp stamp{choice.up, 1.0};
     std::optional<TreefileHeader> header;
-    SkeletonTable largest;
+    SkeletonTable wanted;
+    std::vector<size_t> sizes;  // of the trees, in nodes
     size_t line_number = 0;
     while (const std::optional<std::string_view> line = next_line(rest)) {
         line_number++;
@@ -142,20 +147,24 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, UpAxis up) 
             continue;
         }
         SkeletonTable table = parse_treefile_line(*line, line_number, *header, path);
-        if (table.positions.size() > largest.positions.size()) largest = std::move(table);
+        sizes.push_back(table.positions.size());
+        if (choice.tree == 0 ? sizes.back() > wanted.positions.size() : sizes.size() == choice.tree)
+            wanted = std::move(table);
     }
     if (!header) throw Error("'" + path + "' is no tree file: it names no fields x,y,z,radius,parent_id.");
-    if (largest.positions.empty()) throw Error("'" + path + "' holds no tree.");
-    Tree tree = tree_of(largest, stamp, path);
+    if (sizes.empty()) throw Error("'" + path + "' holds no tree.");
+    choose_tree(sizes, choice, path, report);
+    Tree tree = tree_of(wanted, stamp, path);
     if (header->branch.flags < 0) mark_trunk(tree);
     return tree;
 }
 
-Tree read_node_csv(const std::string& path, UpAxis up) {
-    return parse_node_csv(read_file(path).view(), path, up);
+Tree read_node_csv(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
+    return parse_node_csv(read_file(path).view(), path, choice, report);
 }
 
-Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) {
+Tree parse_node_csv(std::string_view bytes, const std::string& path, const SkeletonChoice& choice,
+                    SkeletonReport* report) {
     std::string_view rest = bytes;
     const std::optional<std::string_view> head = next_line(rest);
     const Columns columns(head ? split_fields(*head) : std::vector<std::string>());
@@ -197,7 +206,7 @@ Tree parse_node_csv(std::string_view bytes, const std::string& path, UpAxis up) 
         const auto parent = row_of.find(parent_ids[i]);
         table.parents[i] = parent == row_of.end() ? kNoNode : parent->second;
     }
-    Tree tree = tree_of(table, {up, 1.0}, path);
+    Tree tree = tree_of(chosen_tree(table, choice, path, report), {choice.up, 1.0}, path);
     if (columns.flags < 0) mark_trunk(tree);
     return tree;
 }
@@ -206,7 +215,7 @@ namespace {
 
 constexpr size_t kSniffed = 4096;
 
-enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kSwc, kLString };
+enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kSwc, kMtg, kLString };
 
 // The file's first 4 kB.
 std::string first_bytes(const std::string& path) {
@@ -222,6 +231,8 @@ std::string first_bytes(const std::string& path) {
 SkeletonFormat sniff(const std::string& path) {
     const std::string bytes = first_bytes(path);
     if (is_lstring_file(bytes)) return SkeletonFormat::kLString;
+    if (looks_like_mtg(bytes)) return SkeletonFormat::kMtg;
+    if (looks_like_qsm_sections(bytes)) return SkeletonFormat::kQsmCsv;
     std::string_view rest = bytes;
     if (rest.starts_with("ply")) {
         bool edges = false;
@@ -260,7 +271,7 @@ std::string other_kind(const std::string& path) {
                    ? "has edges but no radii, so that it is no skeleton that can be read."
                    : "is a PLY file without edges: a point cloud or a mesh, but no skeleton.";
     return "is no skeleton that can be read: a tree file (.txt), a skeleton PLY, a table of nodes or of "
-           "cylinders (.csv), SWC, an L-string.";
+           "cylinders (.csv), SWC, MTG, an L-string.";
 }
 
 }  // namespace
@@ -269,20 +280,23 @@ bool is_skeleton_file(const std::string& path) {
     return sniff(path) != SkeletonFormat::kNone;
 }
 
-Tree read_skeleton(const std::string& path, UpAxis up) {
+Tree read_skeleton(const std::string& path, const SkeletonChoice& choice, SkeletonReport* report) {
     switch (sniff(path)) {
         case SkeletonFormat::kTreefile:
-            return read_treefile(path, up);
+            return read_treefile(path, choice, report);
         case SkeletonFormat::kPly:
-            return read_skeleton_ply(path, up);
+            return read_skeleton_ply(path, choice, report);
         case SkeletonFormat::kNodeCsv:
-            return read_node_csv(path, up);
+            return read_node_csv(path, choice, report);
         case SkeletonFormat::kQsmCsv:
-            return read_qsm_csv(path, up);
+            return read_qsm_csv(path, choice, report);
         case SkeletonFormat::kLString:
+            choose_tree({1}, choice, path, report);
             return read_lstring_file(path).tree;
         case SkeletonFormat::kSwc:
-            return read_swc(path, up);
+            return read_swc(path, choice, report);
+        case SkeletonFormat::kMtg:
+            return read_mtg(path, choice, report);
         case SkeletonFormat::kNone:
             break;
     }

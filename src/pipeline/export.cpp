@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/gltf.h"
 #include "exchange/lstring_file.h"
 #include "exchange/obj.h"
@@ -158,6 +159,7 @@ size_t TreeExporter::leaves() {
 
 void TreeExporter::write(const std::string& path) {
     if (tree_.empty()) throw Error("The tree is empty; there is nothing to write to '" + path + "'.");
+    require_sound_measures(tree_, path);
     const Format format = format_of(path);
     switch (format) {
         case Format::kPly:
@@ -177,6 +179,8 @@ void TreeExporter::write(const std::string& path) {
     if (pictures_.empty())
         pictures_ = pictures_of_leaves(make_pictures(options_.textures), uses_blade_picture(options_.leaves));
     prepare({path});
+    if (bark().indices.empty())
+        throw Error("'" + path + "' was not written: the tree has no wood that could be drawn.");
     ModelFile model;
     model.bark = &bark();
     model.leaves = &leaf_cards();

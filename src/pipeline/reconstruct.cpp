@@ -266,6 +266,7 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
     result.steps = std::move(skeleton.steps);
     result.palm = told.fronds;
     result.noise = told.noise;
+    if (told.by_labels) result.leaf_column = result.cloud.labels.column;
     result.raw = std::move(skeleton.raw);
     result.tree = std::move(skeleton.tree);
 

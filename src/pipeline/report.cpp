@@ -58,6 +58,7 @@ Json options_json(const ReportDetails& details) {
         json["voxel_m"] = options.skeleton.voxel > 0.0 ? Json(options.skeleton.voxel) : Json("auto");
     json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
     json["columns"] = options.read.columns;
+    json["classes"] = options.read.classes ? Json(*options.read.classes) : Json("auto");
     json["leaves"] = details.leaves;
     json["tell_leaves"] = options.tell_leaves;
     json["complete"] = options.complete;
@@ -120,6 +121,14 @@ std::string measurements_json(const Tree& tree) {
     return dump(json);
 }
 
+std::string skeleton_report_json(const SkeletonReport& report) {
+    Json json;
+    json["trees"] = report.trees;
+    json["tree_taken"] = report.taken;
+    json["warnings"] = report.warnings;
+    return dump(json);
+}
+
 std::string report_json(const Reconstruction& result, const ReportDetails& details) {
     Json json;
     json["format_version"] = 1;
@@ -134,6 +143,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["leaf_share"] = result.cloud.empty() ? 0.0
                                               : static_cast<double>(result.leaf_points) /
                                                     static_cast<double>(result.cloud.size());
+    json["leaf_column"] = result.leaf_column.empty() ? Json(nullptr) : Json(result.leaf_column);
     json["foliage_cells"] = result.foliage.cells.size();
     Json removed = Json::object();
     for (const CleanStep& step : result.clean.steps)

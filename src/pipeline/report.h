@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "exchange/tree_files.h"
 #include "pipeline/reconstruct.h"
 
 namespace treerec {
@@ -20,13 +21,12 @@ struct ReportDetails {
 // report.json, UTF-8, numbers finite or null. Keys:
 //   format_version 1, version, scan, scan_format, seed
 //   options {up, scale, known_height_m, known_length_m, skeleton, voxel_m (of a flood), spacing_m, columns,
-//   leaves, tell_leaves, complete,
+//   classes (of LAS; "auto"), leaves, tell_leaves, complete,
 //     tree (number; null where a place or no tree was asked for), tree_at [x y z], one_tree, clean}
-//   points_read, points (after cleaning), leaf_points and leaf_share (of these), foliage_cells,
-//   removed {step: points}
-//   up, up_detected, up_from_photos (whose cameras told it; else 0), tilt_degrees (of the sky from the axis
-//   `up`), metres_per_unit, scale_guessed, scale_unknown (guessed, and the scan tells nothing of
-//   its scale), origin [x y z in scan coordinates]
+//   points_read, points (after cleaning), leaf_points and leaf_share (of these), leaf_column (of the file,
+//   that told them; else null), foliage_cells, removed {step: points} up, up_detected, up_from_photos (whose
+//   cameras told it; else 0), tilt_degrees (of the sky from the axis `up`), metres_per_unit, scale_guessed,
+//   scale_unknown (guessed, and the scan tells nothing of its scale), origin [x y z in scan coordinates]
 //   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
 //   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
 //   completed_branches, completed_length_m (option complete: what was added afterwards)
@@ -41,6 +41,9 @@ struct ReportDetails {
 //   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
 //   warnings [sentence]
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
+
+// Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].
+std::string skeleton_report_json(const SkeletonReport& report);
 
 // The measurements alone, with the keys above.
 std::string measurements_json(const Tree& tree);

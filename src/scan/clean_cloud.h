@@ -20,8 +20,8 @@ struct KnownLength {
     bool operator==(const KnownLength&) const = default;
 };
 
-// At most one of metres_per_unit, known_height and known_length sets the scale; where none does, it is
-// guessed from the size (metres unless that is implausible), and said so.
+// At most one of metres_per_unit, known_height and known_length sets the scale; where none does, the file's
+// own unit does (PointCloud::unit), or it is guessed from the size (metres unless implausible), and said so.
 struct OrientOptions {
     std::optional<UpAxis> up = std::nullopt;  // none: detect Z, Y or -Y; Z where the shape does not tell
     std::optional<double> metres_per_unit = std::nullopt;

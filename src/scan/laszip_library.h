@@ -8,7 +8,7 @@
 
 namespace treerec {
 
-// A point as LASzip gives it: laszip_point_struct of laszip_api.h, version 3, up to the colours.
+// A point as LASzip gives it: laszip_point_struct of laszip_api.h, version 3, up to the extra bytes.
 struct LaszipPoint {
     int32_t x, y, z;
     uint16_t intensity;
@@ -24,8 +24,12 @@ struct LaszipPoint {
     uint8_t padding[7];
     double gps_time;
     uint16_t rgb[4];
+    uint8_t wave_packet[29];
+    int32_t extra_count;
+    const uint8_t* extra_bytes;
 };
-static_assert(offsetof(LaszipPoint, extended_flags) == 22 && offsetof(LaszipPoint, rgb) == 40);
+static_assert(offsetof(LaszipPoint, extended_flags) == 22 && offsetof(LaszipPoint, rgb) == 40 &&
+              offsetof(LaszipPoint, extra_count) == 80);
 
 // The functions in use; every one returns 0 for success.
 struct LaszipLibrary {

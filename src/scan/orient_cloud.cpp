@@ -284,7 +284,7 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
         report.up_detected = true;
         if (!guess.sure) report.warnings.push_back(doubt_about_up(guess));
     }
-    set_scale(ranges[axis_of(report.up)].size(), on_map, options, report);
+    set_scale(ranges[axis_of(report.up)].size(), on_map, cloud.unit, options, report);
 
     cloud.frame.up = report.up;
     cloud.frame.metres_per_unit = report.metres_per_unit;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "geometry/scan_frame.h"
@@ -12,6 +13,22 @@ namespace treerec {
 
 using Color8 = std::array<uint8_t, 3>;
 
+// How long a unit of the scan is, as far as its file tells.
+struct ScanUnit {
+    double metres = 0.0;   // 0: it does not tell
+    bool assumed = false;  // by the kind of file, not by its words
+    std::string doubt;     // a sentence for the user where it may be another one; else empty
+};
+
+// What a column of the scan's file says of leaves and wood.
+struct PointLabels {
+    std::string column;           // its name
+    bool leaf_is_one = false;     // else there may be two values, and which is which is still to be found out
+    std::vector<uint8_t> values;  // by point; empty where there are no labels
+
+    bool empty() const { return values.empty(); }
+};
+
 // positions: relative to frame.origin, in the axes and units that the frame says (fresh from a file: the
 // scan's own; after orient_cloud(): tree space, metres and Y up). float is exact to 2 micrometres at 30 m.
 // colors, normals: empty, or one per point.
@@ -20,6 +37,8 @@ struct PointCloud {
     std::vector<Vec3> positions;
     std::vector<Color8> colors;
     std::vector<Vec3> normals;
+    ScanUnit unit;
+    PointLabels labels;
 
     size_t size() const { return positions.size(); }
     bool empty() const { return positions.empty(); }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <new>
 
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
+#include "scan/coordinate_steps.h"
 #include "scan/readers.h"
 
 namespace treerec {
@@ -204,6 +206,53 @@ void convert_normals(const ReadJob& job, const RawCloud& raw, PointCloud& cloud)
     if (!any) cloud.normals.clear();
 }
 
+// Labels that are all whole numbers up to 255, or all words, or 0 and 1 with what lies between; others are
+// none.
+void convert_labels(const RawCloud& raw, PointCloud& cloud) {
+    LabelMeaning meaning = label_meaning(raw.label_column);
+    size_t words = 0, wholes = 0, shares = 0, numbers = 0;
+    for (const float label : raw.labels) {
+        if (!std::isfinite(label)) continue;
+        numbers++;
+        words += label == static_cast<float>(kLeafWord) || label == static_cast<float>(kWoodWord);
+        wholes += label >= 0.0F && label <= 255.0F && label == std::floor(label);
+        shares += label >= 0.0F && label <= 1.0F;
+    }
+    if (numbers == 0) return;
+    const bool in_words = words == numbers;
+    // "foliage" may be 1 and 2.
+    if (meaning != LabelMeaning::kEither && shares != numbers) meaning = LabelMeaning::kEither;
+    if (!in_words && (meaning == LabelMeaning::kEither ? wholes : shares) != numbers) return;
+    cloud.labels.column = raw.label_column;
+    cloud.labels.leaf_is_one = in_words || meaning != LabelMeaning::kEither;
+    cloud.labels.values.reserve(raw.labels.size());
+    for (const float label : raw.labels) {
+        float value = std::isfinite(label) ? label : 0.0F;
+        if (in_words)
+            value = label == static_cast<float>(kLeafWord) ? 1.0F : 0.0F;
+        else if (meaning != LabelMeaning::kEither)
+            value = (value >= 0.5F) == (meaning == LabelMeaning::kLeaf) ? 1.0F : 0.0F;
+        cloud.labels.values.push_back(static_cast<uint8_t>(value));
+    }
+}
+
+// Rounding has left nothing of a tree.
+void refuse_coarse_steps(const ReadJob& job, const RawCloud& raw, const std::vector<uint8_t>& keep) {
+    const std::optional<CoordinateSteps> found = find_coarse_steps(raw.positions, keep);
+    if (!found) return;
+    char step[32];
+    const std::to_chars_result end =
+        std::to_chars(step, step + sizeof step, found->step, std::chars_format::general, 6);
+    // Maps are in metres unless they say otherwise.
+    const bool metres = raw.unit.metres == 0.0 || raw.unit.metres == 1.0;
+    job.fail(
+        "shows no tree: its coordinates come in steps of " + std::string(step, end.ptr) +
+        (metres ? " m" : " units") + " along " + "xyz"[found->axis] + ", since they were rounded " +
+        (found->as_floats ? "to 32-bit numbers" : "to a few digits") +
+        " far from zero. Shift the cloud towards zero before saving it (or save it in double precision), "
+        "and read that.");
+}
+
 PointCloud settle(const ReadJob& job, RawCloud&& raw) {
     const size_t count = raw.positions.size();
     if (count == 0) job.fail("holds no points.");
@@ -226,7 +275,11 @@ PointCloud settle(const ReadJob& job, RawCloud&& raw) {
         }
         kept += own;
     });
+    refuse_coarse_steps(job, raw, keep);
     raw.positions = {};
+    cloud.unit = raw.unit;
+    convert_labels(raw, cloud);
+    raw.labels = {};
     if (!raw.colors.empty()) convert_colors(job, raw, cloud);
     raw.colors = {};
     if (!raw.normals.empty()) convert_normals(job, raw, cloud);
@@ -270,6 +323,31 @@ std::vector<std::string> parse_columns(std::string_view text) {
             columns.back() += c;
     }
     return columns;
+}
+
+std::optional<std::vector<uint8_t>> parse_classes(std::string_view text) {
+    if (text.empty()) return std::nullopt;
+    std::array<bool, 256> wanted{};
+    if (text == "all") wanted.fill(true);
+    for (std::string_view rest = text == "all" ? "" : text; !rest.empty();) {
+        const std::string_view part = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+        unsigned first = 0, last = 0;
+        const char* const end = part.data() + part.size();
+        std::from_chars_result read = std::from_chars(part.data(), end, first);
+        last = first;
+        if (read.ec == std::errc() && read.ptr != end && *read.ptr == '-')
+            read = std::from_chars(read.ptr + 1, end, last);
+        if (read.ec != std::errc() || read.ptr != end || first > last || last > 255)
+            throw Error("The classes of points are numbers from 0 to 255, as in 4,5 or 2-5, or 'all', not " +
+                        quote_word(text) + ".");
+        for (unsigned i = first; i <= last; i++)
+            wanted[i] = true;
+    }
+    std::vector<uint8_t> classes;
+    for (size_t i = 0; i < wanted.size(); i++)
+        if (wanted[i]) classes.push_back(static_cast<uint8_t>(i));
+    return classes;
 }
 
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options, ReadCloudReport* report,

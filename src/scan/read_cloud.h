@@ -2,6 +2,8 @@
 // 1.0-1.4, LAZ where LASzip is installed, PCD, COLMAP's points3D (.bin and .txt).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +17,17 @@ struct ReadCloudOptions {
     // Text files only: the columns' names in order, such as {"x","y","z","r","g","b"}; "-" skips one. Empty:
     // detect.
     std::vector<std::string> columns;
+    // LAS and LAZ only: the classes of points that are read. None: all but noise (7 and 18).
+    std::optional<std::vector<uint8_t>> classes = std::nullopt;
 
     bool operator==(const ReadCloudOptions&) const = default;
 };
 
 // "x, y, z, r, -" as columns; none for an empty text.
 std::vector<std::string> parse_columns(std::string_view text);
+
+// "2,4-6" or "all" as classes; none for an empty text. Throws Error for what is no such list.
+std::optional<std::vector<uint8_t>> parse_classes(std::string_view text);
 
 // What the reader had to decide or leave out, as sentences for the user ("3 of 4000 points had no finite
 // position.").
@@ -33,9 +40,11 @@ struct ReadCloudReport {
 // Reads the cloud at `path` (UTF-8). The format is sniffed from the contents first, the extension second. The
 // frame's origin is the median of each axis, rounded to whole units, and independent of the points' order;
 // scale 1, axes as in the file. Left out and counted in a warning: points without finite coordinates, LAS
-// points flagged as withheld, splats with an opacity below 10 %. A file that is cut off is an Error wherever
+// points flagged as withheld or of classes that are not read, splats with an opacity below 10 %. The cloud's
+// unit is what a LAS file says; its labels are what a column called foliage, leaf, wood, classification,
+// label or the like says of leaves. A file that is cut off is an Error wherever
 // that can be known. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no finite
-// point, …).
+// point, coordinates in degrees or rounded to steps too coarse for a tree, …).
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options = {},
                       ReadCloudReport* report = nullptr, Progress* progress = nullptr);
 

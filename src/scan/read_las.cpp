@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
-#include <numeric>
 
 namespace treerec {
 
@@ -23,6 +23,8 @@ struct PointFormat {
 constexpr PointFormat kFormats[] = {{20, 0}, {28, 0},  {26, 20}, {34, 28}, {57, 0}, {63, 28},
                                     {30, 0}, {36, 30}, {38, 30}, {59, 0},  {67, 30}};
 constexpr size_t kBlock = 65536;
+constexpr bool kSwap = std::endian::native != std::endian::little;
+constexpr std::array<uint8_t, 2> kNoiseClasses{7, 18};  // low and high noise
 // Of the byte 104, these two bits say that the points are compressed.
 constexpr int kCompressedBits = 0xC0;
 
@@ -62,28 +64,114 @@ LasHeader read_header(const ReadJob& job) {
     return header;
 }
 
+// Brings z to the unit of x and y; says what the file says.
+void settle_units(const ReadJob& job, LasHeader& header) {
+    const std::string_view bytes = job.bytes.view();
+    const LasUnits units = las_units(bytes);
+    header.unit = units.unit;
+    if (units.degrees) {
+        // A system that the coordinates do not fit is a mistake of whoever wrote its name.
+        double most = 0.0, widest = 0.0;
+        for (size_t at = 179; at < 179 + 32; at += 16) {
+            const double high = little<double>(bytes.data() + at),
+                         low = little<double>(bytes.data() + at + 8);
+            most = std::max({most, std::abs(high), std::abs(low)});
+            widest = std::max(widest, high - low);
+        }
+        constexpr double kWidestTree = 0.01;  // degrees: a kilometre
+        if (most <= 360.0 && widest < kWidestTree)
+            job.fail(
+                "has its coordinates in degrees of longitude and latitude; convert it to a map in metres "
+                "(such as UTM) first.");
+    }
+    if (!units.name.empty()) job.report.format += ", in " + units.name;
+    if (units.height_factor == 1.0) return;
+    header.scale.z *= units.height_factor;
+    header.offset.z *= units.height_factor;
+    job.report.warnings.push_back("The file has its heights in " + units.height_name + ", but all else in " +
+                                  units.name + "; the heights were converted.");
+}
+
+// The extra bytes that say what is leaf: as the columns of text do.
+void find_label(const ReadJob& job, LasHeader& header) {
+    const std::vector<LasExtraField> fields = las_extra_fields(job.bytes.view());
+    std::vector<std::string> names;
+    for (const LasExtraField& field : fields)
+        names.push_back(field.name);
+    const std::vector<int8_t> roles = roles_from_names(names);
+    for (size_t i = 0; i < fields.size(); i++) {
+        const bool fits =
+            fields[i].offset + size_of(fields[i].type) <= header.stride - kFormats[header.format].size;
+        if (roles[i] == kRoleLabel && fits) header.label = fields[i];
+    }
+}
+
+uint8_t class_of(const char* record, int format) {
+    return static_cast<uint8_t>(format < 6 ? record[15] & 0x1F : record[16]);
+}
+
+// Flagged as to be treated as deleted.
+bool is_withheld(const char* record, int format) {
+    return (static_cast<unsigned char>(record[15]) & (format < 6 ? 0x80 : 0x04)) != 0;
+}
+
 }  // namespace
 
 size_t LasHeader::rgb() const {
     return kFormats[format].rgb;
 }
 
-bool is_withheld(const char* record, int format) {
-    return (static_cast<unsigned char>(record[15]) & (format < 6 ? 0x80 : 0x04)) != 0;
+size_t LasHeader::extra() const {
+    return kFormats[format].size;
 }
 
-void settle_las(const ReadJob& job, const std::vector<uint8_t>& withheld, RawCloud& raw) {
+LasClasses::LasClasses(const ReadCloudOptions& options) {
+    if (!options.classes) {
+        for (const uint8_t noise : kNoiseClasses)
+            verdicts_[noise] = LasPoint::kNoise;
+        return;
+    }
+    verdicts_.fill(LasPoint::kUnwanted);
+    for (const uint8_t wanted : *options.classes)
+        verdicts_[wanted] = LasPoint::kKept;
+}
+
+void settle_las(const ReadJob& job, const LasHeader& header, const LasPoints& points, RawCloud& raw) {
     const size_t count = raw.size();
-    const size_t out = std::accumulate(withheld.begin(), withheld.end(), size_t{0});
-    if (out == count) job.fail("holds no points but such as are flagged as withheld, that is, deleted.");
-    if (out > 0) {
+    std::array<size_t, 4> counts{};
+    for (const LasPoint verdict : points.verdicts)
+        counts[static_cast<size_t>(verdict)]++;
+    const auto number = [&](LasPoint verdict) { return counts[static_cast<size_t>(verdict)]; };
+    if (number(LasPoint::kWithheld) == count)
+        job.fail("holds no points but such as are flagged as withheld, that is, deleted.");
+    if (number(LasPoint::kKept) == 0 && job.options.classes)
+        job.fail("holds no points of the classes that were asked for; leave out --classes.");
+    if (number(LasPoint::kKept) == 0)
+        job.fail("holds no points but noise (classes 7 and 18); --classes all reads these too.");
+    if (!header.label) {
+        raw.labels.assign(points.classes.begin(), points.classes.end());
+        raw.label_column = "classification";
+    }
+    if (number(LasPoint::kKept) != count) {
         std::vector<uint8_t> keep(count);
         for (size_t i = 0; i < count; i++)
-            keep[i] = !withheld[i];
+            keep[i] = points.verdicts[i] == LasPoint::kKept;
         raw.keep_only(keep);
-        job.report.warnings.push_back(std::to_string(out) + " of " + std::to_string(count) +
-                                      " points are flagged as withheld and were left out.");
+        const auto say = [&](LasPoint verdict, const char* what) {
+            if (number(verdict) > 0)
+                job.report.warnings.push_back(std::to_string(number(verdict)) + " of " +
+                                              std::to_string(count) + " points are " + what +
+                                              " and were left out.");
+        };
+        say(LasPoint::kWithheld, "flagged as withheld");
+        say(LasPoint::kNoise, "of the classes 7 or 18, noise,");
+        say(LasPoint::kUnwanted, "of classes that were not asked for");
     }
+    // Without two classes there is nothing to tell.
+    if (!header.label && std::all_of(raw.labels.begin(), raw.labels.end(),
+                                     [&](float label) { return label == raw.labels.front(); }))
+        raw.labels = {};
+    raw.unit = header.unit;
     // The specification wants 16-bit colours, but many programs write 8-bit ones.
     float largest = 0.0F;
     for (const Vec3& c : raw.colors)
@@ -92,9 +180,11 @@ void settle_las(const ReadJob& job, const std::vector<uint8_t>& withheld, RawClo
 }
 
 RawCloud read_las(const ReadJob& job) {
-    const LasHeader header = read_header(job);
+    LasHeader header = read_header(job);
     job.report.format = (header.compressed ? "LAZ " : "LAS ") + header.version + ", point format " +
                         std::to_string(header.format);
+    settle_units(job, header);
+    find_label(job, header);
     if (header.compressed) return read_laz(job, header);
     const std::string_view bytes = job.bytes.view();
     const uint64_t found = header.data >= bytes.size() ? 0 : (bytes.size() - header.data) / header.stride;
@@ -107,20 +197,29 @@ RawCloud read_las(const ReadJob& job) {
     RawCloud raw;
     make_room(job, raw.positions, count);
     if (rgb) make_room(job, raw.colors, count);
-    std::vector<uint8_t> withheld(count);
+    if (header.label) make_room(job, raw.labels, count);
+    const LasClasses classes(job.options);
+    LasPoints points{std::vector<LasPoint>(count), std::vector<uint8_t>(count)};
     job.parallel(count, kBlock, kFileRead, kPointsRead, [&](size_t begin, size_t end) {
         const char* record = bytes.data() + header.data + begin * header.stride;
         for (size_t i = begin; i < end; i++, record += header.stride) {
             const DVec3 steps(little<int32_t>(record), little<int32_t>(record + 4),
                               little<int32_t>(record + 8));
             raw.positions[i] = steps * header.scale + header.offset;
-            withheld[i] = is_withheld(record, header.format);
+            points.classes[i] = class_of(record, header.format);
+            points.verdicts[i] = classes.judge(points.classes[i], is_withheld(record, header.format));
             if (rgb)
                 raw.colors[i] = Vec3(little<uint16_t>(record + rgb), little<uint16_t>(record + rgb + 2),
                                      little<uint16_t>(record + rgb + 4));
         }
+        if (header.label)
+            decode_column(
+                {bytes.data() + header.data + begin * header.stride + header.extra() + header.label->offset,
+                 header.stride, header.label->type, kSwap},
+                end - begin, kRoleLabel, begin, raw);
     });
-    settle_las(job, withheld, raw);
+    if (header.label) raw.label_column = header.label->name;
+    settle_las(job, header, points, raw);
     return raw;
 }
 

@@ -1,6 +1,7 @@
 // LAZ through LASzip's C interface.
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <memory>
 
 #include "file_bytes.h"
@@ -12,17 +13,18 @@ namespace treerec {
 namespace {
 
 constexpr uint64_t kBlock = 16384;
-// What of a point of the formats 6 to 10 is unpacked: laszip_DECOMPRESS_SELECTIVE_ Z, FLAGS and RGB. The
-// place on the ground is always.
-constexpr uint32_t kParts = 0x1 | 0x4 | 0x100;
+// What of a point of the formats 6 to 10 is unpacked: laszip_DECOMPRESS_SELECTIVE_ Z, CLASSIFICATION, FLAGS
+// and RGB, and EXTRA_BYTES where there is a label in them. The place on the ground is always.
+constexpr uint32_t kParts = 0x1 | 0x2 | 0x4 | 0x100;
+constexpr uint32_t kExtraParts = 0xFFFF0000;
 
 // An open file; closed and freed whatever happens.
 class Reader {
   public:
-    Reader(const LaszipLibrary& laszip, const ReadJob& job) : laszip_(laszip), job_(job) {
+    Reader(const LaszipLibrary& laszip, const ReadJob& job, uint32_t parts) : laszip_(laszip), job_(job) {
         if (laszip_.create(&reader_) != 0) job_.fail("cannot be unpacked: LASzip does not start.");
         int is_compressed = 0;
-        if (laszip_.decompress_selective(reader_, kParts) != 0 ||
+        if (laszip_.decompress_selective(reader_, parts) != 0 ||
             laszip_.open_reader(reader_, job_.path.c_str(), &is_compressed) != 0) {
             const std::string why = error();
             laszip_.destroy(reader_);
@@ -94,6 +96,15 @@ void require_sound_records(const ReadJob& job, const LasHeader& header) {
         job.fail("is cut off or damaged: the table of its LAZ chunks is not in it; copy it again.");
 }
 
+float extra_value(const LaszipPoint& point, const LasExtraField& field) {
+    constexpr bool kSwap = std::endian::native != std::endian::little;
+    const size_t end = field.offset + size_of(field.type);
+    if (!point.extra_bytes || point.extra_count < 0 || static_cast<size_t>(point.extra_count) < end)
+        return std::numeric_limits<float>::quiet_NaN();
+    return static_cast<float>(
+        load_ply_value(reinterpret_cast<const char*>(point.extra_bytes) + field.offset, field.type, kSwap));
+}
+
 const LaszipLibrary& library_for(const ReadJob& job) {
     try {
         return laszip_library();
@@ -107,16 +118,19 @@ const LaszipLibrary& library_for(const ReadJob& job) {
 RawCloud read_laz(const ReadJob& job, const LasHeader& header) {
     const LaszipLibrary& laszip = library_for(job);
     require_sound_records(job, header);
-    const Reader reader(laszip, job);
+    const Reader reader(laszip, job, header.label ? kParts | kExtraParts : kParts);
     const LaszipPoint& point = reader.point();
     const bool rgb = header.rgb() != 0;
     RawCloud raw;
-    std::vector<uint8_t> withheld;
+    LasPoints points;
+    const LasClasses classes(job.options);
     // A damaged header may promise anything; a point takes a byte or more, but for the very best compression.
     const size_t likely = static_cast<size_t>(std::min<uint64_t>(header.count, job.bytes.size));
     raw.positions.reserve(likely);
     if (rgb) raw.colors.reserve(likely);
-    withheld.reserve(likely);
+    points.verdicts.reserve(likely);
+    points.classes.reserve(likely);
+    if (header.label) raw.labels.reserve(likely);
     for (uint64_t i = 0; i < header.count; i++) {
         if (i % kBlock == 0)
             job.step(kFileRead +
@@ -126,10 +140,15 @@ RawCloud read_laz(const ReadJob& job, const LasHeader& header) {
                      std::to_string(i) + " could be unpacked; copy it again.");
         raw.positions.push_back(DVec3(point.x, point.y, point.z) * header.scale + header.offset);
         if (rgb) raw.colors.emplace_back(point.rgb[0], point.rgb[1], point.rgb[2]);
-        withheld.push_back(header.format < 6 ? (point.classification >> 7) & 1
-                                             : (point.extended_flags >> 6) & 1);
+        const bool old = header.format < 6;
+        const bool withheld = old ? (point.classification >> 7) & 1 : (point.extended_flags >> 6) & 1;
+        points.classes.push_back(
+            static_cast<uint8_t>(old ? point.classification & 0x1F : point.extended_classification));
+        points.verdicts.push_back(classes.judge(points.classes.back(), withheld));
+        if (header.label) raw.labels.push_back(extra_value(point, *header.label));
     }
-    settle_las(job, withheld, raw);
+    if (header.label) raw.label_column = header.label->name;
+    settle_las(job, header, points, raw);
     return raw;
 }
 

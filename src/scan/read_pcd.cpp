@@ -318,6 +318,8 @@ RawCloud read_pcd(const ReadJob& job) {
         job.fail("has the unknown PCD data format " + quote_word(header.data) + ".");
     }
     if (columns.packed_color >= 0) raw.color_white = 255.0F;
+    for (size_t f = 0; f < header.fields.size(); f++)
+        if (columns.roles[f] == kRoleLabel) raw.label_column = header.fields[f].name;
     return raw;
 }
 

@@ -22,6 +22,7 @@ constexpr size_t kBlock =
 // What the vertex element offers.
 struct Vertices {
     std::vector<int8_t> roles;  // by property
+    std::string label_column;
     float white = 0.0F;
     bool splats = false;
 };
@@ -52,6 +53,8 @@ Vertices understand(const ReadJob& job, const PlyElement& element) {
                 static_cast<int8_t>(kRoleR + k);
         result.roles[static_cast<size_t>(element.find("opacity"))] = kRoleOpacity;
     }
+    for (size_t i = 0; i < names.size(); i++)
+        if (result.roles[i] == kRoleLabel) result.label_column = names[i];
     for (size_t i = 0; i < names.size(); i++) {
         if (result.roles[i] != kRoleR) continue;
         if (element.properties[i].type == PlyType::kUint8) result.white = 255.0F;
@@ -251,6 +254,7 @@ RawCloud read_vertices(const ReadJob& job, const PlyHeader& header) {
         const Vertices vertices = understand(job, element);
         RawCloud raw = reader.read(element, vertices);
         raw.color_white = vertices.white;
+        raw.label_column = vertices.label_column;
         if (vertices.splats) {
             job.report.format += ", Gaussian splats";
             settle_splats(job, raw);

@@ -18,10 +18,15 @@ bool parse_row(std::string_view line, const TextLayout& layout, std::array<doubl
     double value = 0.0;
     bool clean = false;
     for (columns = 0; columns <= layout.last_column; columns++) {
+        const char* const begin = p;
         if (!next_text_value(p, end, layout.separator, value, clean)) return false;
         const int8_t role = layout.roles[columns];
         if (role == kNoRole) continue;
-        if (!clean) return false;
+        // A label may be a word.
+        if (!clean && role == kRoleLabel)
+            value = label_of_word(std::string_view(begin, static_cast<size_t>(p - begin)));
+        else if (!clean)
+            return false;
         row[static_cast<size_t>(role)] = value;
     }
     return true;
@@ -97,6 +102,7 @@ void compact(const std::vector<Chunk>& chunks, RawCloud& raw) {
     close(raw.positions);
     close(raw.colors);
     close(raw.normals);
+    close(raw.labels);
 }
 
 }  // namespace
@@ -129,6 +135,7 @@ RawCloud read_text(const ReadJob& job) {
         read_chunk(bytes, end_of(i), layout, least_length, chunks[i], raw);
     });
     compact(chunks, raw);
+    raw.label_column = layout.label_column;
 
     size_t lines = 0;
     size_t bad = 0;

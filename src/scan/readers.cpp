@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "geometry/parallel.h"
@@ -36,6 +37,15 @@ constexpr NameRole kSureNames[] = {
     {"green", kRoleG},       {"blue", kRoleB},     {"diffusered", kRoleR}, {"diffusegreen", kRoleG},
     {"diffuseblue", kRoleB}, {"nx", kRoleNx},      {"ny", kRoleNy},        {"nz", kRoleNz},
     {"normalx", kRoleNx},    {"normaly", kRoleNy}, {"normalz", kRoleNz},
+};
+// Of labels: those whose name says which value is the leaf go before the others.
+constexpr std::string_view kLeafNames[] = {"foliage",       "leaf",       "leaves",       "isleaf",
+                                           "scalarfoliage", "scalarleaf", "scalarleaves", "scalarisleaf"};
+constexpr std::string_view kWoodNames[] = {"wood", "iswood", "scalarwood", "scalariswood"};
+constexpr std::string_view kLabelNames[] = {
+    "classification",       "label",       "labels",           "leafwood", "woodleaf",
+    "scalarclassification", "scalarlabel", "scalarlabels",     "class",    "scalarclass",
+    "prediction",           "predlabel",   "scalarprediction",
 };
 constexpr NameRole kLikelyNames[] = {
     {"r", kRoleR},           {"g", kRoleG},           {"b", kRoleB},         {"rf", kRoleR},
@@ -69,12 +79,42 @@ std::vector<int8_t> roles_from_names(const std::vector<std::string>& names) {
         plain_names.push_back(plain(name));
     take(plain_names, kSureNames);
     take(plain_names, kLikelyNames);
+    const auto take_label = [&](std::span<const std::string_view> known) {
+        for (size_t i = 0; i < plain_names.size(); i++)
+            for (const std::string_view name : known) {
+                if (roles[i] != kNoRole || taken[kRoleLabel] || plain_names[i] != name) continue;
+                roles[i] = kRoleLabel;
+                taken[kRoleLabel] = true;
+            }
+    };
+    take_label(kLeafNames);
+    take_label(kWoodNames);
+    take_label(kLabelNames);
     for (const int first : {kRoleR, kRoleNx}) {
         if (taken[first] && taken[first + 1] && taken[first + 2]) continue;
         for (int8_t& role : roles)
             if (role >= first && role < first + 3) role = kNoRole;
     }
     return roles;
+}
+
+LabelMeaning label_meaning(std::string_view name) {
+    const std::string plain_name = plain(name);
+    const auto is_one_of = [&](std::span<const std::string_view> known) {
+        return std::find(known.begin(), known.end(), plain_name) != known.end();
+    };
+    if (is_one_of(kLeafNames)) return LabelMeaning::kLeaf;
+    return is_one_of(kWoodNames) ? LabelMeaning::kWood : LabelMeaning::kEither;
+}
+
+double label_of_word(std::string_view word) {
+    const std::string plain_word = plain(word);
+    for (const std::string_view leaf : {"leaf", "leaves", "foliage", "needle", "needles"})
+        if (plain_word == leaf) return kLeafWord;
+    for (const std::string_view wood :
+         {"wood", "woody", "stem", "trunk", "branch", "branches", "bark", "twig", "twigs"})
+        if (plain_word == wood) return kWoodWord;
+    return std::numeric_limits<double>::quiet_NaN();
 }
 
 bool has_role(const std::vector<int8_t>& roles, Role role) {
@@ -84,7 +124,8 @@ bool has_role(const std::vector<int8_t>& roles, Role role) {
 }
 
 std::string describe_roles(const std::vector<int8_t>& roles) {
-    static constexpr const char* kNames[] = {"x", "y", "z", "r", "g", "b", "nx", "ny", "nz", "opacity"};
+    static constexpr const char* kNames[] = {"x",  "y",  "z",  "r",       "g",    "b",
+                                             "nx", "ny", "nz", "opacity", "label"};
     std::string text;
     for (const int8_t role : roles)
         text += std::string(text.empty() ? "" : " ") + (role == kNoRole ? "-" : kNames[role]);
@@ -118,6 +159,7 @@ void make_room(const ReadJob& job, RawCloud& raw, size_t count, const std::vecto
     if (has_role(roles, kRoleR)) make_room(job, raw.colors, count);
     if (has_role(roles, kRoleNx)) make_room(job, raw.normals, count);
     if (has_role(roles, kRoleOpacity)) make_room(job, raw.opacities, count);
+    if (has_role(roles, kRoleLabel)) make_room(job, raw.labels, count);
 }
 
 void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {
@@ -125,6 +167,7 @@ void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {
     if (has_role(roles, kRoleR)) colors.reserve(count);
     if (has_role(roles, kRoleNx)) normals.reserve(count);
     if (has_role(roles, kRoleOpacity)) opacities.reserve(count);
+    if (has_role(roles, kRoleLabel)) labels.reserve(count);
 }
 
 void RawCloud::add(const std::array<double, kRoleCount>& row, const std::vector<int8_t>& roles) {
@@ -132,6 +175,7 @@ void RawCloud::add(const std::array<double, kRoleCount>& row, const std::vector<
     if (has_role(roles, kRoleR)) colors.emplace_back(row[kRoleR], row[kRoleG], row[kRoleB]);
     if (has_role(roles, kRoleNx)) normals.emplace_back(row[kRoleNx], row[kRoleNy], row[kRoleNz]);
     if (has_role(roles, kRoleOpacity)) opacities.push_back(static_cast<float>(row[kRoleOpacity]));
+    if (has_role(roles, kRoleLabel)) labels.push_back(static_cast<float>(row[kRoleLabel]));
 }
 
 size_t RawCloud::keep_only(const std::vector<uint8_t>& keep) {
@@ -147,6 +191,7 @@ size_t RawCloud::keep_only(const std::vector<uint8_t>& keep) {
     compact(colors);
     compact(normals);
     compact(opacities);
+    compact(labels);
     return before - positions.size();
 }
 
@@ -173,6 +218,8 @@ void decode_column(const ValueColumn& column, size_t count, int8_t role, size_t 
     if (role == kNoRole || count == 0) return;
     if (role == kRoleOpacity)
         decode_values(column, count, &raw.opacities[begin], 1);
+    else if (role == kRoleLabel)
+        decode_values(column, count, &raw.labels[begin], 1);
     else if (role >= kRoleNx)
         decode_values(column, count, &raw.normals[begin][role - kRoleNx], 3);
     else if (role >= kRoleR)

@@ -17,6 +17,7 @@
 namespace treerec {
 
 // What a column or property of a file means. kRoleOpacity: of a Gaussian splat; no name alone gives it.
+// kRoleLabel: which points are leaf and which wood.
 enum Role : int8_t {
     kRoleX,
     kRoleY,
@@ -28,6 +29,7 @@ enum Role : int8_t {
     kRoleNy,
     kRoleNz,
     kRoleOpacity,
+    kRoleLabel,
     kRoleCount
 };
 inline constexpr int8_t kNoRole = -1;
@@ -35,17 +37,29 @@ inline constexpr int8_t kNoRole = -1;
 // The roles of columns by their names in any spelling ("X", "coord. X", "Nx", "diffuse_red"). A role is given
 // once; colours and normals only where all three components are there.
 std::vector<int8_t> roles_from_names(const std::vector<std::string>& names);
+
+// What the values of a column of labels mean, by its name: 1 is a leaf, 1 is wood, or the values tell.
+enum class LabelMeaning { kLeaf, kWood, kEither };
+LabelMeaning label_meaning(std::string_view name);
+// A label that is a word: "leaf", "needles", "stem", … as these values; NaN for other words.
+inline constexpr double kWoodWord = 1000.0;
+inline constexpr double kLeafWord = 1001.0;
+double label_of_word(std::string_view word);
+
 bool has_role(const std::vector<int8_t>& roles, Role role);
 // "x y z - r g b"
 std::string describe_roles(const std::vector<int8_t>& roles);
 
-// Points as the file has them, before origin and colour range are settled. colors, normals, opacities: empty
-// or one each.
+// Points as the file has them, before origin and colour range are settled. colors, normals, opacities,
+// labels: empty or one each.
 struct RawCloud {
     std::vector<DVec3> positions;
     std::vector<Vec3> colors;  // in the file's own range
     std::vector<Vec3> normals;
     std::vector<float> opacities;
+    std::vector<float> labels;
+    std::string label_column;  // the name of the labels' column
+    ScanUnit unit;
     float color_white = 0.0F;  // the value of full brightness; 0: decide by the largest value
 
     size_t size() const { return positions.size(); }
@@ -57,6 +71,7 @@ struct RawCloud {
         if (!colors.empty()) colors[index] = Vec3(row[kRoleR], row[kRoleG], row[kRoleB]);
         if (!normals.empty()) normals[index] = Vec3(row[kRoleNx], row[kRoleNy], row[kRoleNz]);
         if (!opacities.empty()) opacities[index] = static_cast<float>(row[kRoleOpacity]);
+        if (!labels.empty()) labels[index] = static_cast<float>(row[kRoleLabel]);
     }
     // Keeps the points whose keep[i] is not 0, in order. Returns how many were left out.
     size_t keep_only(const std::vector<uint8_t>& keep);

@@ -86,9 +86,14 @@ double given_scale(double height, const OrientOptions& options) {
 
 }  // namespace
 
-void set_scale(double height, bool on_map, const OrientOptions& options, OrientReport& report) {
+void set_scale(double height, bool on_map, const ScanUnit& told, const OrientOptions& options,
+               OrientReport& report) {
     report.metres_per_unit = given_scale(height, options);
-    if (report.metres_per_unit == 0.0) {
+    if (report.metres_per_unit == 0.0 && told.metres > 0.0) {
+        report.metres_per_unit = told.metres;
+        report.scale_guessed = told.assumed;
+        if (!told.doubt.empty()) report.warnings.push_back(told.doubt);
+    } else if (report.metres_per_unit == 0.0) {
         const Unit unit = guess_unit(height, on_map);
         report.metres_per_unit = unit.metres;
         report.scale_guessed = true;

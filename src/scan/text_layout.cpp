@@ -328,6 +328,8 @@ TextLayout find_text_layout(const ReadJob& job) {
         if (layout.roles.size() > width)
             job.fail("has " + std::to_string(width) + " columns, but " + std::to_string(layout.roles.size()) +
                      " were named.");
+        for (size_t c = 0; c < layout.roles.size(); c++)
+            if (layout.roles[c] == kRoleLabel) layout.label_column = job.options.columns[c];
         layout.roles.resize(width, kNoRole);
     } else {
         for (const std::string_view header_line : header) {
@@ -337,8 +339,11 @@ TextLayout find_text_layout(const ReadJob& job) {
                 names.insert(names.begin(), "");
             std::vector<int8_t> roles = roles_from_names(names);
             roles.resize(width, kNoRole);
-            if (has_role(roles, kRoleX) && has_role(roles, kRoleY) && has_role(roles, kRoleZ))
+            if (has_role(roles, kRoleX) && has_role(roles, kRoleY) && has_role(roles, kRoleZ)) {
                 layout.roles = roles;
+                for (size_t c = 0; c < width && c < names.size(); c++)
+                    if (roles[c] == kRoleLabel) layout.label_column = names[c];
+            }
         }
         if (layout.roles.empty()) {
             layout.roles = roles_from_values(sample);

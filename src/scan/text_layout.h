@@ -14,6 +14,7 @@ struct TextLayout {
     char separator = ' ';       // ' ' for blanks alone; ',' or ';' beside blanks
     std::vector<int8_t> roles;  // by column
     size_t last_column = 0;     // the last with a role
+    std::string label_column;   // the name of the one with labels
     size_t data = 0;            // where the first row begins
     std::optional<uint64_t> promised_points;
 };

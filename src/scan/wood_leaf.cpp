@@ -8,6 +8,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "scan/label_leaves.h"
 #include "scan/leaf_blur.h"
 #include "scan/leaf_cells.h"
 #include "scan/leaf_colour.h"
@@ -412,7 +413,25 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
 
 }  // namespace
 
-WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
+namespace {
+
+WoodLeaf tell_by_labels(const PointCloud& cloud, const LabelledLeaves& labels) {
+    WoodLeaf result;
+    result.by_labels = true;
+    result.foliage = true;
+    result.leaf.resize(cloud.size());
+    result.wood_path.resize(cloud.size());
+    size_t leaves = 0;
+    for (size_t i = 0; i < cloud.size(); i++) {
+        result.leaf[i] = cloud.labels.values[i] == *labels.leaf;
+        result.wood_path[i] = cloud.labels.values[i] == *labels.wood;
+        leaves += result.leaf[i];
+    }
+    result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
+    return result;
+}
+
+WoodLeaf tell_by_looks(const PointCloud& cloud, Progress* listener) {
     const SubProgress progress(listener, 0.0, 1.0);
     const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
     WoodLeaf result = tell_by_samples(cloud, samples, false, progress);
@@ -426,6 +445,20 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* listener) {
     if (!sharp.foliage || sharp.noise > 0.0) return result;
     sharp.noise = result.noise;
     return sharp;
+}
+
+}  // namespace
+
+WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress) {
+    if (progress) progress->check();
+    const LabelledLeaves labels = find_labelled_leaves(cloud);
+    WoodLeaf result;
+    if (labels.leaf)
+        result = tell_by_labels(cloud, labels);
+    else if (!labels.wood)
+        result = tell_by_looks(cloud, progress);
+    if (!labels.sentence.empty()) result.warnings.insert(result.warnings.begin(), labels.sentence);
+    return result;
 }
 
 }  // namespace treerec

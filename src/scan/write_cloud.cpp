@@ -172,6 +172,11 @@ std::string to_las(const PointCloud& cloud) {
 
 void write_cloud(const std::string& path, const PointCloud& cloud) {
     if (cloud.empty()) throw Error("'" + path + "' was not written: the cloud has no points.");
+    const auto finite = [&](const Vec3& v) { return is_finite(DVec3(v)); };
+    if (!std::all_of(cloud.positions.begin(), cloud.positions.end(), finite) ||
+        !std::all_of(cloud.normals.begin(), cloud.normals.end(), finite) ||
+        !is_finite(cloud.frame.to_scan(DVec3(cloud.positions[0]))))
+        throw Error("'" + path + "' was not written: a point of the cloud has no place, or no normal.");
     const std::string extension = extension_of(path);
     if (extension == "ply") {
         write_file(path, to_ply(cloud));

@@ -54,7 +54,7 @@ template <typename Parse>
 int read_tree_of(const uint8_t* data, size_t size, Parse parse) {
     try {
         const Tree tree =
-            parse(std::string_view(reinterpret_cast<const char*>(data), size), "a file", UpAxis::kZ);
+            parse(std::string_view(reinterpret_cast<const char*>(data), size), "a file", UpAxis::kZ, nullptr);
         require(tree.check() == std::nullopt, "a tree that was read is sound");
     } catch (const Error& error) {
         require_sentence(error);

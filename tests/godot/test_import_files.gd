@@ -182,7 +182,7 @@ func test_parameters_cover_all_options() -> void:
 			)
 		var options: Dictionary = ImportOptions.to_options(values)
 		check((preset == 0) == options.is_empty(), "preset %d gives %s" % [preset, options])
-		var named: int = values.size() - 1  # the unit is none
+		var named: int = values.size() - 2  # the unit is none, and a skeleton file's tree
 		check_equal(named, TreeReconstructor.get_option_list().size() - 1, "the number of options")
 	# A group of options that nobody arranged would have no place in the dock.
 	var groups: Dictionary = {}
@@ -194,7 +194,7 @@ func test_parameters_cover_all_options() -> void:
 func test_every_parameter_has_a_tooltip() -> void:
 	for parameter: Dictionary in ImportOptions.list(0):
 		var name: String = parameter["name"]
-		if name != "scan/unit":
+		if name not in ["scan/unit", "scan/tree_in_file"]:
 			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
 	var tooltip: String = OptionTips.to_tooltip("Up | Axis", 'With [b]tags[/b], "quotes" | bars.')
 	var parts: PackedStringArray = tooltip.split("|", true, 3)
@@ -220,6 +220,8 @@ func test_units_become_scales() -> void:
 	var unit: Dictionary = ImportOptions.Unit
 	check_equal(ImportOptions.to_options({"scan/unit": unit.METRES}), {"scale": 1.0}, "metres")
 	check_equal(ImportOptions.to_options({"scan/unit": unit.FEET}), {"scale": 0.3048}, "feet")
+	var survey: Dictionary = ImportOptions.to_options({"scan/unit": unit.SURVEY_FEET})
+	check_near(survey["scale"], 0.304800609601, 1e-12, "survey feet")
 	check_equal(
 		ImportOptions.to_options({"scan/unit": unit.GUESS, "scan/tree_height": 4.0}), {}, "a guess"
 	)
@@ -265,5 +267,9 @@ func test_only_what_matters_is_shown() -> void:
 		check(ImportOptions.is_visible("a.las", false, name, height), name + " is hidden")
 	check(not ImportOptions.is_visible("a.las", false, "scan/columns", guess), "columns of LAS")
 	check(ImportOptions.is_visible("a.xyz", false, "scan/columns", guess), "columns of text")
+	check(ImportOptions.is_visible("a.las", false, "scan/classes", guess), "classes of LAS")
+	check(not ImportOptions.is_visible("a.xyz", false, "scan/classes", guess), "classes of text")
+	check(ImportOptions.is_visible("a.treefile", true, "scan/tree_in_file", guess), "of many trees")
+	check(not ImportOptions.is_visible("a.las", false, "scan/tree_in_file", guess), "of one cloud")
 	check(not ImportOptions.is_visible("a.swc", true, "skeleton/spacing", guess), "of a skeleton")
 	check(ImportOptions.is_visible("a.swc", true, "scan/up_axis", guess), "the axis of a skeleton")

@@ -251,6 +251,28 @@ func test_reads_skeletons_of_other_programs() -> void:
 		check_sentence(reconstructor.get_error_message(), "the message for a wrong axis")
 
 
+func test_reads_the_tree_of_a_file_that_is_asked_for() -> void:
+	write_text(
+		"two.txt",
+		(
+			"x,y,z,radius,parent_id\n0,0,0,0.1,-1, 0,0,3,0.1,0\n"
+			+ "5,0,0,0.2,-1, 5,0,2,0.1,0, 5,0,4,0.1,1\n"
+		)
+	)
+	var path: String = folder.path_join("two.txt")
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var nodes: Array[int] = [3, 2, 3]  # the largest, and by number
+	for number: int in nodes.size():
+		var read: TreeReconstruction = reconstructor.import_skeleton(path, "z", number)
+		check_equal(read.get_node_count(), nodes[number], "the nodes of tree %d" % number)
+		var report: Dictionary = reconstructor.get_report()
+		check_equal(report["trees"], 2.0, "the trees")
+		check_equal((report["warnings"] as Array).size(), 1 if number == 0 else 0, "what is said")
+	for number: int in [-1, 3]:
+		check(reconstructor.import_skeleton(path, "z", number) == null, "There is no such tree.")
+		check_sentence(reconstructor.get_error_message(), "the message for tree %d" % number)
+
+
 func test_options_are_described() -> void:
 	var options: Array[Dictionary] = TreeReconstructor.get_option_list()
 	check(options.size() > 8, "There are %d options." % options.size())

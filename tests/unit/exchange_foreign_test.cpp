@@ -370,7 +370,8 @@ TEST(ForeignSkeletons, WrongSwcGetsASentence) {
           "1 0 0 0 0 1 -1\n1 0 0 0 1 1 1\n", "1 0 0 0 0 1 -1\n2 0 0 0 1 1 9\n",
           "1 0 0 0 0 1 2\n2 0 0 0 1 1 1\n", "1 0 0 0 nan 1 -1\n", "1 0 0 0 0 -1 -1\n", "1 0 0 0 0 1 nan\n"})
         EXPECT_THROW(parse_swc(text, "s", UpAxis::kZ), Error) << text;
-    EXPECT_EQ(parse_swc("1 1 0 0 0 1 -1", "s", UpAxis::kZ).size(), 1u);
+    EXPECT_THROW(parse_swc("1 1 0 0 0 1 -1", "s", UpAxis::kZ), Error) << "a single node is no tree";
+    EXPECT_EQ(parse_swc("1 1 0 0 0 1 -1\n2 1 0 0 1 1 1", "s", UpAxis::kZ).size(), 2u);
 }
 
 class ForeignFiles : public ::testing::Test {

@@ -15,7 +15,9 @@ const PRUNE: StringName = &"prune"
 const LEAVES: StringName = &"leaves"
 const MESH: StringName = &"mesh"
 const _FROM_SCAN: Array[StringName] = [SCAN, CLEAN, SKELETON]
-const _SCAN_OPTIONS: PackedStringArray = ["up", "scale", "known_height", "known_length", "columns"]
+const _SCAN_OPTIONS: PackedStringArray = [
+	"up", "scale", "known_height", "known_length", "columns", "classes"
+]
 const _CLEAN_OPTIONS: PackedStringArray = [
 	"remove_extreme_colors",
 	"white_above",

@@ -11,6 +11,7 @@ static func option_titles(of: Object) -> Dictionary[String, String]:
 		"known_height": of.tr("Known height"),
 		"known_length": of.tr("Known length"),
 		"columns": of.tr("Columns"),
+		"classes": of.tr("Classes of points"),
 		"remove_extreme_colors": of.tr("Remove white and black"),
 		"white_above": of.tr("White above"),
 		"black_below": of.tr("Black below"),

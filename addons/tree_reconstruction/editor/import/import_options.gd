@@ -3,7 +3,19 @@ extends RefCounted
 ## What the Import dock shows of [TreeReconstructor]'s options: in groups, with presets, and back
 ## again. Options that this file does not know appear under Advanced by themselves.
 
-enum Unit { GUESS, METRES, CENTIMETRES, MILLIMETRES, FEET, INCHES, OTHER, TREE_HEIGHT, TWO_PLACES }
+## New ones come last: files keep their numbers.
+enum Unit {
+	GUESS,
+	METRES,
+	CENTIMETRES,
+	MILLIMETRES,
+	FEET,
+	INCHES,
+	OTHER,
+	TREE_HEIGHT,
+	TWO_PLACES,
+	SURVEY_FEET,
+}
 
 const PRESETS: PackedStringArray = ["Laser scan", "Photogrammetry", "Leaf-off", "Leafy", "Fast"]
 
@@ -24,7 +36,7 @@ const PRESET_VALUES: Array[Dictionary] = [
 ]
 const _UNITS: String = (
 	"Guess,Metres,Centimetres,Millimetres,Feet,Inches,Other Unit,"
-	+ "From the Tree's Height,From a Known Length"
+	+ "From the Tree's Height,From a Known Length,US Survey Feet"
 )
 const _METRES: Dictionary[Unit, float] = {
 	Unit.METRES: 1.0,
@@ -32,6 +44,7 @@ const _METRES: Dictionary[Unit, float] = {
 	Unit.MILLIMETRES: 0.001,
 	Unit.FEET: 0.3048,
 	Unit.INCHES: 0.0254,
+	Unit.SURVEY_FEET: 1200.0 / 3937.0,
 }
 # Which option stands where, in the order of the dock.
 const _PLACES: Dictionary[String, String] = {
@@ -41,6 +54,8 @@ const _PLACES: Dictionary[String, String] = {
 	"scan/tree_height": "known_height",
 	"scan/known_length": "known_length",
 	"scan/columns": "columns",
+	"scan/classes": "classes",
+	"scan/tree_in_file": "",
 	"cleaning/remove_outliers": "remove_outliers",
 	"cleaning/remove_fragments": "remove_fragments",
 	"cleaning/remove_ground": "remove_ground",
@@ -69,7 +84,8 @@ const _NEEDS: Dictionary[String, Array] = {
 	"advanced/neighbours": ["cleaning/remove_outliers", [true]],
 	"advanced/outlier_deviations": ["cleaning/remove_outliers", [true]],
 }
-const _OF_SKELETONS: PackedStringArray = ["scan/up_axis", "leaves/preset"]
+const _OF_SKELETONS: PackedStringArray = ["scan/up_axis", "scan/tree_in_file", "leaves/preset"]
+const _LAS_FORMATS: PackedStringArray = ["las", "laz", "treescan"]
 const _TEXT_FORMATS: PackedStringArray = ["xyz", "pts", "asc", "treescan"]
 
 
@@ -82,6 +98,8 @@ static func list(preset: int) -> Array[Dictionary]:
 	for place: String in _PLACES:
 		if place == "scan/unit":
 			parameters.append(_parameter(place, Unit.GUESS, PROPERTY_HINT_ENUM, _UNITS))
+		elif place == "scan/tree_in_file":
+			parameters.append(_parameter(place, 0, PROPERTY_HINT_RANGE, "0,100,1,or_greater"))
 		elif place == "scan/known_length":
 			# Text takes what other programs copy, and keeps the digits of large coordinates.
 			var example: String = "x, y, z, x, y, z, metres"
@@ -103,6 +121,10 @@ static func list(preset: int) -> Array[Dictionary]:
 static func is_visible(path: String, skeleton: bool, name: String, values: Dictionary) -> bool:
 	if skeleton:
 		return name in _OF_SKELETONS
+	if name == "scan/tree_in_file":
+		return path.is_empty()
+	if name == "scan/classes":
+		return path.is_empty() or path.get_extension().to_lower() in _LAS_FORMATS
 	if name == "scan/columns":
 		return path.is_empty() or path.get_extension().to_lower() in _TEXT_FORMATS
 	var need: Array = _NEEDS.get(name, [])

@@ -104,7 +104,8 @@ func _make(source_file: String, target: String, options: Dictionary) -> Error:
 	var tree: TreeReconstruction
 	if ScanFiles.is_skeleton(scan):
 		var up: String = options.get("scan/up_axis", "auto")
-		tree = reconstructor.import_skeleton(scan, "z" if up == "auto" else up)
+		var number: int = options.get("scan/tree_in_file", 0)
+		tree = reconstructor.import_skeleton(scan, "z" if up == "auto" else up, number)
 		var leaves: String = options.get("leaves/preset", "auto")
 		if tree != null and leaves != "auto":
 			tree.leaf_preset = leaves

@@ -34,10 +34,13 @@ func describe(parameter: String) -> String:
 		"scan/unit":
 			return tr(
 				(
-					"In what the scan's coordinates are given. It is guessed from its size; say it where"
-					+ " the guess is wrong, or tell the tree's height or one length that you know."
+					"In what the scan's coordinates are given. It is taken from the file, or guessed from"
+					+ " its size; say it where that is wrong, or tell the tree's height or one length that"
+					+ " you know."
 				)
 			)
+		"scan/tree_in_file":
+			return tr("Which tree of a skeleton file with several, in its order; 0 is the largest.")
 		"scan/known_length":
 			return tr(
 				(

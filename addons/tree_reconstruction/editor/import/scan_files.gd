@@ -6,7 +6,7 @@ extends RefCounted
 ## What holds nothing but scans. E57 for the sentence that says how to convert it.
 const SCANS: PackedStringArray = ["ply", "las", "laz", "pcd", "xyz", "pts", "asc", "e57"]
 ## What holds nothing but skeletons. A PLY file may hold one too.
-const SKELETONS: PackedStringArray = ["swc", "lstring", "treefile"]
+const SKELETONS: PackedStringArray = ["swc", "mtg", "lstring", "treefile"]
 ## The extension of the file that stands for a scan.
 const STAND_IN: String = "treescan"
 

@@ -122,7 +122,20 @@ const PATTERNS: PackedStringArray = [
 	"The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.",
 	"The scan has a gap of up to %s m in the wood; what lies between is a guess.",
 	"The scan has %s gaps of up to %s m in the wood; what lies between is a guess.",
+	"%s of %s points are of the classes 7 or 18, noise, and were left out.",
+	"The column %s tells leaves from wood: %s of %s points are leaves, %s are wood.",
+	"The file has its heights in %s, but all else in %s; the heights were converted.",
+	(
+		"%s holds %s trees; the largest, tree %s with %s nodes, was taken. Ask for another one by its"
+		+ " number (--tree)."
+	),
 	# Of files that can't be read.
+	"%s holds a single node; a tree has two or more.",
+	(
+		"%s shows no tree: its coordinates come in steps of %s m along %s, since they were rounded to"
+		+ " 32-bit numbers far from zero. Shift the cloud towards zero before saving it (or save it in"
+		+ " double precision), and read that."
+	),
 	"%s is empty.",
 	"%s holds no points.",
 	"%s is cut off: it promises %s points, but holds %s; copy it again.",
