@@ -7,10 +7,12 @@
 #include <godot_cpp/variant/packed_byte_array.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_int64_array.hpp>
+#include <godot_cpp/variant/packed_string_array.hpp>
 #include <godot_cpp/variant/packed_vector2_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 
 #include "error.h"
+#include "foliage/leaf_rule_text.h"
 
 using namespace godot;
 using treerec::DVec3;
@@ -98,6 +100,16 @@ Array to_surface_arrays(const treerec::Mesh& p_mesh) {
     return arrays;
 }
 
+Array to_surface_arrays(const treerec::JoinedLeaves& p_leaves) {
+    Array arrays = to_surface_arrays(p_leaves.mesh);
+    if (!arrays.is_empty()) {
+        arrays[Mesh::ARRAY_CUSTOM1] = copy_values<PackedFloat32Array>(p_leaves.lengthwise);
+        arrays[Mesh::ARRAY_CUSTOM2] = copy_values<PackedFloat32Array>(p_leaves.across);
+        arrays[Mesh::ARRAY_CUSTOM3] = copy_values<PackedFloat32Array>(p_leaves.bough);
+    }
+    return arrays;
+}
+
 // The bits of doubles. Godot's text files print a double that a float can hold with a float's digits, which
 // would move a tree at UTM coordinates by centimetres.
 static PackedInt64Array to_bits(const std::vector<double>& p_values) {
@@ -145,6 +157,20 @@ Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version) {
     }
     data["frame"] = to_bits(place);
     data["up_axis"] = treerec::up_axis_name(frame.up);
+    if (!p_tree.leaf_rules().empty()) {
+        PackedStringArray rules;
+        for (const std::string& rule : p_tree.leaf_rules()) {
+            rules.push_back(to_godot(rule));
+        }
+        PackedByteArray numbers;
+        numbers.resize(int64_t(ids.size()));
+        uint8_t* write = numbers.ptrw();
+        for (const NodeId id : ids) {
+            *write++ = p_tree.node(id).leaf_rule;
+        }
+        data["leaf_rules"] = rules;
+        data["node_leaf_rules"] = numbers;
+    }
     return data;
 }
 
@@ -190,6 +216,27 @@ static std::vector<NodeId> places_of_parents(const PackedInt32Array& p_ids,
     return places;
 }
 
+// What a skeleton keeps of wood with leaves of its own.
+static void set_leaf_rules(treerec::Tree& p_tree, const PackedInt32Array& p_ids, const Dictionary& p_data) {
+    const PackedStringArray rules = require_entry(p_data, "leaf_rules", Variant::PACKED_STRING_ARRAY);
+    const PackedByteArray numbers = require_entry(p_data, "node_leaf_rules", Variant::PACKED_BYTE_ARRAY);
+    if (numbers.size() != p_ids.size()) {
+        throw treerec::Error(
+            "The saved tree is damaged: its lists differ in length. Reconstruct the tree again.");
+    }
+    std::vector<uint8_t> named{0};
+    for (int64_t i = 0; i < rules.size(); i++) {
+        named.push_back(p_tree.name_leaf_rule(treerec::plain_leaf_rule(to_std(rules[i]))));
+    }
+    for (int64_t i = 0; i < numbers.size(); i++) {
+        if (numbers[i] >= named.size()) {
+            throw treerec::Error(
+                "The saved tree is damaged: a node's leaf rule is missing. Reconstruct the tree again.");
+        }
+        p_tree.set_leaf_rule(p_ids[i], named[numbers[i]]);
+    }
+}
+
 treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     const PackedInt32Array ids = require_entry(p_data, "ids", Variant::PACKED_INT32_ARRAY);
     const PackedInt32Array parents = require_entry(p_data, "parents", Variant::PACKED_INT32_ARRAY);
@@ -230,6 +277,9 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
                                           std::vector<uint8_t>(flags.ptr(), flags.ptr() + count), &node_ids);
     }
     tree.set_frame(frame);
+    if (p_data.has("leaf_rules")) {
+        set_leaf_rules(tree, ids, p_data);
+    }
     return tree;
 }
 

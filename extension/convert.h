@@ -10,6 +10,7 @@
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "geometry/vec.h"
+#include "mesh/joined_leaves.h"
 #include "mesh/mesh.h"
 #include "tree/tree.h"
 
@@ -42,6 +43,7 @@ godot::Array to_surface_arrays(const treerec::Mesh& p_mesh);
 extern const int64_t kSurfaceFlags;
 // The same for leaves in one mesh (mesh/joined_leaves.h).
 extern const int64_t kJoinedLeafFlags;
+godot::Array to_surface_arrays(const treerec::JoinedLeaves& p_leaves);
 
 // The core's trees keep what a file or a Dictionary holds. Throws treerec::Error for what is no such
 // skeleton.

@@ -8,7 +8,7 @@
 
 #include "convert.h"
 #include "error.h"
-#include "lsystem/lstring.h"
+#include "foliage/leaf_rule_text.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kMostLeaves = 2000000;
 constexpr int kCurveSteps = 33;
-constexpr double kSprigAngle = 45.0;  // degrees, of a turn without a number
 // Where in a year (0 buds .. 1 bare) leaves unfold, begin to fall and have fallen.
 constexpr double kUnfolded = 0.2, kFirstFall = 0.72;
 constexpr double kBudSize = 0.3;     // of a full leaf
@@ -102,22 +101,6 @@ std::vector<float> table_of(const Ref<Curve>& p_curve) {
     return table;
 }
 
-std::shared_ptr<const treerec::LeafSprig> sprig_of(const std::string& p_string) {
-    treerec::LStringOptions options;
-    options.leaf_symbols = "L";
-    options.angle = kSprigAngle;
-    treerec::LStringTree read = treerec::read_lstring_with_leaves(p_string, options);
-    if (read.tree.size() < 2) {
-        throw treerec::Error("This string draws no twig: it has no F.");
-    }
-    auto sprig = std::make_shared<treerec::LeafSprig>();
-    sprig->wood = std::move(read.tree);
-    for (const treerec::LStringLeaf& leaf : read.leaves) {
-        sprig->leaves.push_back({leaf.position, leaf.heading, leaf.up, leaf.size});
-    }
-    return sprig;
-}
-
 }  // namespace
 
 struct LeafRule::Value {
@@ -164,14 +147,57 @@ const LeafRule::Count LeafRule::kCounts[] = {
 };
 
 treerec::LeafRules LeafRule::get_rules() const {
+    return in_season(get_plain_rules(), is_evergreen());
+}
+
+treerec::LeafRules LeafRule::get_plain_rules() const {
     const std::lock_guard lock(mutex_);
     treerec::LeafRules rules = rules_;
     rules.internode /= treerec::leaves_per_node(rules);
-    if (!evergreen_) {
-        rules.standing = 1.0 - smooth(kFirstFall, 1.0, season_);
-        rules.leaf_size *= unfolded_share(season_);
-    }
     return rules;
+}
+
+treerec::LeafRules LeafRule::in_season(treerec::LeafRules p_rules, bool p_evergreen) const {
+    const std::lock_guard lock(mutex_);
+    if (!p_evergreen) {
+        p_rules.standing = 1.0 - smooth(kFirstFall, 1.0, season_);
+        p_rules.leaf_size *= unfolded_share(season_);
+    }
+    return p_rules;
+}
+
+PackedColorArray LeafRule::get_tints_at(double p_shift, const String& p_look) const {
+    PackedColorArray tints;
+    const bool own = p_look.is_empty() || p_look == look_;
+    const double middle = std::clamp(season_ + p_shift, 0.0, 1.0);
+    for (const double season : {middle - kOwnSeason, middle + kOwnSeason}) {
+        const double at = std::clamp(season, 0.0, 1.0);
+        tints.push_back(own && season_colors_.is_valid() ? season_colors_->sample(float(at))
+                                                         : usual_color(own ? look_ : p_look, at));
+    }
+    return tints;
+}
+
+Vector2 LeafRule::get_shares_at(double p_shift, bool p_evergreen) const {
+    const double season = std::clamp(season_ + p_shift, 0.0, 1.0);
+    return p_evergreen ? Vector2(1.0f, 1.0f)
+                       : Vector2(float(1.0 - smooth(kFirstFall, 1.0, season)), float(unfolded_share(season)));
+}
+
+bool LeafRule::is_look_evergreen(const String& p_look) {
+    return autumn_color(p_look).a == 0.0f;
+}
+
+Ref<LeafRule> LeafRule::with_rules(const treerec::LeafRules& p_rules, const String& p_look,
+                                   bool p_evergreen) const {
+    Ref<LeafRule> rule;
+    rule.instantiate();
+    rule->rules_ = p_rules;
+    rule->rules_.internode *= treerec::leaves_per_node(p_rules);
+    rule->look_ = p_look;
+    rule->season_ = get_season();
+    rule->evergreen_ = p_evergreen;
+    return rule;
 }
 
 Ref<LeafRule> LeafRule::from_preset(const String& p_name) {
@@ -255,7 +281,7 @@ void LeafRule::take_resources() {
     std::shared_ptr<const treerec::LeafSprig> sprig;
     const Ref<TreeReconstruction> tree = sprig_;
     if (!sprig_string_.is_empty()) {
-        sprig = guarded(sprig, [&] { return sprig_of(to_std(sprig_string_)); });
+        sprig = guarded(sprig, [&] { return treerec::read_sprig(to_std(sprig_string_)); });
     } else if (tree.is_valid() && tree->get_tree()->size() > 1) {
         auto made = std::make_shared<treerec::LeafSprig>();
         made->wood = *tree->get_tree();
@@ -322,13 +348,7 @@ void LeafRule::set_season_colors(const Ref<Gradient>& p_colors) {
 }
 
 PackedColorArray LeafRule::get_season_tints() const {
-    PackedColorArray tints;
-    for (const double season : {season_ - kOwnSeason, season_ + kOwnSeason}) {
-        const double at = std::clamp(season, 0.0, 1.0);
-        tints.push_back(season_colors_.is_valid() ? season_colors_->sample(float(at))
-                                                  : usual_color(look_, at));
-    }
-    return tints;
+    return get_tints_at(0.0);
 }
 
 double LeafRule::get_standing_share() const {

@@ -36,6 +36,18 @@ class LeafRule : public godot::Resource {
 
     // As the core takes them: with the season in them.
     treerec::LeafRules get_rules() const;
+    // Without the season; and what its season makes of rules.
+    treerec::LeafRules get_plain_rules() const;
+    treerec::LeafRules in_season(treerec::LeafRules p_rules, bool p_evergreen) const;
+    // get_season_tints() when the season is p_shift later; of this rule's leaves, or where p_look names
+    // another preset than its own, of that one's.
+    godot::PackedColorArray get_tints_at(double p_shift, const godot::String& p_look = "") const;
+    // By how much fewer and smaller leaves are then: (standing, unfolded).
+    godot::Vector2 get_shares_at(double p_shift, bool p_evergreen) const;
+    static bool is_look_evergreen(const godot::String& p_look);
+    // A new one with such rules, and this one's season.
+    godot::Ref<LeafRule> with_rules(const treerec::LeafRules& p_rules, const godot::String& p_look,
+                                    bool p_evergreen) const;
 
     static godot::Ref<LeafRule> from_preset(const godot::String& p_name);
 

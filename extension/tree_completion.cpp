@@ -112,6 +112,7 @@ Ref<TreeEdit> TreeReconstruction::complete_branch(const PackedVector3Array& p_po
         Ref<TreeEdit> edit;
         edit.instantiate();
         edit->set_edit(std::move(done.delta), std::move(outcome), done.log.entries());
+        edit->set_leaf_setting(get_leaf_setting());
         _log(edit);
         set_tree(std::move(result));
         return edit;

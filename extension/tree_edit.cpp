@@ -62,6 +62,7 @@ Array TreeEdit::get_removed_wood() const {
             Ref<TreeReconstruction> piece;
             piece.instantiate();
             piece->set_tree(outcome_.removed.piece(i, frame));
+            piece->set_leaf_setting(leaves_);
             pieces.push_back(piece);
         }
         return pieces;
@@ -83,6 +84,7 @@ Ref<TreeEdit> TreeEdit::merged_with(const Ref<TreeEdit>& p_next) const {
         both.instantiate();
         both->set_edit(treerec::TreeDelta::compose(delta_, p_next->delta_), std::move(outcome),
                        std::move(entries));
+        both->set_leaf_setting(leaves_);
         return both;
     });
 }

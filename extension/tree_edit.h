@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edit/script.h"
+#include "tree_reconstruction.h"
 
 // What one edit did to a TreeReconstruction: a value that undoes it and does it again. Made by
 // TreeReconstruction; it does not change.
@@ -20,6 +21,8 @@ class TreeEdit : public godot::RefCounted {
     void set_edit(treerec::TreeDelta p_delta, treerec::EditOutcome p_outcome,
                   std::vector<treerec::EditLog::Entry> p_entries);
     const treerec::TreeDelta& get_delta() const { return delta_; }
+    // Those of the tree, which the wood that it loses keeps.
+    void set_leaf_setting(const TreeReconstruction::LeafSetting& p_setting) { leaves_ = p_setting; }
     std::vector<treerec::EditLog::Entry> get_log_entries() const;
 
     godot::String get_command() const;
@@ -38,6 +41,7 @@ class TreeEdit : public godot::RefCounted {
 
   private:
     treerec::TreeDelta delta_;
+    TreeReconstruction::LeafSetting leaves_;
     treerec::EditOutcome outcome_;
     std::vector<treerec::EditLog::Entry> entries_;
 };

@@ -34,14 +34,21 @@ std::shared_ptr<const Tree> TreeReconstruction::get_tree() const {
 }
 
 int64_t TreeReconstruction::get_bark_revision() const {
-    const treerec::LeafRules rules = get_leaf_rules();
+    const std::shared_ptr<const Tree> tree = get_tree();
+    const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
+    std::vector<bool> followed = guarded(std::vector<bool>(), [&] {
+        std::vector<bool> kinds;
+        for (const treerec::LeafKind& kind : _leaf_kinds(*tree)) {
+            kinds.push_back(treerec::follows(kind.rules, *foliage));
+        }
+        return kinds;
+    });
     const std::lock_guard lock(mutex_);
-    const bool followed = !foliage_->empty() && rules.enabled && rules.follow_density > 0.0;
     if (revision_ == 0 || revised_tree_.lock() != tree_ || revised_foliage_.lock() != foliage_ ||
         revised_followed_ != followed) {
         revised_tree_ = tree_;
         revised_foliage_ = foliage_;
-        revised_followed_ = followed;
+        revised_followed_ = std::move(followed);
         revision_++;
     }
     return revision_;
@@ -75,7 +82,9 @@ Dictionary TreeReconstruction::get_skeleton() const {
         return newer_skeleton_;
     }
     const std::shared_ptr<const Tree> tree = get_tree();
-    return tree->empty() ? Dictionary() : to_dictionary(*tree, FORMAT_VERSION);
+    // What has no leaf rules is as the first version has it, which can read it.
+    return tree->empty() ? Dictionary()
+                         : to_dictionary(*tree, tree->leaf_rules().empty() ? 1 : int(FORMAT_VERSION));
 }
 
 void TreeReconstruction::set_provenance(const Dictionary& p_provenance) {
@@ -268,8 +277,9 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) con
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
+        const std::shared_ptr<const Tree> tree = get_tree();
         return to_surface_arrays(treerec::build_level_bark(
-            treerec::leafy_tree(*get_tree(), get_leaf_rules(), *get_leaf_density()), p_lod, p_whole_repeats));
+            treerec::leafy_tree(*tree, _leaf_kinds(*tree), *get_leaf_density()), p_lod, p_whole_repeats));
     });
 }
 
@@ -288,7 +298,7 @@ PackedFloat32Array TreeReconstruction::build_leaf_buffer(int p_lod) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, PackedFloat32Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(PackedFloat32Array(),
-                   [&] { return to_godot(treerec::leaf_buffer(_place_leaves(get_leaf_rules(), p_lod))); });
+                   [&] { return to_godot(treerec::leaf_buffer(_place_leaves(p_lod))); });
 }
 
 Ref<MultiMesh> TreeReconstruction::build_leaves(int p_lod) const {

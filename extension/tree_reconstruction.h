@@ -34,12 +34,22 @@ class TreeReconstruction : public godot::Resource {
   public:
     enum NodeKind { NODE_KIND_LEAF, NODE_KIND_BRANCH, NODE_KIND_COMMON, NODE_KIND_TRUNK };
     enum LeafArrangement { LEAF_ARRANGEMENT_ALTERNATE, LEAF_ARRANGEMENT_OPPOSITE };
-    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 1, FOLIAGE_VERSION = 1 };
+    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 2, FOLIAGE_VERSION = 1 };
 
     // For the other classes of this extension.
     void set_tree(treerec::Tree p_tree);
     std::shared_ptr<const treerec::Tree> get_tree() const;
     treerec::LeafRules get_leaf_rules() const;
+    // What the leaves of wood without a rule of its own are like, as a value.
+    struct LeafSetting {
+        treerec::LeafRules rules;  // where there is no rule
+        godot::Ref<LeafRule> rule;
+        godot::String preset = "generic";
+        bool foliage_followed = true;
+        int64_t seed = 1;
+    };
+    LeafSetting get_leaf_setting() const;
+    void set_leaf_setting(const LeafSetting& p_setting);
     void set_leaf_density(treerec::Foliage p_foliage);
     std::shared_ptr<const treerec::Foliage> get_leaf_density() const;
 
@@ -123,6 +133,14 @@ class TreeReconstruction : public godot::Resource {
     static godot::PackedStringArray get_leaf_preset_names();
     static godot::Dictionary get_wind_globals();
 
+    // Wood with leaves of its own (tree_reconstruction_leaf_kinds.cpp).
+    godot::TypedArray<godot::Dictionary> get_leaf_kinds(double p_season_shift) const;
+    godot::Dictionary count_leaf_rules(const godot::PackedInt32Array& p_ids) const;
+    godot::Ref<LeafRule> resolve_leaf_rule(const godot::String& p_rule) const;
+    static godot::String check_leaf_rule(const godot::String& p_rule);
+    godot::TypedArray<godot::Dictionary> build_foliage(int p_lod) const;
+    godot::TypedArray<godot::Dictionary> build_joined_foliage(int p_lod) const;
+
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
                                                       const godot::PackedInt32Array& p_budgets,
@@ -187,8 +205,12 @@ class TreeReconstruction : public godot::Resource {
     // A node's data, or nothing and an error that names the id.
     std::optional<treerec::Node> _find_node(int64_t p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
-    static godot::Array _to_joined_arrays(const treerec::JoinedLeaves& p_joined);
-    std::vector<treerec::LeafPlacement> _place_leaves(const treerec::LeafRules& p_rules, int p_lod) const;
+    std::vector<treerec::LeafPlacement> _place_leaves(int p_lod) const;
+    std::vector<std::vector<treerec::LeafPlacement>> _place_foliage(
+        const treerec::Tree& p_tree, const std::vector<treerec::LeafKind>& p_kinds, int p_lod) const;
+    // With the season in them. Throw treerec::Error.
+    std::vector<treerec::LeafKind> _leaf_kinds(const treerec::Tree& p_tree) const;
+    godot::Dictionary _describe_kind(const treerec::LeafKind& p_kind, double p_season_shift) const;
     static void _bind_properties();
     static void _bind_editing();
     static void _bind_grafting();
@@ -196,6 +218,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_viewing();
     static void _bind_variants();
     static void _bind_levels();
+    static void _bind_leaf_kinds();
     std::shared_ptr<const treerec::VariantMaker> _get_variant_maker() const;
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
@@ -214,7 +237,7 @@ class TreeReconstruction : public godot::Resource {
     // What the bark of revision_ is built of.
     mutable std::weak_ptr<const treerec::Tree> revised_tree_;
     mutable std::weak_ptr<const treerec::Foliage> revised_foliage_;
-    mutable bool revised_followed_ = false;
+    mutable std::vector<bool> revised_followed_;  // by kind of leaves
     mutable int64_t revision_ = 0;
 
     // What its variants are made with, and of.

@@ -40,6 +40,7 @@ Ref<TreeEdit> TreeReconstruction::_edit(const String& p_command) {
     Ref<TreeEdit> edit;
     edit.instantiate();
     edit->set_edit(std::move(done.delta), std::move(done.outcome), {{done.command, done.frame, ""}});
+    edit->set_leaf_setting(get_leaf_setting());
     _log(edit);
     set_tree(std::move(result));
     return edit;
@@ -136,6 +137,7 @@ Dictionary TreeReconstruction::replay(const String& p_log, double p_tolerance) {
         Ref<TreeEdit> edit;
         edit.instantiate();
         edit->set_edit(std::move(replayed.delta), {}, replayed.log.entries());
+        edit->set_leaf_setting(get_leaf_setting());
         _log(edit);
         set_tree(std::move(tree));
         result["edit"] = edit;
@@ -157,6 +159,7 @@ Ref<TreeEdit> TreeReconstruction::run_script(const String& p_script) {
         Ref<TreeEdit> edit;
         edit.instantiate();
         edit->set_edit(std::move(done.delta), std::move(outcome), done.log.entries());
+        edit->set_leaf_setting(get_leaf_setting());
         _log(edit);
         set_tree(std::move(tree));
         return edit;

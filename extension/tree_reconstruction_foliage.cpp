@@ -1,5 +1,4 @@
 // What TreeReconstruction keeps of the leaves that the scan saw, and its leaf rule.
-#include <cstring>
 #include <godot_cpp/classes/mesh.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
@@ -173,41 +172,18 @@ Array TreeReconstruction::build_leaf_form_arrays(int p_lod) const {
     });
 }
 
-// As floats, one after another.
-template <typename T>
-static PackedFloat32Array to_floats(const treerec::MeshArray<T>& p_values) {
-    PackedFloat32Array floats;
-    floats.resize(int64_t(p_values.size() * sizeof(T) / sizeof(float)));
-    if (!p_values.empty()) std::memcpy(floats.ptrw(), p_values.data(), p_values.size() * sizeof(T));
-    return floats;
-}
-
 Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
         const treerec::LeafRules rules = get_leaf_rules();
-        return _to_joined_arrays(
-            treerec::join_leaves(_place_leaves(rules, p_lod), treerec::build_leaf_card(rules, p_lod)));
+        const treerec::JoinedLeaves joined =
+            treerec::join_leaves(_place_leaves(p_lod), treerec::build_leaf_card(rules, p_lod));
+        return to_surface_arrays(joined);
     });
 }
 
-Array TreeReconstruction::_to_joined_arrays(const treerec::JoinedLeaves& p_joined) {
-    Array arrays = to_surface_arrays(p_joined.mesh);
-    if (!arrays.is_empty()) {
-        arrays[Mesh::ARRAY_CUSTOM1] = to_floats(p_joined.lengthwise);
-        arrays[Mesh::ARRAY_CUSTOM2] = to_floats(p_joined.across);
-        arrays[Mesh::ARRAY_CUSTOM3] = to_floats(p_joined.bough);
-    }
-    return arrays;
-}
-
-std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(const treerec::LeafRules& p_rules,
-                                                                      int p_lod) const {
-    std::vector<treerec::LeafPlacement> leaves =
-        treerec::place_leaves(*get_tree(), p_rules, uint64_t(get_seed()), *get_leaf_density());
-    if (p_lod > 0) {
-        leaves = treerec::thin_leaves(leaves, p_lod);
-    }
-    return leaves;
+std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(int p_lod) const {
+    const std::shared_ptr<const treerec::Tree> tree = get_tree();
+    return _place_foliage(*tree, _leaf_kinds(*tree), p_lod).front();
 }

@@ -24,7 +24,8 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
     return guarded(none, [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
-        const treerec::LevelBuilder builder(*tree, get_leaf_rules(), uint64_t(get_seed()), *foliage);
+        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        const treerec::LevelBuilder builder(*tree, kinds, uint64_t(get_seed()), *foliage);
         const treerec::Bounds& box = builder.box();
         TypedArray<Dictionary> levels;
         for (int64_t i = 0; i < p_levels.size(); i++) {
@@ -32,11 +33,25 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
             const treerec::TreeLevel made = builder.build(p_levels[i], size_t(budget));
             Dictionary level;
             level["bark"] = to_surface_arrays(made.bark);
+            TypedArray<Dictionary> parts;
+            for (size_t kind = 0; kind < kinds.size(); kind++) {
+                const treerec::LevelLeaves& leaves = made.foliage[kind];
+                Dictionary part = _describe_kind(kinds[kind], 0.0);
+                if (p_joined) {
+                    part["arrays"] = to_surface_arrays(treerec::join_leaves(leaves.leaves, leaves.card));
+                } else {
+                    part["leaves"] = to_godot(treerec::leaf_buffer(leaves.leaves));
+                    part["card"] = to_surface_arrays(leaves.card);
+                }
+                parts.push_back(part);
+            }
             if (p_joined) {
-                level["joined_leaves"] = _to_joined_arrays(treerec::join_leaves(made.leaves, made.card));
+                level["joined_foliage"] = parts;
             } else {
-                level["leaves"] = to_godot(treerec::leaf_buffer(made.leaves));
-                level["card"] = to_surface_arrays(made.card);
+                const Dictionary own = parts[0];
+                level["foliage"] = parts;
+                level["leaves"] = own["leaves"];
+                level["card"] = own["card"];
             }
             level["box"] = box.empty() ? AABB() : AABB(to_godot(box.min), to_godot(box.size()));
             level["triangles"] = int64_t(made.triangle_count());

@@ -222,6 +222,7 @@ void TreeReconstruction::_bind_methods() {
     _bind_viewing();
     _bind_variants();
     _bind_levels();
+    _bind_leaf_kinds();
 
     ClassDB::bind_method(D_METHOD("is_empty"), &TreeReconstruction::is_empty);
     ClassDB::bind_method(D_METHOD("get_node_count"), &TreeReconstruction::get_node_count);

@@ -56,14 +56,7 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
         treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), amount, age);
         Ref<TreeReconstruction> made;
         made.instantiate();
-        const Ref<LeafRule> rule = get_leaf_rule();
-        {
-            const std::lock_guard lock(mutex_);
-            made->leaf_rules_ = leaf_rules_;
-            made->foliage_followed_ = foliage_followed_;
-            made->seed_ = seed_;
-            made->leaf_preset_ = leaf_preset_;
-        }
+        made->set_leaf_setting(get_leaf_setting());
         if (amount > 0.0) {
             treerec::Random random(uint64_t(p_seed), 11);
             made->leaf_rules_.leaf_size *= 1.0 + kLeafSize * amount * random.uniform(-1.0, 1.0);
@@ -79,7 +72,6 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
             how["age"] = age;
         }
         made->provenance_["variant"] = how;
-        made->set_leaf_rule(rule);
         return made;
     });
 }

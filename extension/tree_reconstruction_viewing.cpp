@@ -113,17 +113,22 @@ PackedByteArray TreeReconstruction::draw(int p_size) const {
     return guarded(PackedByteArray(), [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
-        const treerec::LeafRules rules = get_leaf_rules();
-        treerec::TreeColors colors = treerec::tree_colors(to_std(get_leaf_look()));
-        const Ref<LeafRule> rule = get_leaf_rule();
-        if (rule.is_valid()) {
-            const PackedColorArray tints = rule->get_season_tints();
-            colors.leaf = turned(colors.leaf, tints[0]);
-            colors.other = turned(colors.other, tints[1]);
+        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        std::vector<std::vector<treerec::LeafPlacement>> placed = _place_foliage(*tree, kinds, 0);
+        std::vector<treerec::PicturedLeaves> pictured;
+        for (size_t i = 0; i < kinds.size(); i++) {
+            const Dictionary seen = _describe_kind(kinds[i], 0.0);
+            treerec::TreeColors colors = treerec::tree_colors(to_std(String(seen["look"])));
+            const PackedColorArray tints = seen["tints"];
+            if (!tints.is_empty()) {
+                colors.leaf = turned(colors.leaf, tints[0]);
+                colors.other = turned(colors.other, tints[1]);
+            }
+            pictured.push_back({std::move(placed[i]), colors.leaf, colors.other});
         }
-        const treerec::Image image = treerec::draw_tree(
-            treerec::leafy_tree(*tree, rules, *foliage),
-            treerec::place_leaves(*tree, rules, uint64_t(get_seed()), *foliage), colors, p_size);
+        const treerec::Image image =
+            treerec::draw_leafy_tree(treerec::leafy_tree(*tree, kinds, *foliage), pictured,
+                                     treerec::tree_colors(to_std(get_leaf_look())), p_size);
         PackedByteArray pixels;
         pixels.resize(int64_t(image.pixels.size()));
         std::copy(image.pixels.begin(), image.pixels.end(), pixels.ptrw());

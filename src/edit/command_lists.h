@@ -12,5 +12,6 @@ std::vector<EditCommand> shape_commands();
 std::vector<EditCommand> graft_commands();
 std::vector<EditCommand> lstring_commands();
 std::vector<EditCommand> lighten_commands();
+std::vector<EditCommand> leaf_commands();
 
 }  // namespace treerec

@@ -10,8 +10,8 @@ namespace treerec {
 const std::vector<EditCommand>& edit_commands() {
     static const std::vector<EditCommand> all = [] {
         std::vector<EditCommand> list;
-        for (const auto commands :
-             {prune_commands, shape_commands, graft_commands, lstring_commands, lighten_commands}) {
+        for (const auto commands : {prune_commands, shape_commands, graft_commands, lstring_commands,
+                                    lighten_commands, leaf_commands}) {
             std::vector<EditCommand> some = commands();
             std::move(some.begin(), some.end(), std::back_inserter(list));
         }

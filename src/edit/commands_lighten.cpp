@@ -24,7 +24,7 @@ EditOutcome outcome_of(const Tree& before, const Lightened& lightened) {
     for (NodeId id : lightened.removed) {
         const size_t at = outcome.removed.nodes.size();
         outcome.removed.nodes.push_back({id, before.node(id)});
-        outcome.removed.pieces.push_back({at, at + 1, before.node(before.node(id).parent).position});
+        outcome.removed.add_piece(before, at, before.node(before.node(id).parent).position);
     }
     outcome.said = std::to_string(lightened.after) + " of " + std::to_string(lightened.before) +
                    " nodes are left; bark moved by up to " +

@@ -23,6 +23,7 @@ EditOutcome run_lstring(Tree& tree, const EditArguments& given) {
     const ScionPlacement placement{whole ? DMat3(1.0) : frame_about(direction_at(tree, joint)),
                                    given.number("unit")};
     const bool on_trunk = tree.node(node).is_trunk();
+    const uint8_t leaf_rule = tree.node(node).leaf_rule;
     std::vector<NodeId> gone, before;
     for (NodeId child : tree.children(joint))
         if (whole || child == node)
@@ -40,6 +41,8 @@ EditOutcome run_lstring(Tree& tree, const EditArguments& given) {
     for (auto child = before.rbegin(); child != before.rend(); ++child)
         tree.make_first_child(*child);
     const std::vector<NodeId> order = scion.depth_first();
+    for (const NodeId id : outcome.nodes)
+        tree.set_leaf_rule(id, leaf_rule);
     for (size_t i = 1; i < order.size(); i++)
         if (on_trunk && scion.node(order[i]).is_trunk())
             tree.set_flag(outcome.nodes[i - 1], kTrunkFlag, true);

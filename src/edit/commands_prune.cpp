@@ -72,7 +72,7 @@ std::vector<EditCommand> prune_commands() {
              Removed removed;
              removed.nodes.push_back({id, tree.node(id)});
              if (tree.node(id).parent != kNoNode)
-                 removed.pieces.push_back({0, 1, tree.node(tree.node(id).parent).position});
+                 removed.add_piece(tree, 0, tree.node(tree.node(id).parent).position);
              delete_node(tree, id);
              return outcome_of(std::move(removed));
          }},

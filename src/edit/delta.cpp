@@ -30,6 +30,7 @@ constexpr PartPlace kParts[] = {
     {TreeDelta::kDepth, offsetof(Node, depth), sizeof(int32_t)},
     {TreeDelta::kChildCount, offsetof(Node, child_count), sizeof(int32_t)},
     {TreeDelta::kFlags, offsetof(Node, flags), sizeof(uint8_t)},
+    {TreeDelta::kLeafRule, offsetof(Node, leaf_rule), sizeof(uint8_t)},
 };
 
 const char* bytes_of(const Node& node) {
@@ -40,10 +41,11 @@ char* bytes_of(Node& node) {
     return reinterpret_cast<char*>(&node);
 }
 
-// The fields lie without gaps up to the flags; what pads the struct behind them is no value.
+// The fields lie without gaps up to the leaf rule; what pads the struct behind it is no value.
 bool same(const Node& a, const Node& b) {
     static_assert(offsetof(Node, flags) == sizeof(DVec3) + sizeof(double) + kLinksSize + 2 * sizeof(int32_t));
-    return std::memcmp(&a, &b, offsetof(Node, flags) + 1) == 0;
+    static_assert(offsetof(Node, leaf_rule) == offsetof(Node, flags) + 1);
+    return std::memcmp(&a, &b, offsetof(Node, leaf_rule) + 1) == 0;
 }
 
 bool same_bits(double a, double b) {
@@ -59,11 +61,12 @@ bool same_bits(const DVec3& a, const DVec3& b) {
 bool TreeDelta::Whole::operator==(const Whole& other) const {
     return root == other.root && count == other.count && id_end == other.id_end &&
            frame.up == other.frame.up && same_bits(frame.metres_per_unit, other.frame.metres_per_unit) &&
-           same_bits(frame.origin, other.frame.origin) && same_bits(frame.tilt, other.frame.tilt);
+           same_bits(frame.origin, other.frame.origin) && same_bits(frame.tilt, other.frame.tilt) &&
+           leaf_rules == other.leaf_rules;
 }
 
 TreeDelta::Whole TreeDelta::whole_of(const Tree& tree) {
-    return {tree.root_, tree.count_, tree.id_end(), tree.frame_};
+    return {tree.root_, tree.count_, tree.id_end(), tree.frame_, tree.leaf_rules_};
 }
 
 void TreeDelta::record(NodeId id, const Node& before, const Node& after) {
@@ -167,6 +170,7 @@ void TreeDelta::move(Tree& tree, bool forwards) const {
     tree.root_ = to.root;
     tree.count_ = to.count;
     tree.frame_ = to.frame;
+    tree.leaf_rules_ = to.leaf_rules;
 }
 
 bool TreeDelta::empty() const {

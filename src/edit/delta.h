@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tree/tree.h"
@@ -36,7 +37,15 @@ class TreeDelta {
     std::vector<NodeId> changed() const;
 
     // Parts of a node that change together; bits of Change::parts.
-    enum Part : uint8_t { kPosition = 1, kRadius = 2, kLinks = 4, kDepth = 8, kChildCount = 16, kFlags = 32 };
+    enum Part : uint8_t {
+        kPosition = 1,
+        kRadius = 2,
+        kLinks = 4,
+        kDepth = 8,
+        kChildCount = 16,
+        kFlags = 32,
+        kLeafRule = 64
+    };
     // The kept nodes of which any of `parts` changed.
     std::vector<NodeId> changed(uint8_t parts) const;
 
@@ -52,6 +61,7 @@ class TreeDelta {
         int32_t count = 0;
         NodeId id_end = 0;
         ScanFrame frame;
+        std::vector<std::string> leaf_rules;
 
         bool operator==(const Whole& other) const;
     };

@@ -54,6 +54,8 @@ Tree take_scion(const Tree& tree, NodeId joint_child) {
         throw Error("There is no node " + std::to_string(joint_child) + " in this tree.");
     const NodeId joint = tree.node(joint_child).parent;
     Tree scion;
+    for (const std::string& rule : tree.leaf_rules())
+        scion.name_leaf_rule(rule);
     std::vector<NodeId> moved(static_cast<size_t>(tree.id_end()), kNoNode);
     DVec3 origin(0.0);
     DMat3 into(1.0);
@@ -72,11 +74,13 @@ Tree take_scion(const Tree& tree, NodeId joint_child) {
         into = glm::transpose(frame_about(direction_at(tree, joint)));
         scion.add_root(DVec3(0.0), on ? whole : std::min(first, whole), tree.node(joint_child).flags);
     }
+    scion.set_leaf_rule(scion.root(), tree.node(joint_child).leaf_rule);
     for (NodeId id : tree.depth_first(joint_child)) {
         if (moved[id] != kNoNode) continue;
         const Node& node = tree.node(id);
         const NodeId parent = id == joint_child ? scion.root() : moved[node.parent];
         moved[id] = scion.add_child(parent, into * (node.position - origin), node.radius, node.flags);
+        scion.set_leaf_rule(moved[id], node.leaf_rule);
     }
     return scion;
 }
@@ -131,17 +135,23 @@ std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
     }
     // A scion may be the very tree that it is put on.
     std::vector<NodeId> parents(order.size(), kNoNode);
-    std::vector<uint8_t> flags(order.size());
+    std::vector<uint8_t> flags(order.size()), rules(order.size());
+    const bool keeps_rules = !scion.leaf_rules().empty();
     for (size_t i = 0; i < order.size(); i++) {
         parents[i] = scion.node(order[i]).parent;
         flags[i] = static_cast<uint8_t>(scion.node(order[i]).flags & kGuessFlag);
+        rules[i] = scion.node(order[i]).leaf_rule;
     }
     std::vector<NodeId> moved(static_cast<size_t>(scion.id_end()), kNoNode);
     moved[order[0]] = joint;
+    const std::vector<std::string> names = scion.leaf_rules();
+    for (uint8_t& rule : rules)
+        if (rule > 0) rule = tree.name_leaf_rule(names[rule - 1u]);
     std::vector<NodeId> added;
     added.reserve(order.size() - 1);
     for (size_t i = 1; i < order.size(); i++) {
         moved[order[i]] = tree.add_child(moved[parents[i]], positions[i], radii[i], flags[i]);
+        if (keeps_rules) tree.set_leaf_rule(moved[order[i]], rules[i]);
         added.push_back(moved[order[i]]);
     }
     return added;

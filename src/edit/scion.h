@@ -2,7 +2,8 @@
 //
 // A scion is a plain Tree: its root stands at (0,0,0), the wood that it grew from pointed along +Y there (so
 // that its first segment leans off +Y by its own branching angle), and +Z is the side that was up. The root's
-// radius is that of its wood at the joint. Metres.
+// radius is that of its wood at the joint. Metres. A scion with leaf rules (Tree::leaf_rules()) keeps them
+// for its wood; one without bears the leaves of its host.
 #pragma once
 
 #include <vector>
@@ -27,8 +28,8 @@ DMat3 turn_between(const DVec3& from, const DVec3& to);
 DMat3 turn_about(const DVec3& axis, double radians);
 
 // The subtree that hangs on the segment from joint_child's parent, with that joint as its root: ids 0.. in
-// depth-first order, flags kept, no frame. The tree's root gives the whole tree, upright as it stands.
-// Throws Error for an unknown id, or for a root without children, which is no branch.
+// depth-first order, flags and leaf rules kept, no frame. The tree's root gives the whole tree, upright as it
+// stands. Throws Error for an unknown id, or for a root without children, which is no branch.
 Tree take_scion(const Tree& tree, NodeId joint_child);
 
 // The unit direction in which the scion leaves its root, in its own frame: to the first node of its main

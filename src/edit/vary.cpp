@@ -123,7 +123,11 @@ void VariantMaker::look_at_limbs() {
             along_.push_back(limb.length);
             radii_.push_back(node.radius);
             flags_.push_back(node.flags & kTrunkFlag);
+            leaf_rules_.push_back(node.leaf_rule);
             limb.stem = limb.stem || node.is_trunk();
+            if (place[id] == 0) limb.least_rule = limb.most_rule = node.leaf_rule;
+            limb.least_rule = std::min(limb.least_rule, node.leaf_rule);
+            limb.most_rule = std::max(limb.most_rule, node.leaf_rule);
             from = node.position;
         }
         limb.end = static_cast<int32_t>(steps_.size());
@@ -157,6 +161,8 @@ void VariantMaker::look_at_limbs() {
         parent.nodes += limbs_[b].nodes;
         parent.wood += limbs_[b].wood;
         parent.stem = parent.stem || limbs_[b].stem;
+        parent.least_rule = std::min(parent.least_rule, limbs_[b].least_rule);
+        parent.most_rule = std::max(parent.most_rule, limbs_[b].most_rule);
         parent.first_child = static_cast<int32_t>(b);
         if (parent.last_child == 0) parent.last_child = static_cast<int32_t>(b) + 1;
     }
@@ -206,6 +212,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     work.radii.reserve(expected);
     work.parents.reserve(expected);
     work.flags.reserve(expected);
+    work.leaf_rules.reserve(expected);
     work.slots.reserve(limbs_.size() + limbs_.size() / 4);
     Random random(seed, 7);
     work.twist_start = kPi * amount * random.uniform(-1.0, 1.0);
@@ -224,6 +231,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     work.radii.push_back(root.radius * trunk.gauge);
     work.parents.push_back(kNoNode);
     work.flags.push_back(root.flags & kTrunkFlag);
+    work.leaf_rules.push_back(root.leaf_rule);
     work.slots.push_back(trunk);
     for (size_t i = 0; i < work.slots.size(); i++) {
         const Slot slot = work.slots[i];
@@ -232,6 +240,10 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     TreeVariant variant;
     variant.tree = Tree::from_arrays(work.parents, work.positions, work.radii, work.flags);
     variant.tree.set_frame(tree_.frame());
+    for (const std::string& rule : tree_.leaf_rules())
+        variant.tree.name_leaf_rule(rule);
+    for (NodeId id = 0; id < variant.tree.id_end(); id++)
+        variant.tree.set_leaf_rule(id, work.leaf_rules[id]);
     if (!foliage_.empty()) variant.foliage = settle(work.cells, work.places);
     return variant;
 }
@@ -271,6 +283,7 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
         work.radii.push_back(radius);
         work.parents.push_back(parent);
         work.flags.push_back(flags_[n]);
+        work.leaf_rules.push_back(leaf_rules_[n]);
     }
     for (int32_t child = limb.first_child; child < limb.last_child; child++) {
         const uint64_t key = hash_seed(slot.key, 2 * static_cast<uint64_t>(child - limb.first_child) + 2);
@@ -436,7 +449,7 @@ int32_t VariantMaker::choose_shape(Work& work, int32_t child, const DMat3& turn,
         if (rank < 0 || rank >= size || rank == own.rank) continue;
         const int32_t other = pool[rank];
         const Limb& shape = limbs_[other];
-        if (shape.stem) continue;
+        if (shape.stem || shape.least_rule != own.least_rule || shape.most_rule != own.most_rule) continue;
         if (!(shape.length < kShapeLength * own.length && own.length < kShapeLength * shape.length)) continue;
         if (!(shape.radius < kShapeRadius * own.radius && own.radius < kShapeRadius * shape.radius)) continue;
         if (std::abs(shape.way.y - way.y) > kShapeRise) continue;

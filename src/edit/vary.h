@@ -29,9 +29,9 @@ class VariantMaker {
 
     // amount: 0 (the same tree, bit for bit, at an age of 1) .. 1. age: kLeastAge .. kMostAge of the tree's
     // own (vary_age.cpp says what it makes of one). The same seed, amount and age give the same bytes on
-    // every platform. Any number of threads may call it at once. Linear in the nodes and the cells of
-    // foliage. Of the flags only kTrunkFlag is left: nothing of a variant was measured. Throws Error for
-    // another amount or age.
+    // every platform. Leaf rules stay where they are: a branch takes shapes of its own rules alone. Any
+    // number of threads may call it at once. Linear in the nodes and the cells of foliage. Of the flags only
+    // kTrunkFlag is left: nothing of a variant was measured. Throws Error for another amount or age.
     TreeVariant make(uint64_t seed, double amount, double age = 1.0) const;
 
     static constexpr double kLeastAge = 0.2, kMostAge = 1.2;
@@ -52,6 +52,7 @@ class VariantMaker {
         int32_t nodes = 0;                        // with all that it bears
         double wood = 0.0;                        // metres, likewise
         bool stem = false;                        // there is trunk in it or in what it bears
+        uint8_t least_rule = 0, most_rule = 0;    // of the leaf rules in it and in what it bears
         double length = 0.0;
         double radius = 0.0;  // of its first node
         double beside = 0.0;  // that over the radius of what goes on from the joint; 0 where nothing does
@@ -104,10 +105,10 @@ class VariantMaker {
     std::vector<Limb> limbs_;
     std::vector<Habit> habits_;  // by order
     // By node of the limbs: the way from the node before (or the foot), its length, the way along the limb up
-    // to here, radius and flags.
+    // to here, radius, flags and leaf rule.
     std::vector<DVec3> steps_;
     std::vector<double> lengths_, along_, radii_;
-    std::vector<uint8_t> flags_;
+    std::vector<uint8_t> flags_, leaf_rules_;
     std::vector<Carried> carried_;   // by limb
     std::vector<uint8_t> in_crowd_;  // by cell: others touch it
     std::vector<int32_t> carried_begin_;

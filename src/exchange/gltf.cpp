@@ -60,12 +60,17 @@ class Builder {
     Json make_primitive(const Mesh& mesh, int material);
     size_t add_level(const ModelFile::Level& level, size_t number);
     void add_levels(const ModelFile& file);
-    size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap);
+    size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap,
+                       const std::string& suffix = "");
+    void add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
+                           const std::string& rule);
 
     static constexpr std::array<char, 4> kPadding{};
     std::deque<std::vector<uint16_t>> short_indices_;  // by mesh: what parts point into
     std::deque<std::vector<glm::u8vec4>> wind_;
-    bool has_bark_ = false;  // in any level: then its material is the first
+    // The materials of what is drawn in any level; -1: of nothing. Leaves by kind, the tree's own first.
+    int bark_material_ = -1;
+    std::vector<int> leaf_materials_;
 };
 
 size_t Builder::add_view(std::string_view bytes, int target) {
@@ -142,11 +147,18 @@ Json Builder::make_primitive(const Mesh& mesh, int material) {
     return primitive;
 }
 
-size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap) {
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const NamedPicture& picture) { return picture.name == name; });
-    if (found == all.end()) throw Error("The model lacks the picture '" + name + "'.");
+size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& picture_name, int wrap,
+                            const std::string& suffix) {
+    const auto found = std::find_if(
+        all.begin(), all.end(), [&](const NamedPicture& picture) { return picture.name == picture_name; });
+    if (found == all.end()) throw Error("The model lacks the picture '" + picture_name + "'.");
+    // Two kinds of leaves may show one picture.
+    const auto kept = std::find_if(pictures.begin(), pictures.end(),
+                                   [&](const NamedPicture& picture) { return picture.png == found->png; });
+    if (kept != pictures.end() && !suffix.empty()) return static_cast<size_t>(kept - pictures.begin());
+    const std::string name = picture_name + suffix;
     pictures.push_back(*found);
+    pictures.back().name = name;
     json["images"].push_back(
         {{"name", name}, {"mimeType", "image/png"}, {"bufferView", add_view(found->png, 0)}});
     const Json sampler = {
@@ -159,6 +171,12 @@ size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::str
     return json["textures"].size() - 1;
 }
 
+// Of the names of what belongs to the leaves of a further kind.
+std::string kind_suffix(size_t other) {
+    std::string suffix = "_";
+    return suffix += std::to_string(other + 2);
+}
+
 Json texture_info(size_t index) {
     return Json::object({{"index", index}});
 }
@@ -168,8 +186,13 @@ Json texture_info(size_t index) {
 size_t Builder::add_level(const ModelFile::Level& level, size_t number) {
     const std::string name = "Tree_LOD" + std::to_string(number);
     Json primitives = Json::array();
-    if (drawn(level.bark)) primitives.push_back(make_primitive(*level.bark, 0));
-    if (drawn(level.leaves)) primitives.push_back(make_primitive(*level.leaves, has_bark_ ? 1 : 0));
+    const auto add = [&](const Mesh* mesh, int material) {
+        if (drawn(mesh)) primitives.push_back(make_primitive(*mesh, material));
+    };
+    add(level.bark, bark_material_);
+    add(level.leaves, leaf_materials_[0]);
+    for (size_t i = 0; i < level.other_leaves.size(); i++)
+        add(level.other_leaves[i], leaf_materials_[i + 1]);
     Json node = {{"name", name}};
     if (!primitives.empty()) {
         node["mesh"] = json["meshes"].size();
@@ -190,7 +213,7 @@ void Builder::add_levels(const ModelFile& file) {
         return std::min(high * high, 1.0);
     };
     Json ids = Json::array(), coverages = Json::array();
-    const size_t finest = add_level({file.bark, file.leaves}, 0);
+    const size_t finest = add_level({file.bark, file.leaves, 0.0, file.other_leaves}, 0);
     json["nodes"][0]["children"] = {finest};
     if (file.coarser.empty()) return;
     for (size_t i = 0; i < file.coarser.size(); i++) {
@@ -214,18 +237,27 @@ Builder::Builder(const ModelFile& file) {
     for (const auto& [name, value] : file.extras)
         json["nodes"][0]["extras"][name] = value;
     // Geometry first: the pictures at the buffer's end can then be cut off into files of their own.
-    has_bark_ = drawn(file.bark);
-    bool has_leaves = drawn(file.leaves);
-    for (const ModelFile::Level& level : file.coarser) {
-        has_bark_ |= drawn(level.bark);
-        has_leaves |= drawn(level.leaves);
-    }
-    if (has_bark_ || has_leaves) add_levels(file);
+    bool has_bark = false;
+    std::vector<bool> has_leaves(1 + file.other_leaves.size(), false);
+    const auto look_at = [&](const Mesh* bark, const Mesh* leaves, const std::vector<const Mesh*>& others) {
+        has_bark = has_bark || drawn(bark);
+        has_leaves[0] = has_leaves[0] || drawn(leaves);
+        for (size_t i = 0; i < others.size(); i++)
+            has_leaves.at(i + 1) = has_leaves[i + 1] || drawn(others[i]);
+    };
+    look_at(file.bark, file.leaves, file.other_leaves);
+    for (const ModelFile::Level& level : file.coarser)
+        look_at(level.bark, level.leaves, level.other_leaves);
+    int materials = 0;
+    if (has_bark) bark_material_ = materials++;
+    for (const bool has : has_leaves)
+        leaf_materials_.push_back(has ? materials++ : -1);
+    if (materials > 0) add_levels(file);
     geometry_parts = parts.size();
     geometry_size = size;
     const std::vector<NamedPicture> all =
         file.pictures.empty() && size > 0 ? make_pictures(file.preset) : file.pictures;
-    if (has_bark_) {
+    if (has_bark) {
         Json material, surface;
         material["name"] = "bark";
         surface["baseColorTexture"] = texture_info(add_texture(all, "bark_albedo", kRepeat));
@@ -236,23 +268,32 @@ Builder::Builder(const ModelFile& file) {
         material["pbrMetallicRoughness"] = std::move(surface);
         json["materials"].push_back(std::move(material));
     }
-    if (has_leaves) {
-        Json material, surface;
-        material["name"] = "leaves";
-        surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge));
-        surface["baseColorFactor"] = kLeafTint;
-        surface["metallicFactor"] = 0.0;
-        surface["roughnessFactor"] = 1.0;  // a crown of many small mirrors would be white
-        material["pbrMetallicRoughness"] = std::move(surface);
-        material["normalTexture"] = texture_info(add_texture(all, "leaf_normal", kClampToEdge));
-        material["alphaMode"] = "MASK";
-        material["alphaCutoff"] = kLeafCutoff;
-        json["materials"].push_back(std::move(material));
-    }
+    if (has_leaves[0]) add_leaf_material(all, "", "");
+    for (size_t i = 0; i < file.other_leaves.size(); i++)
+        if (has_leaves[i + 1])
+            add_leaf_material(file.other_materials.at(i).pictures, kind_suffix(i),
+                              file.other_materials[i].rule);
     if (size > 0) json["buffers"] = Json::array({{{"byteLength", size}}});
     // glTF knows no empty lists.
     for (auto list = json.begin(); list != json.end();)
         list = list->is_array() && list->empty() ? json.erase(list) : std::next(list);
+}
+
+// suffix, rule: of a further kind of leaves; empty for the tree's own.
+void Builder::add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
+                                const std::string& rule) {
+    Json material, surface;
+    material["name"] = "leaves" + suffix;
+    surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge, suffix));
+    surface["baseColorFactor"] = kLeafTint;
+    surface["metallicFactor"] = 0.0;
+    surface["roughnessFactor"] = 1.0;  // a crown of many small mirrors would be white
+    material["pbrMetallicRoughness"] = std::move(surface);
+    material["normalTexture"] = texture_info(add_texture(all, "leaf_normal", kClampToEdge, suffix));
+    material["alphaMode"] = "MASK";
+    material["alphaCutoff"] = kLeafCutoff;
+    if (!rule.empty()) material["extras"]["leaf_rule"] = rule;
+    json["materials"].push_back(std::move(material));
 }
 
 // A file's name as part of a URI (RFC 3986).

@@ -18,9 +18,18 @@ struct ModelFile {
         const Mesh* bark = nullptr;
         const Mesh* leaves = nullptr;
         double distance = 0.0;  // from which on it is drawn, in heights of the tree
+        std::vector<const Mesh*> other_leaves = {};
     };
     std::vector<Level> coarser;
-    std::string preset = "generic";  // of the textures (foliage/leaves.h)
+    // Leaves of further kinds, likewise left out where there are none, each with a material of its own:
+    // called "leaves_2", "leaves_3", ... by its place.
+    struct LeafMaterial {
+        std::string rule;                    // foliage/leaf_rule_text.h; kept in glTF
+        std::vector<NamedPicture> pictures;  // leaf_albedo and leaf_normal
+    };
+    std::vector<const Mesh*> other_leaves;
+    std::vector<LeafMaterial> other_materials;  // as many
+    std::string preset = "generic";             // of the textures (foliage/leaves.h)
     // make_pictures(preset) when empty; give them to write several files at the cost of one.
     std::vector<NamedPicture> pictures;
     bool pictures_beside = false;                        // a .glb leaves them out; a .gltf always does

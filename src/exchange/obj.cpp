@@ -69,9 +69,9 @@ void append_lines(std::string& out, size_t count, size_t longest, const Progress
         out += part;
 }
 
-void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t first,
+void append_mesh(std::string& out, const Mesh& mesh, const std::string& name, uint64_t first,
                  const Progress* progress) {
-    out += std::string("o ") + name + "\n";
+    out += "o " + name + "\n";
     const size_t count = mesh.positions.size();
     append_lines(out, count, 160, progress, [&](Writer& writer, size_t i) {
         writer.text("v");
@@ -96,7 +96,7 @@ void append_mesh(std::string& out, const Mesh& mesh, const char* name, uint64_t 
         }
         writer.text("\n");
     });
-    out += std::string("usemtl ") + name + "\n";
+    out += "usemtl " + name + "\n";
     append_lines(out, mesh.triangle_count(), 210, progress, [&](Writer& writer, size_t i) {
         writer.text("f");
         for (size_t k = 0; k < 3; k++) {
@@ -123,9 +123,15 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
     const bool leaves = model.leaves && !model.leaves->indices.empty();
     if (bark) require_finite(*model.bark, path);
     if (leaves) require_finite(*model.leaves, path);
+    const auto drawn = [](const Mesh* mesh) { return mesh && !mesh->indices.empty(); };
+    bool any = bark || leaves;
+    for (const Mesh* other : model.other_leaves) {
+        any = any || drawn(other);
+        if (drawn(other)) require_finite(*other, path);
+    }
     std::string out = "# Metres, Y up.\n";
     std::string materials;
-    if (bark || leaves) {
+    if (any) {
         out += "mtllib " + stem + ".mtl\n";
         const std::vector<NamedPicture> pictures =
             model.pictures.empty() ? pictures_of_leaves(make_pictures(model.preset), false) : model.pictures;
@@ -143,11 +149,23 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
                      "_bark_normal.png\n";
         append_mesh(out, *model.bark, "bark", 1, progress);
     }
-    if (leaves) {
-        materials += "newmtl leaves\nKd 1 1 1\nKs 0 0 0\nPr 0.7\nmap_Kd " + stem +
-                     "_leaf_albedo.png\nmap_d " + stem + "_leaf_albedo.png\nnorm " + stem +
-                     "_leaf_normal.png\nmap_Bump " + stem + "_leaf_normal.png\n";
-        append_mesh(out, *model.leaves, "leaves", bark ? model.bark->positions.size() + 1 : 1, progress);
+    uint64_t next = bark ? model.bark->positions.size() + 1 : 1;
+    const auto add_leaves = [&](const Mesh& mesh, const std::string& suffix) {
+        const std::string picture = stem + "_leaf_";
+        materials += "newmtl leaves" + suffix + "\nKd 1 1 1\nKs 0 0 0\nPr 0.7\nmap_Kd " + picture + "albedo" +
+                     suffix + ".png\nmap_d " + picture + "albedo" + suffix + ".png\nnorm " + picture +
+                     "normal" + suffix + ".png\nmap_Bump " + picture + "normal" + suffix + ".png\n";
+        append_mesh(out, mesh, "leaves" + suffix, next, progress);
+        next += mesh.positions.size();
+    };
+    if (leaves) add_leaves(*model.leaves, "");
+    for (size_t i = 0; i < model.other_leaves.size(); i++) {
+        if (!drawn(model.other_leaves[i])) continue;
+        std::string suffix = "_";
+        suffix += std::to_string(i + 2);
+        for (const NamedPicture& picture : model.other_materials.at(i).pictures)
+            write_file(sibling_of(path, stem + "_" + picture.name + suffix + ".png"), picture.png, progress);
+        add_leaves(*model.other_leaves[i], suffix);
     }
     if (!materials.empty()) write_file(sibling_of(path, stem + ".mtl"), materials, progress);
     write_file(path, out, progress);

@@ -103,7 +103,7 @@ double foliage_twig_spacing(const Foliage& foliage) {
 
 Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage) {
     Tree grown = tree;
-    if (!rules.enabled || !(rules.follow_density > 0.0) || foliage.empty() || tree.size() < 2) return grown;
+    if (!follows(rules, foliage) || tree.size() < 2) return grown;
     const Crown crown = measure_crown(tree);
     const double scale = std::min(1.0, std::sqrt(crown.height / kFullHeight));
     const double spacing = foliage_twig_spacing(foliage);
@@ -165,6 +165,22 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
                 }
     }
     return grown;
+}
+
+Tree leafy_tree(const Tree& tree, const std::vector<LeafKind>& kinds, const Foliage& foliage) {
+    const auto leading = std::find_if(kinds.begin(), kinds.end(),
+                                      [&](const LeafKind& kind) { return follows(kind.rules, foliage); });
+    if (leading == kinds.end()) return tree;
+    Tree grown = leafy_tree(tree, leading->rules, foliage);
+    // A twig has the rule of the wood that it grew from.
+    for (NodeId id = tree.id_end(); id < grown.id_end(); id++)
+        if (grown.contains(id) && !follows(kinds.at(grown.node(id).leaf_rule).rules, foliage))
+            grown.remove_subtree(id);
+    return grown;
+}
+
+bool follows(const LeafRules& rules, const Foliage& foliage) {
+    return rules.enabled && rules.follow_density > 0.0 && !foliage.empty();
 }
 
 }  // namespace treerec

@@ -1,7 +1,10 @@
 // The twigs that a leafy scan hides: wood for the leaves that it saw.
 #pragma once
 
+#include <vector>
+
 #include "foliage/foliage.h"
+#include "foliage/leaf_rule_text.h"
 #include "foliage/leaf_rules.h"
 #include "tree/tree.h"
 
@@ -13,6 +16,11 @@ namespace treerec {
 // new ones follow. It depends on nothing of the rules but whether they follow the foliage. None grow where
 // the foliage is farther than about a metre (Foliage::reach, if that is more) from the tree's own wood.
 Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage);
+// The same where wood bears leaves of several kinds (leaf_kinds()): twigs stay on that whose rules follow it.
+Tree leafy_tree(const Tree& tree, const std::vector<LeafKind>& kinds, const Foliage& foliage);
+
+// Whether leaves by these rules stand where the scan saw any.
+bool follows(const LeafRules& rules, const Foliage& foliage);
 
 // How far leaves may stand from the tree's own wood, metres. height: the tree's, metres.
 double foliage_reach(const Foliage& foliage, double height);

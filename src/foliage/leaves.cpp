@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
+#include "error.h"
 #include "foliage/branch_axis.h"
 #include "foliage/foliage_twigs.h"
 #include "foliage/leaf_placer.h"
@@ -28,6 +30,55 @@ constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
 // A whole wood that was taken for one tree would have tens of millions; few of them become leaves.
 constexpr double kMostSprays = 1e6;
+
+// The wood that bears one kind of leaves.
+class Bearing {
+  public:
+    // kind: place in leaf_kinds(), or -1: all wood does.
+    Bearing(const Tree& tree, const BranchList& list, int kind) : tree_(tree), list_(list), kind_(kind) {
+        if (all()) return;
+        ways_.resize(list.nodes.size());
+        for (const Branch& branch : list.branches) {
+            NodeId before = branch.attach != kNoNode ? branch.attach : list.nodes[branch.begin];
+            double way = 0.0;
+            for (int32_t i = branch.begin; i < branch.end; before = list.nodes[i++]) {
+                way += glm::distance(tree.node(list.nodes[i]).position, tree.node(before).position);
+                ways_[i] = way;
+            }
+        }
+    }
+
+    // Whether any of the branch does.
+    bool any(const Branch& branch) const {
+        if (all()) return true;
+        const std::span<const NodeId> nodes = list_.nodes_of(branch);
+        return std::any_of(nodes.begin(), nodes.end(), [&](NodeId id) { return is(id); });
+    }
+    // Takes out the spots from `first` on that stand on other wood; all are of the branch.
+    void keep(const Branch& branch, std::vector<LeafSpot>& spots, size_t first) const {
+        if (all()) return;
+        const auto begin = spots.begin() + static_cast<std::ptrdiff_t>(first);
+        spots.erase(std::remove_if(begin, spots.end(),
+                                   [&](const LeafSpot& spot) { return !at(branch, spot.at.way); }),
+                    spots.end());
+    }
+    // way: metres along the chords of the branch (AxisPoint::way).
+    bool at(const Branch& branch, double way) const {
+        if (all()) return true;
+        const auto first = ways_.begin(),
+                   above = std::lower_bound(first + branch.begin, first + branch.end - 1, way);
+        return is(list_.nodes[static_cast<size_t>(above - first)]);
+    }
+
+  private:
+    bool all() const { return kind_ < 0 || tree_.leaf_rules().empty(); }
+    bool is(NodeId id) const { return tree_.node(id).leaf_rule == kind_; }
+
+    const Tree& tree_;
+    const BranchList& list_;
+    const int kind_;
+    std::vector<double> ways_;  // by list.nodes: metres along its branch's chords
+};
 
 // Leaves where a scan saw them.
 class Follower {
@@ -58,7 +109,7 @@ class Follower {
     double share() const { return share_; }
 
     // The sprays in one cell.
-    void fill(const FoliageCell& cell, std::vector<LeafSpot>& spots) const {
+    void fill(const FoliageCell& cell, const Bearing& bearing, std::vector<LeafSpot>& spots) const {
         const uint64_t key = hash_seed(placer_.seed, key_of(cell));
         Random random(key, 3);
         const auto count = static_cast<uint64_t>(share_ * per_cell_ * density(cell) + random.uniform());
@@ -67,7 +118,7 @@ class Follower {
                                                                           random.uniform(-0.5, 0.5),
                                                                           random.uniform(-0.5, 0.5));
             const WoodSample* host = wood_.nearest(p);
-            if (!host) continue;
+            if (!host || !bearing.at(placer_.list.branches[host->branch], host->at.way)) continue;
             const AxisPoint& axis = host->at;
             const DVec3 off = p - axis.position;
             const DVec3 radial = normalized_or(off - axis.direction * glm::dot(off, axis.direction),
@@ -202,17 +253,14 @@ void gather(size_t count, size_t grain, Spots& parts, const Body& body) {
     });
 }
 
-}  // namespace
-
-std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
-                                        const Foliage& foliage) {
-    check_leaf_rules(rules);
+// wood: the tree, or what leafy_tree() makes of it where the rules follow the foliage.
+std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, int kind, uint64_t seed,
+                                      const Foliage& foliage) {
     std::vector<LeafPlacement> leaves;
-    if (!rules.enabled || tree.size() < 2 || rules.maximum_leaves <= 0) return leaves;
+    if (!rules.enabled || wood.size() < 2 || rules.maximum_leaves <= 0) return leaves;
     const double follow = foliage.empty() ? 0.0 : rules.follow_density;
-    const Tree grown = follow > 0.0 ? leafy_tree(tree, rules, foliage) : Tree();
-    const Tree& wood = follow > 0.0 ? grown : tree;
     const LeafPlacer placer(wood, rules, seed);
+    const Bearing bearing(wood, placer.list, kind);
     const std::vector<Branch>& branches = placer.list.branches;
     Spots spots;
     double share = 1.0;
@@ -221,7 +269,10 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
             find_snags(wood, placer.list, kStoutShare * placer.size.maximum_radius);
         gather(branches.size(), kBranchesPerChunk, spots,
                [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
-                   if (!snag[i]) placer.bear(branches[i], 1.0 - follow, axis, out);
+                   if (snag[i] || !bearing.any(branches[i])) return;
+                   const size_t first = out.size();
+                   placer.bear(branches[i], 1.0 - follow, axis, out);
+                   bearing.keep(branches[i], out, first);
                });
     }
     if (follow > 0.0) {
@@ -230,11 +281,14 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
         if (follow >= 1.0)
             gather(branches.size(), kBranchesPerChunk, spots,
                    [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
+                       if (!bearing.any(branches[i])) return;
+                       const size_t first = out.size();
                        follower.finish(branches[i], axis, out);
+                       bearing.keep(branches[i], out, first);
                    });
         gather(foliage.cells.size(), kCellsPerChunk, spots,
                [&](size_t i, std::vector<AxisPoint>&, std::vector<LeafSpot>& out) {
-                   follower.fill(foliage.cells[i], out);
+                   follower.fill(foliage.cells[i], bearing, out);
                });
     }
     Chosen chosen = limit_count(placer, spots, static_cast<size_t>(rules.maximum_leaves));
@@ -248,6 +302,32 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     });
     // Last, so that the same leaves fall first whatever the limit.
     std::erase_if(leaves, [&](const LeafPlacement& leaf) { return leaf.hold <= 1.0 - rules.standing; });
+    return leaves;
+}
+
+}  // namespace
+
+std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
+                                        const Foliage& foliage) {
+    check_leaf_rules(rules);
+    if (!follows(rules, foliage)) return place_kind(tree, rules, -1, seed, foliage);
+    return place_kind(leafy_tree(tree, rules, foliage), rules, -1, seed, foliage);
+}
+
+std::vector<std::vector<LeafPlacement>> place_foliage(const Tree& tree, const std::vector<LeafKind>& kinds,
+                                                      uint64_t seed, const Foliage& foliage) {
+    if (kinds.size() != tree.leaf_rules().size() + 1)
+        throw Error("The tree has other leaf rules than it is to bear leaves by.");
+    const bool followed = std::any_of(kinds.begin(), kinds.end(),
+                                      [&](const LeafKind& kind) { return follows(kind.rules, foliage); });
+    const Tree leafy = followed ? leafy_tree(tree, kinds, foliage) : Tree();
+    std::vector<std::vector<LeafPlacement>> leaves;
+    for (size_t kind = 0; kind < kinds.size(); kind++) {
+        const LeafRules& rules = kinds[kind].rules;
+        check_leaf_rules(rules);
+        leaves.push_back(
+            place_kind(follows(rules, foliage) ? leafy : tree, rules, static_cast<int>(kind), seed, foliage));
+    }
     return leaves;
 }
 

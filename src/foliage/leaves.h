@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "foliage/foliage.h"
+#include "foliage/leaf_rule_text.h"
 #include "foliage/leaf_rules.h"
 #include "geometry/vec.h"
 #include "tree/tree.h"
@@ -38,8 +39,15 @@ struct LeafPlacement {
 // about a metre; twigs end in a leaf only where the scan saw leaves. Between, with follow_density f, a share
 // f of such leaves stands beside a share 1 - f of the rules' own. Its colours part the hues: the less
 // green, the higher.
+// All wood bears by these rules, whatever Tree::leaf_rules() says.
 // Throws Error for rules that check_leaf_rules() refuses.
 std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
                                         const Foliage& foliage = {});
+
+// The leaves of each kind on the wood that has it: a leaf is of the kind of the node above it, one at a tip
+// or in a scan's foliage of the node that it hangs on. Each kind's leaves are where place_leaves() stands
+// them by its rules, unless they are more than its maximum_leaves. kinds: leaf_kinds() of the tree.
+std::vector<std::vector<LeafPlacement>> place_foliage(const Tree& tree, const std::vector<LeafKind>& kinds,
+                                                      uint64_t seed, const Foliage& foliage = {});
 
 }  // namespace treerec

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "error.h"
 #include "foliage/foliage_twigs.h"
@@ -41,9 +42,13 @@ Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const 
 
 LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage,
                            const Progress* progress)
-    : wood_(leafy_tree(tree, rules, foliage)),
-      rules_(rules),
-      leaves_(place_leaves(tree, rules, seed, foliage)) {
+    : LevelBuilder(tree, leaf_kinds(tree, rules), seed, foliage, progress) {}
+
+LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64_t seed,
+                           const Foliage& foliage, const Progress* progress)
+    : wood_(leafy_tree(tree, kinds, foliage)),
+      kinds_(std::move(kinds)),
+      leaves_(place_foliage(tree, kinds_, seed, foliage)) {
     if (progress) progress->check();
     // Collars, and wood that stands for others, are wider than the skeleton says; the trunk goes on below it.
     for (NodeId id = 0; id < wood_.id_end(); id++)
@@ -56,16 +61,21 @@ LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t se
         box_.add(root.position - DVec3(0.0, kDeepestFoot + root.radius, 0.0), kFoot * root.radius);
     }
     const float growth = kLeafReach * leaf_growth(kMostLevels - 1);
-    for (const LeafPlacement& leaf : leaves_)
-        box_.add(DVec3(leaf.position + leaf.y * (0.5f * leaf.size)), growth * leaf.size);
+    for (const std::vector<LeafPlacement>& leaves : leaves_)
+        for (const LeafPlacement& leaf : leaves)
+            box_.add(DVec3(leaf.position + leaf.y * (0.5f * leaf.size)), growth * leaf.size);
 }
 
 TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
     made.bark = build_level_bark(wood_, level, false, progress);
-    made.leaves = thin_leaves(leaves_, level);
-    if (!made.leaves.empty()) made.card = build_leaf_card(rules_, std::min(whole(level), kMostLevels - 1));
+    for (size_t kind = 0; kind < kinds_.size(); kind++) {
+        LevelLeaves& part = made.foliage.emplace_back();
+        part.leaves = thin_leaves(leaves_[kind], level);
+        if (!part.leaves.empty())
+            part.card = build_leaf_card(kinds_[kind].rules, std::min(whole(level), kMostLevels - 1));
+    }
     return made;
 }
 

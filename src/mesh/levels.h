@@ -32,21 +32,32 @@ inline constexpr int kMostLevels = 5;
 // is about five times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
 
+struct LevelLeaves {
+    std::vector<LeafPlacement> leaves;
+    Mesh card;  // of the leaves; empty without any
+};
+
 struct TreeLevel {
     Mesh bark;
-    std::vector<LeafPlacement> leaves;
-    Mesh card;           // of the leaves; empty without any
-    double level = 0.0;  // what it has become: other than asked for where a budget is given
+    std::vector<LevelLeaves> foliage;  // by kind of leaves (leaf_kinds())
+    double level = 0.0;                // what it has become: other than asked for where a budget is given
     // A sentence where the budget could not be kept, else empty.
     std::string warning;
 
-    size_t triangle_count() const { return bark.triangle_count() + leaves.size() * card.triangle_count(); }
+    size_t triangle_count() const {
+        size_t count = bark.triangle_count();
+        for (const LevelLeaves& kind : foliage)
+            count += kind.leaves.size() * kind.card.triangle_count();
+        return count;
+    }
 };
 
 // Makes the levels of one tree. What they share is made once; the tree and the foliage must outlive it.
 class LevelBuilder {
   public:
     // Throws Error for rules that check_leaf_rules() refuses, or Cancelled.
+    LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64_t seed, const Foliage& foliage = {},
+                 const Progress* progress = nullptr);
     LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},
                  const Progress* progress = nullptr);
 
@@ -61,8 +72,8 @@ class LevelBuilder {
     TreeLevel build_at(double level, const Progress* progress) const;
 
     const Tree wood_;
-    const LeafRules rules_;
-    const std::vector<LeafPlacement> leaves_;
+    const std::vector<LeafKind> kinds_;
+    const std::vector<std::vector<LeafPlacement>> leaves_;  // by kind
     Bounds box_;
 };
 

@@ -53,6 +53,11 @@ TreeColors tree_colors(const std::string& preset) {
 
 Image draw_tree(const Tree& tree, const std::vector<LeafPlacement>& leaves, const TreeColors& colors,
                 int size) {
+    return draw_leafy_tree(tree, {{leaves, colors.leaf, colors.other}}, colors, size);
+}
+
+Image draw_leafy_tree(const Tree& tree, const std::vector<PicturedLeaves>& kinds, const TreeColors& colors,
+                      int size) {
     if (size < 16 || size > 1024) throw Error("A tree's picture must be 16 to 1024 pixels wide.");
     SampleCanvas canvas(size);
     if (tree.empty()) return canvas.finish();
@@ -64,8 +69,9 @@ Image draw_tree(const Tree& tree, const std::vector<LeafPlacement>& leaves, cons
         seen.add(node.position, node.radius);
         thickest = std::max(thickest, node.radius);
     }
-    for (const LeafPlacement& leaf : leaves)
-        seen.add(along(leaf, 1.0), kTip * leaf.size);
+    for (const PicturedLeaves& kind : kinds)
+        for (const LeafPlacement& leaf : kind.leaves)
+            seen.add(along(leaf, 1.0), kTip * leaf.size);
     const DVec3 extent = seen.size();
     const double side = canvas.side();
     const double scale = kFilled * side / std::max({extent.x, extent.y, 1e-9});
@@ -85,16 +91,22 @@ Image draw_tree(const Tree& tree, const std::vector<LeafPlacement>& leaves, cons
     }
     const DVec3 light = glm::normalize(kLight);
     // What lies behind what is drawn already costs next to nothing.
-    std::vector<const LeafPlacement*> from_the_eye;
-    for (const LeafPlacement& leaf : leaves)
-        from_the_eye.push_back(&leaf);
+    struct Seen {
+        const LeafPlacement* leaf;
+        const PicturedLeaves* kind;
+    };
+    std::vector<Seen> from_the_eye;
+    for (const PicturedLeaves& kind : kinds)
+        for (const LeafPlacement& leaf : kind.leaves)
+            from_the_eye.push_back({&leaf, &kind});
     std::stable_sort(from_the_eye.begin(), from_the_eye.end(),
-                     [](const auto* a, const auto* b) { return a->position.z > b->position.z; });
-    for (const LeafPlacement* one : from_the_eye) {
-        const LeafPlacement& leaf = *one;
+                     [](const Seen& a, const Seen& b) { return a.leaf->position.z > b.leaf->position.z; });
+    for (const Seen& one : from_the_eye) {
+        const LeafPlacement& leaf = *one.leaf;
         const double lit = 0.5 + 0.5 * glm::dot(DVec3(leaf.outward), light);
         const double open = 0.55 + 0.45 * leaf.occlusion;
-        const DVec3 color = glm::mix(colors.leaf, colors.other, 0.8 * leaf.hue) * open * (0.66 + 0.62 * lit);
+        const DVec3 color =
+            glm::mix(one.kind->leaf, one.kind->other, 0.8 * leaf.hue) * open * (0.66 + 0.62 * lit);
         const bool frond = leaf.size > kFrond;
         const double width = frond ? kFrondWidth : 1.0;
         const int pieces = frond ? 4 : 1;

@@ -28,4 +28,12 @@ TreeColors tree_colors(const std::string& preset);
 Image draw_tree(const Tree& tree, const std::vector<LeafPlacement>& leaves, const TreeColors& colors,
                 int size);
 
+// The same with leaves of several kinds; of `colors` only those of the wood are looked at.
+struct PicturedLeaves {
+    std::vector<LeafPlacement> leaves;
+    DVec3 leaf{0.0}, other{0.0};  // as in TreeColors
+};
+Image draw_leafy_tree(const Tree& tree, const std::vector<PicturedLeaves>& kinds, const TreeColors& colors,
+                      int size);
+
 }  // namespace treerec

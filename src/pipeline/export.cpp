@@ -58,6 +58,10 @@ void require_own_companions(const std::string& path, Format format) {
     std::vector<std::string> names{stem + (format == Format::kObj ? ".mtl" : ".bin")};
     for (const std::string& picture : picture_names())
         names.push_back(stem + "_" + picture + ".png");
+    // Of further kinds of leaves, however many the tree has.
+    for (size_t kind = 2; kind <= kMostLeafRules + 1; kind++)
+        for (const char* picture : {"_leaf_albedo_", "_leaf_normal_"})
+            names.push_back(stem + picture + std::to_string(kind) + ".png");
     for (const std::string& name : names) {
         std::error_code failure;
         const std::string companion = sibling_of(path, name);
@@ -81,7 +85,7 @@ void require_writable_format(const std::string& path) {
 }
 
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)
-    : tree_(tree), options_(options), progress_(progress) {
+    : tree_(tree), options_(options), progress_(progress), kinds_(leaf_kinds(tree, options.leaves)) {
     // "none" has leaf rules, but no look.
     if (options_.levels < 1 || options_.levels > kMostLevels)
         throw Error("A model has 1 to " + std::to_string(kMostLevels) + " levels of detail, not " +
@@ -94,19 +98,24 @@ const Mesh& TreeExporter::bark() {
         TubeOptions tubes;
         tubes.pivots = false;
         tubes.whole_repeats = true;
-        bark_ = build_branch_tubes(leafy_tree(tree_, options_.leaves, options_.foliage), tubes, progress_);
+        bark_ = build_branch_tubes(leafy_tree(tree_, kinds_, options_.foliage), tubes, progress_);
     }
     return *bark_;
 }
 
-const std::vector<LeafPlacement>& TreeExporter::placed() {
-    if (!placed_) placed_ = place_leaves(tree_, options_.leaves, options_.seed, options_.foliage);
+const std::vector<std::vector<LeafPlacement>>& TreeExporter::placed() {
+    if (!placed_) placed_ = place_foliage(tree_, kinds_, options_.seed, options_.foliage);
     return *placed_;
 }
 
-const Mesh& TreeExporter::leaf_cards() {
-    if (!leaf_cards_)
-        leaf_cards_ = bake_leaves(placed(), build_leaf_card(options_.leaves, card_level()), progress_);
+const std::vector<Mesh>& TreeExporter::leaf_cards() {
+    if (!leaf_cards_) {
+        std::vector<Mesh> cards;
+        for (size_t kind = 0; kind < kinds_.size(); kind++)
+            cards.push_back(bake_leaves(placed()[kind], build_leaf_card(kinds_[kind].rules, card_level(kind)),
+                                        progress_));
+        leaf_cards_ = std::move(cards);
+    }
     return *leaf_cards_;
 }
 
@@ -131,30 +140,52 @@ void TreeExporter::prepare(const std::vector<std::string>& paths) {
 
 const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
     if (!coarser_.empty() || options_.levels == 1) return coarser_;
-    const Tree leafy = leafy_tree(tree_, options_.leaves, options_.foliage);
+    const Tree leafy = leafy_tree(tree_, kinds_, options_.foliage);
     for (int level = 1; level < options_.levels; level++) {
         TubeOptions tubes;
         tubes.pivots = false;
         tubes.level = level;
-        // The finest level may have flat cards already.
-        const Mesh card = build_leaf_card(options_.leaves, std::max(level, card_level()));
-        coarser_.push_back({build_branch_tubes(leafy, tubes, progress_),
-                            bake_leaves(thin_leaves(placed(), level), card, progress_)});
+        Coarser made{build_branch_tubes(leafy, tubes, progress_), {}};
+        for (size_t kind = 0; kind < kinds_.size(); kind++) {
+            // The finest level may have flat cards already.
+            const Mesh card = build_leaf_card(kinds_[kind].rules, std::max(level, card_level(kind)));
+            made.leaves.push_back(bake_leaves(thin_leaves(placed()[kind], level), card, progress_));
+        }
+        coarser_.push_back(std::move(made));
     }
     return coarser_;
 }
 
 size_t TreeExporter::triangles() {
-    return bark().triangle_count() +
-           2 * leaves() * build_leaf_card(options_.leaves, card_level()).triangle_count();
+    size_t count = bark().triangle_count();
+    for (size_t kind = 0; kind < kinds_.size(); kind++)
+        count += 2 * placed()[kind].size() *
+                 build_leaf_card(kinds_[kind].rules, card_level(kind)).triangle_count();
+    return count;
 }
 
-int TreeExporter::card_level() {
-    return placed().size() > kMostFoldedCards ? 1 : 0;
+int TreeExporter::card_level(size_t kind) {
+    return placed()[kind].size() > kMostFoldedCards ? 1 : 0;
 }
 
 size_t TreeExporter::leaves() {
-    return placed().size();
+    size_t count = 0;
+    for (const std::vector<LeafPlacement>& kind : placed())
+        count += kind.size();
+    return count;
+}
+
+std::string TreeExporter::look_of(size_t kind) const {
+    return kinds_[kind].look.empty() ? options_.textures : kinds_[kind].look;
+}
+
+std::vector<NamedPicture> TreeExporter::pictures_for(size_t kind) const {
+    std::vector<NamedPicture> pictures =
+        pictures_of_leaves(make_pictures(look_of(kind)), uses_blade_picture(kinds_[kind].rules));
+    // The bark is the tree's own.
+    if (kind > 0)
+        std::erase_if(pictures, [](const NamedPicture& picture) { return picture.name.starts_with("bark"); });
+    return pictures;
 }
 
 void TreeExporter::write(const std::string& path) {
@@ -176,21 +207,34 @@ void TreeExporter::write(const std::string& path) {
         case Format::kObj:
             break;
     }
-    if (pictures_.empty())
-        pictures_ = pictures_of_leaves(make_pictures(options_.textures), uses_blade_picture(options_.leaves));
     prepare({path});
     if (bark().indices.empty())
         throw Error("'" + path + "' was not written: the tree has no wood that could be drawn.");
+    if (pictures_.empty())
+        for (size_t kind = 0; kind < kinds_.size(); kind++)
+            // Other kinds than the tree's own may have lost their wood.
+            pictures_.push_back(kind == 0 || !placed()[kind].empty() ? pictures_for(kind)
+                                                                     : std::vector<NamedPicture>());
+    const auto others = [](const std::vector<Mesh>& leaves) {
+        std::vector<const Mesh*> meshes;
+        for (size_t kind = 1; kind < leaves.size(); kind++)
+            meshes.push_back(&leaves[kind]);
+        return meshes;
+    };
     ModelFile model;
     model.bark = &bark();
-    model.leaves = &leaf_cards();
+    model.leaves = &leaf_cards()[0];
+    model.other_leaves = others(leaf_cards());
     if (format == Format::kGltf) {
         for (const Coarser& level : coarser())
-            model.coarser.push_back({&level.bark, &level.leaves, kSwitch[model.coarser.size()]});
+            model.coarser.push_back(
+                {&level.bark, &level.leaves[0], kSwitch[model.coarser.size()], others(level.leaves)});
     }
     model.preset = options_.textures;
     model.pictures_beside = options_.pictures_beside;
-    model.pictures = pictures_;
+    model.pictures = pictures_[0];
+    for (size_t kind = 1; kind < kinds_.size(); kind++)
+        model.other_materials.push_back({kinds_[kind].text, pictures_[kind]});
     model.extras = {{"height_m", measured().height},
                     {"dbh_m", measured().dbh},
                     {"nodes", static_cast<double>(measured().nodes)},

@@ -16,7 +16,7 @@
 namespace treerec {
 
 struct ExportOptions {
-    LeafRules leaves = leaf_preset("generic");
+    LeafRules leaves = leaf_preset("generic");  // the tree's own; others are Tree::leaf_rules()
     std::string textures = "generic";  // the preset whose bark and leaf pictures are used; "none" means these
     uint64_t seed = 1;                 // of the leaves
     Foliage foliage = {};              // what the scan saw of them
@@ -42,27 +42,32 @@ class TreeExporter {
 
     size_t triangles();  // of bark and leaves together, of the finest level
     size_t leaves();
+    // By kind (leaf_kinds()).
+    const std::vector<std::vector<LeafPlacement>>& placed();
     const Measurements& measured();  // of the tree
 
   private:
     const Mesh& bark();
-    const std::vector<LeafPlacement>& placed();
-    const Mesh& leaf_cards();
-    int card_level();
+    const std::vector<Mesh>& leaf_cards();  // by kind
+    int card_level(size_t kind);
+    std::string look_of(size_t kind) const;
+    std::vector<NamedPicture> pictures_for(size_t kind) const;
     struct Coarser {
-        Mesh bark, leaves;
+        Mesh bark;
+        std::vector<Mesh> leaves;
     };
     const std::vector<Coarser>& coarser();
 
     const Tree& tree_;
     ExportOptions options_;
     const Progress* progress_;
+    const std::vector<LeafKind> kinds_;
     std::optional<Mesh> bark_;
-    std::optional<std::vector<LeafPlacement>> placed_;
-    std::optional<Mesh> leaf_cards_;
+    std::optional<std::vector<std::vector<LeafPlacement>>> placed_;
+    std::optional<std::vector<Mesh>> leaf_cards_;
     std::optional<Measurements> measured_;
     std::vector<Coarser> coarser_;
-    std::vector<NamedPicture> pictures_;
+    std::vector<std::vector<NamedPicture>> pictures_;  // by kind
 };
 
 // Throws Error, naming the formats, if the extension of `path` is none of those that write() knows, or if no

@@ -25,13 +25,14 @@ void Tree::require(NodeId id) const {
     if (!contains(id)) throw Error("There is no node " + std::to_string(id) + " in this tree.");
 }
 
-NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags) {
+NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule) {
     require_finite(position);
     require_radius(radius);
     Node node;
     node.position = position;
     node.radius = radius;
     node.flags = flags;
+    node.leaf_rule = leaf_rule;
     node.depth = 1;
     nodes_.push_back(node);
     count_++;
@@ -77,13 +78,13 @@ void Tree::update_depths(NodeId from) {
 
 NodeId Tree::add_root(const DVec3& position, double radius, uint8_t flags) {
     if (!empty()) throw Error("The tree has a root already.");
-    root_ = new_node(position, radius, flags);
+    root_ = new_node(position, radius, flags, 0);
     return root_;
 }
 
 NodeId Tree::add_child(NodeId parent, const DVec3& position, double radius, uint8_t flags) {
     require(parent);
-    const NodeId id = new_node(position, radius, flags);
+    const NodeId id = new_node(position, radius, flags, nodes_[parent].leaf_rule);
     link_last(id, parent);
     nodes_[id].depth = nodes_[parent].depth + 1;
     return id;
@@ -105,6 +106,41 @@ void Tree::set_flag(NodeId id, NodeFlag flag, bool on) {
     require(id);
     uint8_t& flags = nodes_[id].flags;
     flags = on ? static_cast<uint8_t>(flags | flag) : static_cast<uint8_t>(flags & ~flag);
+}
+
+uint8_t Tree::name_leaf_rule(const std::string& rule) {
+    if (rule.empty()) return 0;
+    const auto found = std::find(leaf_rules_.begin(), leaf_rules_.end(), rule);
+    const size_t number = static_cast<size_t>(found - leaf_rules_.begin()) + 1;
+    if (found == leaf_rules_.end()) {
+        if (number > kMostLeafRules)
+            throw Error("A tree can have " + std::to_string(kMostLeafRules) +
+                        " leaf rules beside its own, and this one has them.");
+        leaf_rules_.push_back(rule);
+    }
+    return static_cast<uint8_t>(number);
+}
+
+void Tree::set_leaf_rule(NodeId id, uint8_t number) {
+    require(id);
+    if (number > leaf_rules_.size()) throw Error("The tree has no leaf rule " + std::to_string(number) + ".");
+    nodes_[id].leaf_rule = number;
+}
+
+void Tree::drop_unused_leaf_rules() {
+    std::vector<uint8_t> moved(leaf_rules_.size() + 1, 0);
+    for (const Node& node : nodes_)
+        moved[node.leaf_rule] = 1;
+    uint8_t next = 0;
+    for (size_t number = 1; number < moved.size(); number++) {
+        if (!moved[number]) continue;
+        moved[number] = ++next;
+        if (next < number) leaf_rules_[next - 1u] = std::move(leaf_rules_[number - 1]);
+    }
+    moved[0] = 0;
+    leaf_rules_.resize(next);
+    for (Node& node : nodes_)
+        node.leaf_rule = moved[node.leaf_rule];
 }
 
 std::vector<NodeId> Tree::remove_subtree(NodeId id) {
@@ -182,7 +218,7 @@ void Tree::splice_out(NodeId id) {
 NodeId Tree::insert_before(NodeId id, const DVec3& position, double radius, uint8_t flags) {
     require(id);
     if (id == root_) throw Error("Nothing can be inserted below the root.");
-    const NodeId middle = new_node(position, radius, flags);
+    const NodeId middle = new_node(position, radius, flags, nodes_[id].leaf_rule);
     const Node lower = nodes_[id];
     Node& inserted = nodes_[middle];
     inserted.parent = lower.parent;
@@ -232,6 +268,7 @@ void Tree::make_first_child(NodeId id) {
 Tree Tree::compacted() const {
     Tree result;
     result.frame_ = frame_;
+    result.leaf_rules_ = leaf_rules_;
     result.nodes_.reserve(size());
     std::vector<NodeId> moved(nodes_.size(), kNoNode);
     for (NodeId id : depth_first()) {
@@ -239,6 +276,7 @@ Tree Tree::compacted() const {
         moved[id] = node.parent == kNoNode
                         ? result.add_root(node.position, node.radius, node.flags)
                         : result.add_child(moved[node.parent], node.position, node.radius, node.flags);
+        result.nodes_[moved[id]].leaf_rule = node.leaf_rule;
     }
     return result;
 }
@@ -317,6 +355,7 @@ std::optional<std::string> Tree::check() const {
         if (!is_finite(node.position)) return wrong(id, "its position is not finite");
         if (!(node.radius > 0.0) || !std::isfinite(node.radius))
             return wrong(id, "its radius is not positive");
+        if (node.leaf_rule > leaf_rules_.size()) return wrong(id, "its leaf rule does not exist");
         if (node.parent == kNoNode) {
             if (id != root_) return wrong(id, "it has no parent and is not the root");
             if (node.depth != 1) return wrong(id, "the root's depth is not 1");

@@ -16,6 +16,7 @@ using NodeId = int32_t;
 inline constexpr NodeId kNoNode = -1;
 // The largest id that a file may name: it bounds what a damaged one can make us allocate (about 300 MB).
 inline constexpr NodeId kLargestId = 1 << 22;
+inline constexpr size_t kMostLeafRules = 250;
 
 // The paper's four kinds (papers/000, table 3.2). A trunk node that forks is of kind kBranch and one that
 // ends is of kind kLeaf, as figure 3.7 draws them; ask Node::is_trunk() for the trunk itself.
@@ -40,6 +41,7 @@ struct Node {
     int32_t depth = 0;  // 1 at the root (papers/000, algorithm 1); 0 marks a free slot
     int32_t child_count = 0;
     uint8_t flags = 0;
+    uint8_t leaf_rule = 0;  // place in Tree::leaf_rules(), from 1; 0: the tree's own
 
     bool is_trunk() const { return (flags & kTrunkFlag) != 0; }
     bool is_measured() const { return (flags & kMeasuredRadiusFlag) != 0; }
@@ -93,6 +95,7 @@ class Tree {
     ChildRange children(NodeId id) const { return {this, nodes_[id].first_child}; }
 
     // Adds the root to an empty tree. Throws Error if there is one already, or for a bad position or radius.
+    // A new node bears leaves by the rule of the wood that it grows from, or is put into.
     NodeId add_root(const DVec3& position, double radius, uint8_t flags = 0);
     // Adds a last child. Throws Error if there is no `parent`, or for a bad position or radius.
     NodeId add_child(NodeId parent, const DVec3& position, double radius, uint8_t flags = 0);
@@ -100,6 +103,18 @@ class Tree {
     void set_position(NodeId id, const DVec3& position);
     void set_radius(NodeId id, double radius);
     void set_flag(NodeId id, NodeFlag flag, bool on);
+
+    // The rules of leaves that wood of this tree has of its own, as text (foliage/leaf_rule_text.h); nodes
+    // name them by their place, from 1. Which of them are in use, only the nodes say.
+    const std::vector<std::string>& leaf_rules() const { return leaf_rules_; }
+    // The number by which nodes name the rule, which is added if it is new; 0 for an empty text. Throws Error
+    // for more than kMostLeafRules.
+    uint8_t name_leaf_rule(const std::string& rule);
+    // Throws Error for an unknown id, or a number that names no rule.
+    void set_leaf_rule(NodeId id, uint8_t number);
+    // Forgets the rules that no node names; the others move up.
+    void drop_unused_leaf_rules();
+
     // Removes the node and all below it and returns their ids, parents first. Removing the root empties the
     // tree.
     std::vector<NodeId> remove_subtree(NodeId id);
@@ -134,7 +149,7 @@ class Tree {
     Bounds bounds() const;
 
     // What is wrong with the structure, or nothing: one root, links that agree, no cycle, no orphan, right
-    // depths and counts, finite positions, positive finite radii.
+    // depths and counts, finite positions, positive finite radii, rules of leaves that there are.
     std::optional<std::string> check() const;
 
     // Builds a tree from parallel arrays: parents[i] is an index into the arrays or -1, for exactly one i.
@@ -148,7 +163,7 @@ class Tree {
   private:
     friend class TreeDelta;  // edit/delta.h: puts back a tree's exact state
 
-    NodeId new_node(const DVec3& position, double radius, uint8_t flags);
+    NodeId new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule);
     void require(NodeId id) const;
     void link_last(NodeId id, NodeId parent);
     void splice_out(NodeId id);
@@ -159,6 +174,7 @@ class Tree {
     NodeId root_ = kNoNode;
     int32_t count_ = 0;
     ScanFrame frame_;
+    std::vector<std::string> leaf_rules_;
 };
 
 }  // namespace treerec

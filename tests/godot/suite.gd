@@ -73,7 +73,8 @@ static func skeleton(nodes: Array[Array]) -> Dictionary:
 		radii.append(node[4])
 		flags.append(node[5])
 	return {
-		"format_version": TreeReconstruction.FORMAT_VERSION,
+		# Of a tree without leaf rules of its wood.
+		"format_version": 1,
 		"ids": ids,
 		"parents": parents,
 		"positions": bits(positions),

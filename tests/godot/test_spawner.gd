@@ -7,6 +7,7 @@ const Ground := preload("res://addons/tree_reconstruction/nodes/spawning/ground.
 const Cells := preload("res://addons/tree_reconstruction/nodes/spawning/cells.gd")
 const Individual := preload("res://addons/tree_reconstruction/nodes/spawning/individual.gd")
 const Leftovers := preload("res://addons/tree_reconstruction/nodes/spawning/leftovers.gd")
+const LeafKinds := preload("res://addons/tree_reconstruction/nodes/leaf_kinds.gd")
 const Materials := preload("res://addons/tree_reconstruction/nodes/spawning/materials.gd")
 const Reading := preload("res://addons/tree_reconstruction/nodes/spawning/reading.gd")
 const NEVER: int = 0x7fffffffffffffff
@@ -356,7 +357,9 @@ func test_materials_are_read_a_piece_per_frame() -> void:
 	made = null
 	var plan: Individual = Individual.new()
 	plan.bark_path = pieces[-1]
-	plan.leaf_path = Materials.preset_path(grown_tree(3, 60), "leaf")
+	var look: Individual.Look = Individual.Look.new()
+	look.path = LeafKinds.preset_path("generic", "leaf")
+	plan.looks = [look]
 	var reading: Reading = Reading.new()
 	check_equal(_count_cached(pieces), 0, "what is there already")
 	reading.start([plan], [])
@@ -374,7 +377,7 @@ func test_materials_are_read_a_piece_per_frame() -> void:
 	check_equal(ready, [plan] as Array[Individual], "whose materials are there")
 	check(not reading.is_busy(), "It never ends.")
 	check_equal(plan.bark_material.resource_path, plan.bark_path, "the bark's material")
-	check_equal(plan.leaf_material.resource_path, plan.leaf_path, "the leaves' material")
+	check_equal(look.material.resource_path, look.path, "the leaves' material")
 
 
 static func _count_cached(paths: PackedStringArray) -> int:
@@ -387,7 +390,7 @@ static func _count_cached(paths: PackedStringArray) -> int:
 # Each tree of a forest knows its own level where the shaders do.
 func test_the_presets_know_levels() -> void:
 	for name: String in ["bark", "leaf", "blade"]:
-		var path: String = Materials.preset_path(grown_tree(3, 60), name)
+		var path: String = LeafKinds.preset_path("generic", name)
 		check(Materials.knows_levels(load(path) as Material), "%s does not." % path)
 
 

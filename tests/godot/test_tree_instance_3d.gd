@@ -303,7 +303,7 @@ func test_a_tree_comes_in_pieces() -> void:
 	job.leaves = true
 	job.run()
 	check_equal(job.bark.get_surface_count(), 1, "surfaces that the worker made")
-	check(job.foliage.instance_count > 0, "It made no leaves.")
+	check(job.foliage[0].multimesh.instance_count > 0, "It made no leaves.")
 	var pieces: Dictionary[String, bool] = {}
 	for part: String in ["bark", "leaf"]:
 		var path: String = "res://addons/tree_reconstruction/presets/willow_%s.tres" % part

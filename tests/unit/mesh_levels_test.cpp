@@ -56,7 +56,7 @@ TEST(Levels, EachHasFarFewerTrianglesAndAllAreFinite) {
             EXPECT_EQ(made.level, level);
             EXPECT_TRUE(made.warning.empty());
             EXPECT_GT(made.bark.triangle_count(), 0u);
-            EXPECT_FALSE(made.leaves.empty());
+            EXPECT_FALSE(made.foliage[0].leaves.empty());
             if (level > 0) {
                 // A palm's few fronds leave little to save at last.
                 EXPECT_LT(made.triangle_count(), habit == Habit::kPalm ? before : before * 6 / 10);
@@ -67,7 +67,7 @@ TEST(Levels, EachHasFarFewerTrianglesAndAllAreFinite) {
                 ASSERT_NEAR(glm::length(made.bark.normals[i]), 1.0f, 1e-3f);
                 ASSERT_TRUE(std::abs(made.bark.radii[i]) > 0.0f);
             }
-            for (const LeafPlacement& leaf : made.leaves)
+            for (const LeafPlacement& leaf : made.foliage[0].leaves)
                 ASSERT_TRUE(std::isfinite(glm::length(leaf.position)) && leaf.size > 0.0f);
         }
     }
@@ -78,7 +78,7 @@ TEST(Levels, TheFinestIsTheTreeItself) {
     const LeafRules rules = leaf_preset("oak");
     const TreeLevel made = LevelBuilder(tree, rules, 5).build(0);
     EXPECT_TRUE(same(made.bark.positions, build_level_bark(tree, 0.0).positions));
-    EXPECT_TRUE(same(leaf_buffer(made.leaves), leaf_buffer(place_leaves(tree, rules, 5))));
+    EXPECT_TRUE(same(leaf_buffer(made.foliage[0].leaves), leaf_buffer(place_leaves(tree, rules, 5))));
 }
 
 TEST(Levels, OneBoxHoldsAllOfThem) {
@@ -96,7 +96,7 @@ TEST(Levels, OneBoxHoldsAllOfThem) {
                            glm::all(glm::lessThanEqual(q, box.max));
                 };
                 EXPECT_TRUE(std::all_of(made.bark.positions.begin(), made.bark.positions.end(), inside));
-                const Mesh leaves = bake_leaves(made.leaves, made.card);
+                const Mesh leaves = bake_leaves(made.foliage[0].leaves, made.foliage[0].card);
                 EXPECT_TRUE(std::all_of(leaves.positions.begin(), leaves.positions.end(), inside));
             }
         }
@@ -195,7 +195,7 @@ TEST(Levels, ThreadsDoNotMatterAndNothingIsNothing) {
     set_thread_count(0);
     EXPECT_TRUE(same(one.bark.positions, three.bark.positions));
     EXPECT_TRUE(same(one.bark.indices, three.bark.indices));
-    EXPECT_TRUE(same(leaf_buffer(one.leaves), leaf_buffer(three.leaves)));
+    EXPECT_TRUE(same(leaf_buffer(one.foliage[0].leaves), leaf_buffer(three.foliage[0].leaves)));
     const Tree empty;
     const LevelBuilder none(empty, leaf_preset("birch"), 2);
     EXPECT_EQ(none.build(2).triangle_count(), 0u);

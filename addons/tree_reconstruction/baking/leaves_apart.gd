@@ -10,6 +10,8 @@ extends Node3D
 
 ## What the leaves' shader takes per tree.
 @export var values: Dictionary = {}
+## What that of further kinds of leaves takes otherwise, by the names of their nodes.
+@export var own_values: Dictionary = {}
 
 
 func _enter_tree() -> void:
@@ -23,9 +25,11 @@ func _notification(what: int) -> void:
 
 
 func _tell() -> void:
-	for leaves: Node in find_children("Leaves", "MultiMeshInstance3D", true, false):
+	for leaves: Node in find_children("Leaves*", "MultiMeshInstance3D", true, false):
 		for name: StringName in values:
 			leaves.set_instance_shader_parameter(name, values[name])
+		for name: StringName in own_values.get(leaves.name, {}):
+			leaves.set_instance_shader_parameter(name, own_values[leaves.name][name])
 		leaves.set_instance_shader_parameter(&"tree_origin", global_position)
 		var height: float = values[&"tree_height"] * global_basis.get_scale().y
 		leaves.set_instance_shader_parameter(&"tree_height", height)
@@ -60,10 +64,14 @@ static func box_around(box: AABB, buffer: PackedFloat32Array) -> AABB:
 	return box
 
 
-## Makes [param root] tell its leaves [param values] and where it is.
-static func teach(root: Node3D, values: Dictionary[StringName, Variant]) -> void:
+## Makes [param root] tell its leaves [param values] and where it is, and those of further kinds
+## [param own_values], by the names of their nodes.
+static func teach(
+	root: Node3D, values: Dictionary[StringName, Variant], own_values: Dictionary = {}
+) -> void:
 	var script: GDScript = GDScript.new()
 	script.source_code = _SCRIPT
 	script.reload()
 	root.set_script(script)
 	root.set("values", Dictionary(values))
+	root.set("own_values", own_values)

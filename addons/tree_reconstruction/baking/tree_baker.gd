@@ -3,11 +3,11 @@ class_name TreeBaker
 extends RefCounted
 ## Turns trees into plain scenes and meshes that need neither this addon nor its library.
 ##
-## A baked scene holds a mesh for each level of detail, of a surface of bark and one of leaves, that
-## take turns by their distance. Their nodes are named after the tree, with [code]_LOD0[/code],
-## [code]_LOD1[/code] and so on; an impostor is the last of them. The scene holds its materials,
-## with the wind, and a body along its wood. Share it, use it in a project without the addon, or
-## give the meshes to a tool that scatters them.
+## A baked scene holds a mesh for each level of detail, of a surface of bark and one for each kind
+## of leaves, that take turns by their distance. Their nodes are named after the tree, with
+## [code]_LOD0[/code], [code]_LOD1[/code] and so on; an impostor is the last of them. The scene holds
+## its materials, with the wind, and a body along its wood. Share it, use it in a project without the
+## addon, or give the meshes to a tool that scatters them.
 ## [codeblock]
 ## var baker := TreeBaker.new()
 ## baker.levels = 3
@@ -26,7 +26,6 @@ enum Form {
 	MULTIMESH,
 }
 
-const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
 # How far the wind moves a tree beyond its box, over its height.
 const _SWAY: float = 0.25
 const LeavesApart := preload("leaves_apart.gd")
@@ -34,6 +33,7 @@ const Lightmap := preload("lightmap.gd")
 const PlainMaterials := preload("plain_materials.gd")
 const Collision := preload("../nodes/tree_collision.gd")
 const Levels := preload("../nodes/tree_levels.gd")
+const LeafKinds := preload("../nodes/leaf_kinds.gd")
 
 ## How many levels of detail there are, the finest first: 1 to 5.
 var levels: int = Levels.COUNT:
@@ -100,11 +100,9 @@ class Parts:
 	extends RefCounted
 	## The surface arrays of the bark of each level.
 	var bark: Array[Array] = []
-	## The surface arrays of the leaves of each level: all of them, or, with
-	## [constant TreeBaker.MULTIMESH], one; empty without leaves.
-	var leaves: Array[Array] = []
-	## With [constant TreeBaker.MULTIMESH]: see [method TreeReconstruction.build_leaf_buffer].
-	var buffers: Array[PackedFloat32Array] = []
+	## The leaves of each level, by kind: see [method TreeReconstruction.build_joined_foliage] or, with
+	## [constant TreeBaker.MULTIMESH], [method TreeReconstruction.build_foliage].
+	var foliage: Array[Array] = []
 	## The size of the finest level's lightmap, if there is one.
 	var lightmap: Vector2i = Vector2i.ZERO
 	## See [method TreeReconstruction.build_capsules] and
@@ -126,7 +124,10 @@ func bake(tree: TreeReconstruction) -> PackedScene:
 ## Loads the materials that [param tree] is baked with. To be called on the main thread before
 ## [method build] and the rest run on another one: the engine can lock up if both threads load one.
 func load_materials(tree: TreeReconstruction) -> void:
-	_loaded = [_bark_of(tree), _leaf_of(tree)]
+	_loaded = [_bark_of(tree)]
+	var kinds: Array[Dictionary] = tree.get_leaf_kinds()
+	for kind: Dictionary in kinds:
+		_loaded.append(_leaf_of(kind, kinds[0]))
 
 
 ## Builds what [method make_scene] needs. This is the long part, and may run on any thread; it ends
@@ -137,29 +138,45 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 		if cancelled.is_valid() and cancelled.call():
 			return null
 		_build_bark(tree, level, parts)
-		var built: Array = []
-		if leaves and form == Form.JOINED:
-			built = tree.build_joined_leaf_arrays(level)
-		elif leaves:
-			built = tree.build_leaf_form_arrays(level)
-			parts.buffers.append(tree.build_leaf_buffer(level))
-		parts.leaves.append(built)
+		var built: Array[Dictionary] = []
+		if leaves:
+			built = (
+				tree.build_joined_foliage(level)
+				if form == Form.JOINED
+				else tree.build_foliage(level)
+			)
+		parts.foliage.append(built)
 	if collision:
 		parts.shapes = Collision.gather(
 			tree, collision_kind, collision_shapes, collision_minimum_radius
 		)
 	parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
-	parts.pictures.merge(PlainMaterials.plain_pictures(_leaf_of(tree)))
+	for kind: Dictionary in parts.foliage[0]:
+		if _is_drawn(kind):
+			var leaf: Material = _leaf_of(kind, parts.foliage[0][0])
+			parts.pictures.merge(PlainMaterials.plain_pictures(leaf))
 	for place: Vector3 in _places(parts.bark[0]):
 		parts.height = maxf(parts.height, place.y)
 	var first: bool = true
-	for arrays: Array in parts.bark + (parts.leaves if form == Form.JOINED else [] as Array[Array]):
+	for arrays: Array in parts.bark + joined_leaves(parts):
 		for place: Vector3 in _places(arrays):
 			parts.box = AABB(place, Vector3.ZERO) if first else parts.box.expand(place)
 			first = false
-	for buffer: PackedFloat32Array in parts.buffers:
-		parts.box = LeavesApart.box_around(parts.box, buffer)
+	for kinds: Array in parts.foliage:
+		for kind: Dictionary in kinds:
+			if kind.has("leaves"):
+				parts.box = LeavesApart.box_around(parts.box, kind.leaves)
 	return parts
+
+
+## The surface arrays of all leaves that are vertices, of all levels and kinds.
+static func joined_leaves(parts: Parts) -> Array[Array]:
+	var found: Array[Array] = []
+	for kinds: Array in parts.foliage:
+		for kind: Dictionary in kinds:
+			if kind.has("arrays"):
+				found.append(kind.arrays)
+	return found
 
 
 func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
@@ -192,7 +209,7 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 	if impostor != null:
 		meshes.append(_plain_card(tree, parts, meshes))
 	var switches: PackedFloat32Array = Levels.distances(parts.height, meshes.size(), distances)
-	var apart: Array[GeometryInstance3D] = _make_leaves(tree, parts)
+	var apart: Array[Array] = _make_leaves(tree, parts)
 	for level: int in meshes.size():
 		var part: MeshInstance3D = MeshInstance3D.new()
 		# By such names, tools that scatter meshes know the levels; the impostor is the last one.
@@ -203,9 +220,10 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 		root.add_child(part)
 		part.owner = root
 		if level < apart.size():
-			drawn.append(apart[level])
-			part.add_child(apart[level])
-			apart[level].owner = root
+			for each: GeometryInstance3D in apart[level]:
+				drawn.append(each)
+				part.add_child(each)
+				each.owner = root
 		for each: GeometryInstance3D in drawn:
 			if level > 0:
 				each.visibility_range_begin = switches[level - 1]
@@ -214,7 +232,12 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 				each.visibility_range_end = switches[level]
 				each.visibility_range_end_margin = Levels.margin(switches[level])
 	if form == Form.MULTIMESH and not apart.is_empty():
-		LeavesApart.teach(root, _shader_values(tree, parts.height))
+		var own_values: Dictionary = {}
+		for i: int in range(1, parts.foliage[0].size()):
+			var tints: PackedColorArray = parts.foliage[0][i].tints
+			if not tints.is_empty():
+				own_values[_node_name(i)] = Dictionary(LeafKinds.season_values(tints))
+		LeavesApart.teach(root, _shader_values(tree, parts.height), own_values)
 	if not parts.shapes.is_empty():
 		var body: StaticBody3D = StaticBody3D.new()
 		body.name = "Wood"
@@ -236,11 +259,9 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 	var bark: Material = PlainMaterials.plain(
 		_bark_of(tree), values, parts.pictures, true, global_wind
 	)
-	var leaf: Material = (
-		null
-		if _are_leaves_apart()
-		else PlainMaterials.plain(_leaf_of(tree), values, parts.pictures, true, global_wind)
-	)
+	var leaf: Array[Material] = []
+	if not _are_leaves_apart():
+		leaf = _plain_leaves(tree, parts, true)
 	var meshes: Array[ArrayMesh] = []
 	for level: int in parts.bark.size():
 		var mesh: ArrayMesh = ArrayMesh.new()
@@ -250,8 +271,10 @@ func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 			)
 			mesh.surface_set_name(mesh.get_surface_count() - 1, "bark")
 			mesh.surface_set_material(mesh.get_surface_count() - 1, bark)
-		if not parts.leaves[level].is_empty() and not _are_leaves_apart():
-			_add_leaves(mesh, parts.leaves[level], leaf)
+		for i: int in leaf.size():
+			var arrays: Array = parts.foliage[level][i].arrays
+			if not arrays.is_empty():
+				_add_leaves(mesh, arrays, leaf[i], i)
 		if level == 0 and parts.lightmap != Vector2i.ZERO:
 			mesh.lightmap_size_hint = parts.lightmap
 		mesh.custom_aabb = _box_of(parts)
@@ -275,42 +298,85 @@ func _are_leaves_apart() -> bool:
 	return form == Form.MULTIMESH or lightmap_uv2
 
 
-static func _add_leaves(mesh: ArrayMesh, arrays: Array, material: Material) -> void:
+# Of each kind, as it stands in parts.foliage; null where nothing is drawn of it.
+func _plain_leaves(tree: TreeReconstruction, parts: Parts, joined: bool) -> Array[Material]:
+	var made: Array[Material] = []
+	for kind: Dictionary in parts.foliage[0]:
+		var material: Material = null
+		if _is_drawn(kind):
+			var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
+			if not (kind.tints as PackedColorArray).is_empty():
+				values.merge(LeafKinds.season_values(kind.tints), true)
+			material = PlainMaterials.plain(
+				_leaf_of(kind, parts.foliage[0][0]), values, parts.pictures, joined, global_wind
+			)
+		made.append(material)
+	return made
+
+
+# Levels are thinner, but have of each kind what the finest has.
+static func _is_drawn(kind: Dictionary) -> bool:
+	if kind.has("arrays"):
+		return not (kind.arrays as Array).is_empty()
+	return not (kind.leaves as PackedFloat32Array).is_empty()
+
+
+## The names of the surfaces of leaves that look otherwise than the tree's own.
+static func get_other_leaves(parts: Parts) -> PackedStringArray:
+	var names: PackedStringArray = []
+	for i: int in parts.foliage[0].size():
+		if parts.foliage[0][i].look != parts.foliage[0][0].look:
+			names.append(_surface_name(i))
+	return names
+
+
+# The names of the surface and of the node of the leaves of a kind.
+static func _surface_name(kind: int) -> String:
+	return "leaves" if kind == 0 else "leaves_%d" % (kind + 1)
+
+
+static func _node_name(kind: int) -> StringName:
+	return &"Leaves" if kind == 0 else StringName("Leaves%d" % (kind + 1))
+
+
+static func _add_leaves(mesh: ArrayMesh, arrays: Array, material: Material, kind: int) -> void:
 	mesh.add_surface_from_arrays(
 		Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.JOINED_LEAF_FLAGS
 	)
-	mesh.surface_set_name(mesh.get_surface_count() - 1, "leaves")
+	mesh.surface_set_name(mesh.get_surface_count() - 1, _surface_name(kind))
 	mesh.surface_set_material(mesh.get_surface_count() - 1, material)
 
 
-# The leaves of each level as nodes, or none.
-func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[GeometryInstance3D]:
-	var made: Array[GeometryInstance3D] = []
-	if not leaves or not _are_leaves_apart() or parts.leaves[0].is_empty():
+# The leaves of each level as nodes, one for each kind, or none.
+func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[Array]:
+	var made: Array[Array] = []
+	if not leaves or not _are_leaves_apart():
 		return made
 	var joined: bool = form == Form.JOINED
-	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var material: Material = PlainMaterials.plain(
-		_leaf_of(tree), values, parts.pictures, joined, global_wind
-	)
-	for level: int in parts.leaves.size():
-		var node: GeometryInstance3D
-		if joined:
-			var mesh: ArrayMesh = ArrayMesh.new()
-			if not parts.leaves[level].is_empty():
-				_add_leaves(mesh, parts.leaves[level], material)
-			node = MeshInstance3D.new()
-			(node as MeshInstance3D).mesh = mesh
-		else:
-			node = MultiMeshInstance3D.new()
-			(node as MultiMeshInstance3D).multimesh = LeavesApart.multimesh(
-				parts.buffers[level], parts.leaves[level], material
-			)
-		node.name = "Leaves"
-		node.custom_aabb = _box_of(parts)
-		# No lightmap has a place for each leaf.
-		node.gi_mode = _gi_mode(false)
-		made.append(node)
+	var materials: Array[Material] = _plain_leaves(tree, parts, joined)
+	for level: int in parts.foliage.size():
+		var nodes: Array[GeometryInstance3D] = []
+		for i: int in materials.size():
+			var kind: Dictionary = parts.foliage[level][i]
+			if not _is_drawn(kind):
+				continue
+			var node: GeometryInstance3D
+			if joined:
+				var mesh: ArrayMesh = ArrayMesh.new()
+				_add_leaves(mesh, kind.arrays, materials[i], i)
+				node = MeshInstance3D.new()
+				(node as MeshInstance3D).mesh = mesh
+			else:
+				node = MultiMeshInstance3D.new()
+				(node as MultiMeshInstance3D).multimesh = LeavesApart.multimesh(
+					kind.leaves, kind.card, materials[i]
+				)
+			node.name = _node_name(i)
+			node.custom_aabb = _box_of(parts)
+			# No lightmap has a place for each leaf.
+			node.gi_mode = _gi_mode(false)
+			nodes.append(node)
+		made.append(nodes)
 	return made
 
 
@@ -331,29 +397,23 @@ func _shader_values(tree: TreeReconstruction, height: float) -> Dictionary[Strin
 	var values: Dictionary[StringName, Variant] = {
 		&"tree_height": maxf(height, 0.1), &"tree_wind": 1.0 if wind else 0.0
 	}
-	if tree.leaf_rule != null:
-		var tints: PackedColorArray = tree.leaf_rule.get_season_tints()
-		var names: Array[StringName] = [&"season_early", &"season_late"]
-		for i: int in 2:
-			var tint: Color = tints[i].srgb_to_linear()
-			values[names[i]] = Vector4(tint.r, tint.g, tint.b, tint.a)
+	var own: Dictionary = tree.get_leaf_kinds()[0]
+	if not (own.tints as PackedColorArray).is_empty():
+		values.merge(LeafKinds.season_values(own.tints))
 	return values
 
 
 func _bark_of(tree: TreeReconstruction) -> Material:
-	return _chosen(bark_material, tree.get_leaf_look(), "bark")
+	if bark_material != null:
+		return bark_material
+	return load(LeafKinds.preset_path(tree.get_leaf_look(), "bark")) as Material
 
 
-func _leaf_of(tree: TreeReconstruction) -> Material:
-	var part: String = "blade" if tree.are_leaves_single() else "leaf"
-	return _chosen(leaf_material, tree.get_leaf_look(), part)
-
-
-func _chosen(material: Material, look: String, part: String) -> Material:
-	if material != null:
-		return material
-	var path: String = _PRESETS % [look, part]
-	return load(path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]) as Material
+# own: the tree's own kind.
+func _leaf_of(kind: Dictionary, own: Dictionary) -> Material:
+	if leaf_material != null and LeafKinds.looks_like(kind, own):
+		return leaf_material
+	return load(LeafKinds.material_path(kind)) as Material
 
 
 static func _places(arrays: Array) -> PackedVector3Array:

@@ -130,7 +130,7 @@ func _bake(tree: TreeReconstruction) -> TreeImpostor:
 	_progress = _BUILT
 	_stage = "taking pictures"
 	var mesh: ArrayMesh = baker.make_meshes(tree, parts)[0]
-	var taken: Array[Image] = await _take(mesh)
+	var taken: Array[Image] = await _take(mesh, TreeBaker.get_other_leaves(parts))
 	if taken.is_empty():
 		return null
 	_stage = "filling the pictures"
@@ -152,7 +152,7 @@ func _build(baker: TreeBaker, tree: TreeReconstruction) -> TreeBaker.Parts:
 		return null
 	_center = parts.box.get_center()
 	_radius = 0.01
-	for arrays: Array in parts.bark + parts.leaves:
+	for arrays: Array in parts.bark + TreeBaker.joined_leaves(parts):
 		if arrays.is_empty():
 			continue
 		for place: Vector3 in arrays[Mesh.ARRAY_VERTEX] as PackedVector3Array:
@@ -162,10 +162,10 @@ func _build(baker: TreeBaker, tree: TreeReconstruction) -> TreeBaker.Parts:
 
 
 # Takes all views: color, normals and depth, each as one picture, not filled yet.
-func _take(mesh: ArrayMesh) -> Array[Image]:
+func _take(mesh: ArrayMesh, others: PackedStringArray) -> Array[Image]:
 	var reach: float = _radius * _ROOM
 	var each: int = maxi(resolution / views / 4, 2) * 4
-	var stage: Stage = Stage.new(mesh, each * _SAMPLES, reach)
+	var stage: Stage = Stage.new(mesh, others, each * _SAMPLES, reach)
 	_root().add_child(stage.viewports[0])
 	for i: int in range(1, stage.viewports.size()):
 		stage.viewports[i].world_3d = stage.viewports[0].find_world_3d()
@@ -251,7 +251,11 @@ func _assemble(
 	material.set_shader_parameter(&"center", _center)
 	material.set_shader_parameter(&"reach", _radius * _ROOM)
 	material.set_shader_parameter(&"extents", 0.5 * parts.box.size)
+	# The tree's own leaves, unless it has none.
 	var surface: int = mesh.get_surface_count() - 1
+	for i: int in mesh.get_surface_count():
+		if mesh.surface_get_name(i) == "leaves":
+			surface = i
 	var leaf: ShaderMaterial = mesh.surface_get_material(surface) as ShaderMaterial
 	if leaf != null:
 		for name: StringName in _TAKEN_OVER:
@@ -304,7 +308,9 @@ class Stage:
 	var _cameras: Array[Camera3D] = []
 	var _distance: float
 
-	func _init(mesh: ArrayMesh, size: int, reach: float) -> void:
+	# others: surfaces of leaves that the card doesn't lead through the season: they are kept as it
+	# has turned them, like wood.
+	func _init(mesh: ArrayMesh, others: PackedStringArray, size: int, reach: float) -> void:
 		_distance = 1.5 * reach
 		var environment: Environment = Environment.new()
 		environment.background_mode = Environment.BG_COLOR
@@ -336,14 +342,16 @@ class Stage:
 			copies.append(copy)
 			viewports[0].add_child(copy)
 		for surface: int in mesh.get_surface_count():
+			var name: String = mesh.surface_get_name(surface)
 			var each: Array[Material] = Shaders.for_passes(
 				mesh.surface_get_material(surface),
-				mesh.surface_get_name(surface) == "leaves",
+				name.begins_with("leaves") and not name in others,
 				_distance,
 				reach
 			)
 			for shown: int in copies.size():
-				_set_neutral(each[shown] as ShaderMaterial)
+				if not name in others:
+					_set_neutral(each[shown] as ShaderMaterial)
 				copies[shown].set_surface_override_material(surface, each[shown])
 
 	func look_from(way: Vector3, center: Vector3) -> void:

@@ -19,8 +19,8 @@ var with_bark: bool = true
 var revision: int
 ## The bark, where [member with_bark] wants it.
 var bark: ArrayMesh
-## The leaves; [code]null[/code] without any.
-var foliage: MultiMesh
+## The leaves, by kind, as [method draw_leaves] makes them; none without any.
+var foliage: Array[Dictionary] = []
 var warning: String = ""
 var capsules_wanted: int = 0
 var capsule_radius: float
@@ -48,15 +48,12 @@ func run() -> void:
 		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 	var started: int = Time.get_ticks_usec()
 	var wood: Array = []
-	var card: Array = []
-	var places: PackedFloat32Array = []
 	if budget > 0:
 		for made: Dictionary in source.build_levels([lod], [budget]):
 			wood = made.bark
 			warning = made.warning
 			if leaves:
-				places = made.leaves
-				card = made.card
+				foliage = draw_leaves(made.foliage)
 	elif with_bark:
 		wood = source.build_mesh_arrays(lod)
 	if with_bark:
@@ -64,10 +61,18 @@ func run() -> void:
 	var barked: int = Time.get_ticks_usec()
 	bark_time = (barked - started) / 1000.0
 	if budget == 0 and leaves:
-		places = source.build_leaf_buffer(lod)
-		card = source.build_leaf_form_arrays(lod)
-	foliage = leaf_multimesh(places, card)
+		foliage = draw_leaves(source.build_foliage(lod))
 	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
+
+
+## Makes the [code]multimesh[/code] of each kind of leaves in [param kinds] (see [method
+## TreeReconstruction.build_foliage]); [code]null[/code] where it has none.
+static func draw_leaves(kinds: Array[Dictionary]) -> Array[Dictionary]:
+	for kind: Dictionary in kinds:
+		kind.multimesh = leaf_multimesh(kind.leaves, kind.card)
+		kind.erase("leaves")
+		kind.erase("card")
+	return kinds
 
 
 ## The multimesh of [param places] (see [method TreeReconstruction.build_leaf_buffer]), or

@@ -31,6 +31,7 @@ const BuildJob := preload("tree_build_job.gd")
 const LevelNodes := preload("tree_level_nodes.gd")
 const Navigation := preload("navigation.gd")
 const OwnMaterials := preload("own_materials.gd")
+const LeafNodes := preload("tree_leaf_nodes.gd")
 const Levels := preload("tree_levels.gd")
 const Looks := preload("tree_looks.gd")
 const Reading := preload("spawning/reading.gd")
@@ -176,7 +177,7 @@ static var threaded: bool = true
 ## shapes when it comes into a scene without any, as after loading.
 @export_storage var fallen: bool = false
 
-var _leaves_node: MultiMeshInstance3D
+var _foliage: LeafNodes = LeafNodes.new(self, "Leaves", true)
 # What own_materials.gd draws this node with.
 var _own_material: RefCounted
 var _levels: LevelNodes = LevelNodes.new(self)
@@ -243,7 +244,7 @@ func is_building_levels() -> bool:
 
 ## The number of triangles of the bark and the leaves of this node's own mesh, the finest level.
 func get_triangle_count() -> int:
-	return BuildJob.triangles(mesh) + get_leaf_count() * BuildJob.triangles(_leaf_card())
+	return BuildJob.triangles(mesh) + _foliage.get_triangle_count()
 
 
 ## The number of triangles of a level of detail; 0 where it isn't shown or not built yet.
@@ -253,9 +254,7 @@ func get_level_triangle_count(level: int) -> int:
 
 ## The number of leaf cards of the finest level.
 func get_leaf_count() -> int:
-	if _leaves_node == null or _leaves_node.multimesh == null:
-		return 0
-	return _leaves_node.multimesh.instance_count
+	return _foliage.get_count()
 
 
 ## The tree's height in metres of the world, from its wood.
@@ -279,6 +278,7 @@ func get_leaf_build_time() -> float:
 
 
 func _init() -> void:
+	_levels.finest_leaves = _foliage
 	_levels.built.connect(_on_levels_built)
 
 
@@ -333,8 +333,7 @@ func _start() -> void:
 		mesh = null
 		_bark_of = []
 		_levels.clear()
-		if _leaves_node != null:
-			_leaves_node.multimesh = null
+		_foliage.show_nothing()
 		_apply_collision([])
 		rebuilt.emit()
 		return
@@ -390,16 +389,7 @@ func _apply(job: BuildJob) -> void:
 		_apply_bark(job)
 		_bark_time = job.bark_time
 	_leaf_time = job.leaf_time
-	if job.foliage == null:
-		if _leaves_node != null:
-			_leaves_node.multimesh = null
-	else:
-		if _leaves_node == null:
-			_leaves_node = MultiMeshInstance3D.new()
-			_leaves_node.name = &"Leaves"
-			add_child(_leaves_node, false, Node.INTERNAL_MODE_BACK)
-			_levels.finest_leaves = _leaves_node
-		_leaves_node.multimesh = job.foliage
+	_foliage.fill(job.foliage)
 	_apply_collision(job.capsules)
 	_budget_warning = job.warning
 	_levels.begin()
@@ -444,9 +434,8 @@ func _set_box(rest: AABB) -> void:
 		return
 	mesh.custom_aabb = rest.grow(_SWAY * _height if wind else 0.0)
 	var parts: Array[GeometryInstance3D] = _levels.get_barks()
-	parts.append_array(_levels.get_leaves())
-	if _leaves_node != null:
-		parts.append(_leaves_node)
+	for foliage: LeafNodes in _levels.get_foliage() + [_foliage]:
+		parts.append_array(foliage.nodes)
 	for part: GeometryInstance3D in parts:
 		part.custom_aabb = mesh.custom_aabb
 
@@ -461,20 +450,16 @@ func _on_levels_built(box: AABB) -> void:
 
 
 func _update_materials() -> void:
-	var bark: Material = Looks.material_of(reconstruction, bark_material, "bark")
-	var leaf: Material = Looks.material_of(reconstruction, leaf_material, "leaf")
+	var bark: Material = Looks.bark_of(reconstruction, bark_material)
 	if mesh != null and mesh.get_surface_count() > 0:
 		mesh.surface_set_material(0, bark)
-	if _leaves_node != null:
-		_leaves_node.material_override = leaf
-		OwnMaterials.give(_leaves_node, leaf)
+	_foliage.set_materials(leaf_material)
 	OwnMaterials.give(self, bark if material_override == null else material_override)
 	for node: GeometryInstance3D in _levels.get_barks():
 		node.material_override = bark
 		OwnMaterials.give(node, bark)
-	for node: GeometryInstance3D in _levels.get_leaves():
-		node.material_override = leaf
-		OwnMaterials.give(node, leaf)
+	for foliage: LeafNodes in _levels.get_foliage():
+		foliage.set_materials(leaf_material)
 	_levels.update()
 
 
@@ -484,17 +469,12 @@ func _update_instances() -> void:
 		return
 	var wood: Array[GeometryInstance3D] = _levels.get_barks()
 	wood.append(self)
-	var foliage: Array[GeometryInstance3D] = _levels.get_leaves()
-	if _leaves_node != null:
+	for node: MultiMeshInstance3D in _foliage.nodes:
 		for property: String in _SHARED:
-			_leaves_node.set(property, get(property))
-		foliage.append(_leaves_node)
-	for node: GeometryInstance3D in wood + foliage:
+			node.set(property, get(property))
+	for foliage: LeafNodes in _levels.get_foliage() + [_foliage]:
+		wood.append_array(foliage.nodes)
+		foliage.set_season()
+	for node: GeometryInstance3D in wood:
 		Looks.tell_place(node, self)
-	for node: GeometryInstance3D in foliage:
-		Looks.tell_season(node, reconstruction)
 	_levels.update()
-
-
-func _leaf_card() -> Mesh:
-	return _leaves_node.multimesh.mesh if get_leaf_count() > 0 else null

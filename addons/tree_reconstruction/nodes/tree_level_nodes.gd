@@ -10,6 +10,7 @@ const Levels := preload("tree_levels.gd")
 const BuildJob := preload("tree_build_job.gd")
 const Card := preload("tree_impostor_card.gd")
 const OwnMaterials := preload("own_materials.gd")
+const LeafNodes := preload("tree_leaf_nodes.gd")
 # In the editor, the further levels wait until nothing has changed for so many milliseconds: what is
 # seen from near comes first.
 const _QUIET: int = 500
@@ -20,8 +21,8 @@ const _SHARED: PackedStringArray = [
 const _OFF := GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
 const _ONLY := GeometryInstance3D.SHADOW_CASTING_SETTING_SHADOWS_ONLY
 
-## The finest level's leaves, or null.
-var finest_leaves: MultiMeshInstance3D
+## The finest level's leaves.
+var finest_leaves: LeafNodes
 var _tree: TreeInstance3D
 # The further levels, finest first, and what casts the shadows of all.
 var _parts: Array[Part] = []
@@ -112,8 +113,8 @@ func get_barks() -> Array[GeometryInstance3D]:
 
 
 ## What is drawn of their leaves.
-func get_leaves() -> Array[GeometryInstance3D]:
-	var found: Array[GeometryInstance3D] = []
+func get_foliage() -> Array[LeafNodes]:
+	var found: Array[LeafNodes] = []
 	for part: Part in _all():
 		found.append(part.leaves)
 	return found
@@ -129,8 +130,7 @@ func clear() -> void:
 		_job = null
 	_stop_listening()
 	for part: Part in _all():
-		part.bark.queue_free()
-		part.leaves.queue_free()
+		part.free_nodes()
 	_parts.clear()
 	_shadow = null
 
@@ -153,18 +153,17 @@ func update() -> void:
 		_tree.get_tree_height(), count + (1 if _tree.impostor != null else 0), _tree.level_distances
 	)
 	_show(_tree, _shared_shadow(shown), _turn_of(0, switches) if shown else Vector4.ZERO)
-	if finest_leaves != null:
-		var turn: Vector4 = _turn_of(0, switches) if shown else Vector4.ZERO
-		_show(finest_leaves, _shared_shadow(shown), turn)
+	for part: GeometryInstance3D in finest_leaves.nodes:
+		_show(part, _shared_shadow(shown), _turn_of(0, switches) if shown else Vector4.ZERO)
 	for level: int in _parts.size():
 		_parts[level].set_visible(shown)
-		for part: GeometryInstance3D in [_parts[level].bark, _parts[level].leaves]:
+		for part: GeometryInstance3D in _parts[level].get_nodes():
 			_share(part)
 			_show(part, _OFF, _turn_of(level + 1, switches))
 	_update_card(shown and _tree.impostor != null, switches)
 	if _shadow != null:
 		_shadow.set_visible(shown and _tree.cast_shadow != _OFF)
-		for part: GeometryInstance3D in [_shadow.bark, _shadow.leaves]:
+		for part: GeometryInstance3D in _shadow.get_nodes():
 			_share(part)
 			part.gi_mode = GeometryInstance3D.GI_MODE_DISABLED
 			# The card casts its own.
@@ -333,10 +332,10 @@ func _fill_shadow() -> void:
 	var level: int = clampi(_tree.shadow_level, 0, _parts.size())
 	if level == 0:
 		_shadow.bark.mesh = _tree.mesh
-		_shadow.leaves.multimesh = null if finest_leaves == null else finest_leaves.multimesh
+		_shadow.leaves.show_as(finest_leaves)
 	else:
 		_shadow.bark.mesh = _parts[level - 1].bark.mesh
-		_shadow.leaves.multimesh = _parts[level - 1].leaves.multimesh
+		_shadow.leaves.show_as(_parts[level - 1].leaves)
 
 
 func _all() -> Array[Part]:
@@ -351,30 +350,34 @@ class Part:
 	extends RefCounted
 
 	var bark: MeshInstance3D = MeshInstance3D.new()
-	var leaves: MultiMeshInstance3D = MultiMeshInstance3D.new()
+	var leaves: LeafNodes
 	var triangles: int = 0
 	var warning: String = ""
 
 	func _init(tree: Node, name: String) -> void:
 		bark.name = name
-		leaves.name = name + "Leaves"
-		for node: GeometryInstance3D in [bark, leaves]:
-			node.visible = false
-			tree.add_child(node, false, Node.INTERNAL_MODE_BACK)
+		bark.visible = false
+		tree.add_child(bark, false, Node.INTERNAL_MODE_BACK)
+		leaves = LeafNodes.new(tree, name + "Leaves", false)
 
 	func fill(made: Dictionary, with_leaves: bool) -> void:
 		bark.mesh = made.bark
-		leaves.multimesh = made.leaves if with_leaves else null
+		leaves.fill(made.foliage if with_leaves else ([] as Array[Dictionary]))
 		triangles = made.triangles if with_leaves else BuildJob.triangles(bark.mesh)
 		warning = made.warning
 
 	func set_visible(shown: bool) -> void:
 		bark.visible = shown
-		leaves.visible = shown
+		leaves.set_visible(shown)
+
+	func get_nodes() -> Array[GeometryInstance3D]:
+		var nodes: Array[GeometryInstance3D] = [bark]
+		nodes.append_array(leaves.nodes)
+		return nodes
 
 	func free_nodes() -> void:
 		bark.queue_free()
-		leaves.queue_free()
+		leaves.free_nodes()
 
 
 # What a worker thread needs and makes.
@@ -392,4 +395,4 @@ class LevelsJob:
 		made = source.build_levels(numbers, budgets)
 		for level: Dictionary in made:
 			level.bark = BuildJob.bark_mesh(level.bark)
-			level.leaves = BuildJob.leaf_multimesh(level.leaves, level.card)
+			level.foliage = BuildJob.draw_leaves(level.foliage)

@@ -109,4 +109,10 @@ static func fingerprint_of(tree: TreeReconstruction) -> int:
 				# Words, since objects are told apart by what differs from run to run.
 				rule[property.name] = var_to_str(tree.leaf_rule.get(property.name))
 		rule[&"season"] = "%.2f" % tree.leaf_rule.get_standing_share()
-	return hash([tree.skeleton, tree.get_leaf_look(), tree.are_leaves_single(), rule])
+	var all: Array = [tree.skeleton, tree.get_leaf_look(), tree.are_leaves_single(), rule]
+	for kind: Dictionary in tree.get_leaf_kinds():
+		# The card does not follow what the season makes of other kinds.
+		if kind.look != tree.get_leaf_look():
+			for tint: Color in kind.tints as PackedColorArray:
+				all.append(tint if tint.a > 0.0 else Color.TRANSPARENT)
+	return hash(all)

@@ -14,6 +14,8 @@ var _numbers: Dictionary[StringName, Label] = {}
 var _formats: Dictionary[StringName, String] = {}
 var _pictured: LeafRule
 var _whose: Label
+var _rules: Label
+var _selected: Label
 
 
 func get_id() -> StringName:
@@ -172,6 +174,11 @@ func _build() -> void:
 	_whose.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	_whose.modulate.a = 0.7
 	body.add_child(_whose)
+	_rules = Widgets.sentence()
+	_selected = Widgets.sentence()
+	for label: Label in [_rules, _selected]:
+		label.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+		body.add_child(label)
 
 
 func _refresh() -> void:
@@ -193,6 +200,29 @@ func _refresh() -> void:
 	if _whose.visible:
 		_whose.text = tr("The rule is %s. A change gives this tree a copy.") % rule.resource_path
 	_show_picture(rule)
+	_show_rules_of_wood(tree)
+
+
+# What wood has leaves of its own, and what the selected wood has.
+func _show_rules_of_wood(tree: TreeReconstruction) -> void:
+	var lines: PackedStringArray = [tr("Leaf rules in use:")]
+	for kind: Dictionary in tree.get_leaf_kinds():
+		if kind.nodes > 0:
+			lines.append(_describe(kind.rule, kind.nodes))
+	_rules.visible = lines.size() > 2
+	_rules.text = "\n".join(lines)
+	var counts: Dictionary = tree.count_leaf_rules(session.selection)
+	lines = [tr("The selected wood has:")]
+	for rule: String in counts:
+		lines.append(_describe(rule, counts[rule]))
+	_selected.visible = lines.size() > 1
+	_selected.text = "\n".join(lines)
+
+
+func _describe(rule: String, nodes: int) -> String:
+	if rule.is_empty():
+		return tr("the tree's own leaves: %s nodes") % Widgets.grouped(nodes)
+	return tr("%s: %s nodes") % [rule, Widgets.grouped(nodes)]
 
 
 ## The rule of a tree; one with the same leaves where it has none.

@@ -94,7 +94,8 @@ func add_value(value: Variant, seen: Dictionary[Variant, bool] = {}) -> void:
 
 func _add_resource(resource: Resource, seen: Dictionary[Variant, bool]) -> void:
 	if resource is TreeReconstruction:
-		add_kind((resource as TreeReconstruction).get_leaf_look())
+		for kind: Dictionary in (resource as TreeReconstruction).get_leaf_kinds():
+			add_kind(kind.look)
 	elif resource is LeafRule:
 		add_kind((resource as LeafRule).look)
 	elif resource is PackedScene:

@@ -5,6 +5,7 @@ extends RefCounted
 
 const Session: GDScript = preload("../session.gd")
 const OwnMaterials: GDScript = preload("../../nodes/own_materials.gd")
+const LeafNodes: GDScript = preload("../../nodes/tree_leaf_nodes.gd")
 
 var _session: Session
 var _node: TreeInstance3D
@@ -58,8 +59,8 @@ func _apply(bark: bool, leaves: bool, wind: bool) -> void:
 		return
 	var seen: bool = _node.is_visible_in_tree()
 	_set_up(_node, seen and bark, wind)
-	var bearer: GeometryInstance3D = _node.get(&"_leaves_node")
-	if is_instance_valid(bearer):
+	var foliage: LeafNodes = _node.get(&"_foliage")
+	for bearer: GeometryInstance3D in foliage.nodes:
 		_set_up(bearer, seen and leaves, wind)
 
 

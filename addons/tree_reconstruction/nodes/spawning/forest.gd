@@ -5,6 +5,7 @@ extends RefCounted
 
 const Changes := preload("changes.gd")
 const Individual := preload("individual.gd")
+const LeafKinds := preload("../leaf_kinds.gd")
 const Individuals := preload("individuals.gd")
 const Leftovers := preload("leftovers.gd")
 const Materials := preload("materials.gd")
@@ -164,7 +165,7 @@ func get_progress() -> float:
 func follow_season(of: TreeReconstruction) -> bool:
 	if not _seasons.follow(of):
 		return false
-	var values: Dictionary[StringName, Variant] = _seasons.get_values(of)
+	var values: Array[Dictionary] = _seasons.get_values(of)
 	for index: int in _individuals.get_all().size():
 		var one: Individual = _individuals.get_all()[index]
 		if one.source != of:
@@ -172,7 +173,7 @@ func follow_season(of: TreeReconstruction) -> bool:
 		if not one.set_season(values):
 			return false
 		if _cards.has(index):
-			Materials.set_values(_cards[index], values)
+			Materials.set_values(_cards[index], values[0])
 	return true
 
 
@@ -284,7 +285,7 @@ func _leave_places() -> void:
 
 func _start_individuals(plans: Array[Individual]) -> void:
 	for plan: Individual in plans:
-		if Materials.knows_seasons(plan.leaf_material):
+		if Materials.knows_seasons(plan.looks[0].material):
 			plan.summer_rule = Seasons.summer_rule(plan.source)
 	_individuals.start(plans)
 	# Some may be another forest's, which has heard of the season later.
@@ -338,7 +339,7 @@ func _make_card(index: int) -> ArrayMesh:
 	var values: Dictionary[StringName, Variant] = {
 		&"tree_height": impostor.height, &"tree_wind": 1.0, &"tree_levels": one.turns.back()
 	}
-	values.merge(one.season)
+	values.merge(one.looks[0].season)
 	_cards[index] = Materials.for_trees(impostor.material, values)
 	return impostor.make_mesh(_cards[index])
 
@@ -359,12 +360,17 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 		plan.leaves = _node.leaves
 		plan.capsules_wanted = _node.collision_shapes if _node.collision else 0
 		plan.bark_material = _node.bark_material
-		plan.leaf_material = _node.leaf_material
-		plan.season = _seasons.get_values(plan.source)
 		if plan.bark_material == null:
-			plan.bark_path = Materials.preset_path(plan.source, "bark")
-		if plan.leaf_material == null:
-			plan.leaf_path = Materials.preset_path(plan.source, "leaf")
+			plan.bark_path = LeafKinds.preset_path(plan.source.get_leaf_look(), "bark")
+		var kinds: Array[Dictionary] = plan.source.get_leaf_kinds()
+		for i: int in kinds.size():
+			var look: Individual.Look = Individual.Look.new()
+			look.season = _seasons.get_values(plan.source)[i]
+			look.material = _node.leaf_material
+			if look.material == null or not LeafKinds.looks_like(kinds[i], kinds[0]):
+				look.material = null
+				look.path = LeafKinds.material_path(kinds[i])
+			plan.looks.append(look)
 		plan.key = str(
 			[
 				plan.source.get_instance_id(),
@@ -379,7 +385,7 @@ func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:
 				plan.leaves,
 				plan.capsules_wanted,
 				plan.bark_material,
-				plan.leaf_material,
+				_node.leaf_material,
 				_node.season_spread
 			]
 		)

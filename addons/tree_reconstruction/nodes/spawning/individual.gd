@@ -13,10 +13,22 @@ const _LEAF_BYTES: int = 68
 const _INDEX_BYTES: int = 4
 
 
+## What leaves of one kind are drawn with.
+class Look:
+	extends RefCounted
+	var material: Material
+	## Where the material is read from; empty where it is given.
+	var path: String
+	## What it takes on (see seasons.gd).
+	var season: Dictionary[StringName, Variant] = {}
+
+
 ## A surface that is built and waits to be given to the engine.
 class Surface:
 	extends RefCounted
 	var level: int
+	## Of leaves: their kind's place in [member looks]; -1 for bark.
+	var kind: int
 	var arrays: Array
 	var flags: int
 	var material: Material
@@ -35,12 +47,10 @@ var leaves: bool = true
 var capsules_wanted: int = 0
 var capsule_radius: float = 0.03
 var bark_material: Material
-var leaf_material: Material
-## Where the materials are read from; empty where they are given.
+## Where it is read from; empty where it is given.
 var bark_path: String
-var leaf_path: String
-## What the leaves' material takes on (see seasons.gd).
-var season: Dictionary[StringName, Variant] = {}
+## Of each kind of leaves, the tree's own first.
+var looks: Array[Look] = []
 ## The rule of all leaves of a year, where the material knows the season; else [code]null[/code],
 ## and the leaves are those of the source's season.
 var summer_rule: LeafRule
@@ -93,9 +103,10 @@ func step() -> bool:
 				_tree, Collision.Kind.CAPSULES, capsules_wanted, capsule_radius
 			)
 	elif _step <= levels:
-		_add("bark", _step - 1, _tree.build_mesh_arrays(_step - 1))
+		_add(-1, _step - 1, _tree.build_mesh_arrays(_step - 1))
 	elif leaves and _step <= 2 * levels:
-		_add("leaves", _step - levels - 1, _tree.build_joined_leaf_arrays(_step - levels - 1))
+		var level: int = _step - levels - 1
+		_add_leaves(level, _tree.build_joined_foliage(level))
 	elif _step <= (3 if leaves else 2) * levels:
 		_fit(_step - (2 if leaves else 1) * levels - 1)
 	else:
@@ -128,12 +139,12 @@ func prepare() -> void:
 			&"tree_height": height, &"tree_wind": 1.0, &"tree_levels": turns[level]
 		}
 		for surface: Surface in surfaces:
-			if surface.level == level and surface.name == "bark":
+			if surface.level == level and surface.kind < 0:
 				surface.material = Materials.for_trees(bark_material, values)
-		values.merge(season)
-		for surface: Surface in surfaces:
-			if surface.level == level and surface.name != "bark":
-				surface.material = Materials.for_trees(leaf_material, values)
+			elif surface.level == level:
+				var own: Dictionary[StringName, Variant] = values.duplicate()
+				own.merge(_season_of(surface.kind))
+				surface.material = Materials.for_trees(looks[surface.kind].material, own)
 
 
 ## Gives the engine the next surface. [code]false[/code] after the last one.
@@ -160,9 +171,11 @@ func is_given() -> bool:
 	return not meshes.is_empty() and _added == surfaces.size()
 
 
-## Lets its leaves follow the season; [code]false[/code] where its material can't.
-func set_season(values: Dictionary[StringName, Variant]) -> bool:
-	season = values
+## Lets its leaves follow the season, that of each kind as seasons.gd has it; [code]false[/code]
+## where its material can't.
+func set_season(values: Array[Dictionary]) -> bool:
+	for kind: int in mini(looks.size(), values.size()):
+		looks[kind].season = values[kind]
 	if not leaves:
 		return true
 	if summer_rule == null:
@@ -170,9 +183,20 @@ func set_season(values: Dictionary[StringName, Variant]) -> bool:
 	# Before, a worker may be at the surfaces; they get it when they are prepared.
 	if not meshes.is_empty():
 		for surface: Surface in surfaces:
-			if surface.name != "bark":
-				Materials.set_values(surface.material, values)
+			if surface.kind >= 0:
+				Materials.set_values(surface.material, looks[surface.kind].season)
 	return true
+
+
+# What the material of a kind takes of its season.
+func _season_of(kind: int) -> Dictionary[StringName, Variant]:
+	if summer_rule != null:
+		return looks[kind].season
+	# The leaves are those of the season: no shader needs to take away any.
+	var colors: Dictionary[StringName, Variant] = looks[kind].season.duplicate()
+	colors.erase(&"season_standing")
+	colors.erase(&"season_unfolded")
+	return colors
 
 
 # Makes a level that has more triangles than it may have as fine as it may be.
@@ -186,25 +210,32 @@ func _fit(level: int) -> void:
 			surfaces.remove_at(place)
 	triangles[level] = 0
 	if not leaves:
+		_tree.edit("leaves where=all rule=default")
 		_tree.leaf_rule = null
 		_tree.leaf_preset = "none"
 	for made: Dictionary in _tree.build_levels([level], [budget], true):
-		_add("bark", level, made.bark)
-		_add("leaves", level, made.joined_leaves)
+		_add(-1, level, made.bark)
+		_add_leaves(level, made.joined_foliage)
 		if warning.is_empty():
 			warning = made.warning
 
 
-func _add(name: String, level: int, arrays: Array) -> void:
+func _add_leaves(level: int, kinds: Array[Dictionary]) -> void:
+	for kind: int in mini(kinds.size(), looks.size()):
+		_add(kind, level, kinds[kind].arrays)
+
+
+func _add(kind: int, level: int, arrays: Array) -> void:
 	if triangles.size() <= level:
 		triangles.append(0)
 	if arrays.is_empty():
 		return
 	var made: Surface = Surface.new()
 	made.level = level
-	made.name = name
+	made.kind = kind
+	var bark: bool = kind < 0
+	made.name = "bark" if bark else "leaves" if kind == 0 else "leaves_%d" % (kind + 1)
 	made.arrays = arrays
-	var bark: bool = name == "bark"
 	made.flags = (TreeReconstruction.MESH_FLAGS if bark else TreeReconstruction.JOINED_LEAF_FLAGS)
 	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
 	var indices: int = (arrays[Mesh.ARRAY_INDEX] as PackedInt32Array).size()

@@ -4,7 +4,7 @@ extends RefCounted
 ## them, what differs from tree to tree comes with the multimesh.
 
 const _ADDON: String = "res://addons/tree_reconstruction/"
-const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+const LeafKinds := preload("../leaf_kinds.gd")
 const _DEFINES: String = "\n#define TREE_BAKED\n#define TREE_WIND_GLOBALS\n"
 
 # By their paths; they go when the last material does.
@@ -43,15 +43,6 @@ static func knows_levels(material: Material) -> bool:
 	return (
 		_is_ours(material) and (material as ShaderMaterial).shader.code.contains("tree_levels_gone")
 	)
-
-
-## Where the material is that a tree's leaf preset has for its [code]bark[/code] or
-## [code]leaf[/code].
-static func preset_path(tree: TreeReconstruction, part: String) -> String:
-	if part == "leaf" and tree.are_leaves_single():
-		part = "blade"
-	var path: String = _PRESETS % [tree.get_leaf_look(), part]
-	return path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]
 
 
 ## Sets [param values] in what [method for_trees] made, unless it is the material itself.

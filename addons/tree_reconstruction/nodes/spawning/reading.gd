@@ -30,7 +30,10 @@ func start(plans: Array[Individual], others: Array[Material]) -> void:
 	_kept = []
 	var paths: Dictionary[String, bool] = {}
 	for plan: Individual in plans:
-		for path: String in [plan.bark_path, plan.leaf_path]:
+		var needed: PackedStringArray = [plan.bark_path]
+		for look: Individual.Look in plan.looks:
+			needed.append(look.path)
+		for path: String in needed:
 			if not path.is_empty() and not paths.has(path):
 				paths[path] = true
 				_steps.append(_open.bind(path))
@@ -117,10 +120,11 @@ func _read(path: String) -> void:
 func _give(plan: Individual) -> void:
 	if not plan.bark_path.is_empty():
 		plan.bark_material = load(plan.bark_path) as Material
-	if not plan.leaf_path.is_empty():
-		plan.leaf_material = load(plan.leaf_path) as Material
-	for material: Material in [plan.bark_material, plan.leaf_material]:
-		_need_shader(material)
+	_need_shader(plan.bark_material)
+	for look: Individual.Look in plan.looks:
+		if not look.path.is_empty():
+			look.material = load(look.path) as Material
+		_need_shader(look.material)
 
 
 func _need_shader(material: Material) -> void:

@@ -4,15 +4,16 @@ extends RefCounted
 ## tree to be built again: trees bear all their leaves, and the shader folds up those that have
 ## fallen.
 
-const Materials := preload("materials.gd")
+const Kinds := preload("../leaf_kinds.gd")
 # Between the unfolding of the leaves and their fall.
 const _SUMMER: float = 0.45
 
 ## How far the earliest and the latest tree are apart.
 var spread: float = 0.0
 
-# By the id of the tree: what the shaders take, and what the rule was when it was looked at last.
-var _values: Dictionary[int, Dictionary] = {}
+# By the id of the tree: what the shaders take for each kind of leaves, and what the rule was when
+# it was looked at last.
+var _values: Dictionary[int, Array] = {}
 var _seen: Dictionary[int, Array] = {}
 
 
@@ -26,9 +27,10 @@ func start(trees: Array[TreeReconstruction], between: float) -> void:
 		_seen[tree.get_instance_id()] = _look_at(tree)
 
 
-## What the shaders take of a tree's season, by their names. It follows the season.
-func get_values(tree: TreeReconstruction) -> Dictionary[StringName, Variant]:
-	var values: Dictionary[StringName, Variant] = _values[tree.get_instance_id()]
+## What the shaders take of a tree's season, by their names: for each kind of leaves (see [method
+## TreeReconstruction.get_leaf_kinds]). They follow the season.
+func get_values(tree: TreeReconstruction) -> Array[Dictionary]:
+	var values: Array[Dictionary] = _values[tree.get_instance_id()]
 	return values
 
 
@@ -42,7 +44,9 @@ func follow(tree: TreeReconstruction) -> bool:
 	_seen[tree.get_instance_id()] = now
 	if before[1] == now[1] or before[0] != now[0]:
 		return false
-	get_values(tree).merge(_values_of(tree), true)
+	var values: Array[Dictionary] = _values_of(tree)
+	for kind: int in values.size():
+		get_values(tree)[kind].merge(values[kind], true)
 	return true
 
 
@@ -71,25 +75,18 @@ static func _look_at(tree: TreeReconstruction) -> Array:
 
 
 # From the earliest tree to the latest.
-func _values_of(tree: TreeReconstruction) -> Dictionary[StringName, Variant]:
-	var values: Dictionary[StringName, Variant] = {}
-	var rule: LeafRule = tree.leaf_rule
-	if rule == null:
-		return values
-	var other: LeafRule = rule.duplicate() as LeafRule
-	var standing: Vector2
-	var unfolded: Vector2
-	for end: int in 2:
-		other.season = clampf(rule.season + (end - 0.5) * spread, 0.0, 1.0)
-		standing[end] = other.get_standing_share()
-		unfolded[end] = other.get_unfolded_share()
-		var tints: PackedColorArray = other.get_season_tints()
-		for i: int in 2:
-			# Colors would be converted by some renderers and not by others.
-			var tint: Color = tints[i].srgb_to_linear()
-			values[StringName(["season_early", "season_late"][i] + ["", "_after"][end])] = Vector4(
-				tint.r, tint.g, tint.b, tint.a
-			)
-	values[&"season_standing"] = standing
-	values[&"season_unfolded"] = unfolded
-	return values
+func _values_of(tree: TreeReconstruction) -> Array[Dictionary]:
+	var early: Array[Dictionary] = tree.get_leaf_kinds(-0.5 * spread)
+	var late: Array[Dictionary] = tree.get_leaf_kinds(0.5 * spread)
+	var all: Array[Dictionary] = []
+	for kind: int in early.size():
+		var values: Dictionary[StringName, Variant] = {}
+		if tree.leaf_rule != null:
+			values = Kinds.season_values(early[kind].tints)
+			var after: Dictionary[StringName, Variant] = Kinds.season_values(late[kind].tints)
+			for name: StringName in after:
+				values[StringName(name + "_after")] = after[name]
+			values[&"season_standing"] = Vector2(early[kind].standing, late[kind].standing)
+			values[&"season_unfolded"] = Vector2(early[kind].unfolded, late[kind].unfolded)
+		all.append(values)
+	return all

@@ -1,0 +1,118 @@
+@tool
+extends "../../test_plugin/garden.gd"
+## Some wood gets leaves of its own: a selected limb, end nodes, a branch that is clicked.
+
+var _node: TreeInstance3D
+var _of: TreeReconstruction
+
+
+func run() -> void:
+	await step("the Leaf rule tool gives the selected limb leaves of its own, as one step")
+	_node = await open_garden("res://leaf_rules.tscn", own_tree("res://leaf_rules_tree.res"))
+	if _node == null:
+		return
+	_of = _node.reconstruction
+	var limb: int = clear_nodes(_node, large_branches(_of))[0]
+	var above: PackedInt32Array = _of.select_nodes("below:%d" % limb)
+	var before: PackedByteArray = bytes(_of)
+	await user.click(node_on_screen(_node, limb))
+	if not await until(
+		func() -> bool: return _selected() == PackedInt32Array([limb]), "it is selected"
+	):
+		return
+	if not await take_tool(&"leaf_rule", "F2"):
+		return
+	await press(_kinds())
+	await choose("Maple")
+	await until(
+		func() -> bool: return _of.count_leaf_rules(above).keys() == ["maple"],
+		"the limb is a maple's"
+	)
+	check_equal(_of.count_leaf_rules(_of.get_node_ids()).size(), 2, "rules on the tree")
+	check(_of.edit_log.contains("leaves where=below:"), "The log does not tell of it.")
+	if not session().get(&"view").leaves:
+		await user.move(middle(view().get_parent() as Control))
+		await user.key("l")
+	await until(func() -> bool: return not _node.is_building_levels(), "the tree is built")
+	await until(func() -> bool: return "maple_leaf.tres" in _shown(), "its leaves are shown")
+	check("birch_leaf.tres" in _shown(), "The tree's own leaves are gone: %s." % _shown())
+	await picture("a-limb-of-a-maple")
+
+	await step("the dock tells which rules there are, and which the limb has")
+	await until(
+		func() -> bool: return _dock_says("maple: ") and _dock_says("The selected wood has:"),
+		"the dock tells of it"
+	)
+	await picture("rules-in-the-dock")
+
+	await step("one undo takes it back, bit for bit, and one redo does it again")
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("ctrl+z")
+	await until(func() -> bool: return bytes(_of) == before, "it is undone")
+	await user.key("ctrl+shift+z")
+	await until(
+		func() -> bool: return _of.count_leaf_rules(above).keys() == ["maple"], "it is done again"
+	)
+
+	await step("a click gives the leaves to the branch under the mouse")
+	var other: int = NO_NODE
+	for id: int in clear_nodes(_node, large_branches(_of)):
+		if not id in above and not limb in _of.select_nodes("below:%d" % id):
+			other = id
+			break
+	if other != NO_NODE:
+		await user.move(node_on_screen(_node, other))
+		await until(func() -> bool: return _has_ghosts(), "the branch is shown")
+		await picture("before-the-click")
+		await user.click(node_on_screen(_node, other))
+		await until(
+			func() -> bool: return _of.count_leaf_rules([other]).keys() == ["maple"], "it has them"
+		)
+		await until(func() -> bool: return not _node.is_rebuilding(), "the tree is built")
+		await picture("two-branches-of-a-maple")
+		await user.key("ctrl+z")
+		await until(func() -> bool: return _of.count_leaf_rules([other]).keys() == [""], "undone")
+	await save_scene()
+
+
+func _selected() -> PackedInt32Array:
+	return session().get(&"selection")
+
+
+func _kinds() -> Control:
+	for button: Node in EditorInterface.get_base_control().find_children(
+		"*", "OptionButton", true, false
+	):
+		if (
+			(button as Control).is_visible_in_tree()
+			and (button as Control).tooltip_text.begins_with("The kind of leaves")
+		):
+			return button as Control
+	check(false, "There is no list of kinds.")
+	return null
+
+
+# The materials of the leaves that are drawn.
+func _shown() -> PackedStringArray:
+	var names: PackedStringArray = []
+	for child: Node in _node.get_children(true):
+		var leaves: MultiMeshInstance3D = child as MultiMeshInstance3D
+		if leaves != null and leaves.multimesh != null and leaves.material_override != null:
+			names.append(leaves.material_override.resource_path.get_file())
+	return names
+
+
+func _dock_says(words: String) -> bool:
+	var found: bool = false
+	for label: Node in EditorInterface.get_base_control().find_children("*", "Label", true, false):
+		if words in (label as Label).text:
+			var section: FoldableContainer = label.get_parent().get_parent() as FoldableContainer
+			if section != null and section.folded:
+				section.folded = false
+			found = found or (label as Label).visible
+	return found
+
+
+func _has_ghosts() -> bool:
+	@warning_ignore("unsafe_method_access")
+	return not session().get(&"tool").get_ghosts().is_empty()
