@@ -381,11 +381,15 @@ void write_gltf(const std::string& path, const ModelFile& file, const Progress* 
     const auto check = [&](const Mesh* mesh) {
         if (mesh && !mesh->indices.empty()) require_finite(*mesh, path);
     };
-    check(file.bark);
-    check(file.leaves);
+    const auto check_all = [&](const std::vector<const Mesh*>& meshes) {
+        for (const Mesh* mesh : meshes)
+            check(mesh);
+    };
+    check_all({file.bark, file.leaves});
+    check_all(file.other_leaves);
     for (const ModelFile::Level& level : file.coarser) {
-        check(level.bark);
-        check(level.leaves);
+        check_all({level.bark, level.leaves});
+        check_all(level.other_leaves);
     }
     Builder model(file);
     if (extension == "gltf" || file.pictures_beside) write_pictures(path, model, progress);

@@ -5,9 +5,9 @@ extends RefCounted
 ##
 ## A baked scene holds a mesh for each level of detail, of a surface of bark and one for each kind
 ## of leaves, that take turns by their distance. Their nodes are named after the tree, with
-## [code]_LOD0[/code], [code]_LOD1[/code] and so on; an impostor is the last of them. The scene holds
-## its materials, with the wind, and a body along its wood. Share it, use it in a project without the
-## addon, or give the meshes to a tool that scatters them.
+## [code]_LOD0[/code], [code]_LOD1[/code] and so on; an impostor is the last of them. The scene has
+## its materials, with the wind, and a body along its wood. Share it, use it in a project without
+## the addon, or give the meshes to a tool that scatters them.
 ## [codeblock]
 ## var baker := TreeBaker.new()
 ## baker.levels = 3
