@@ -53,6 +53,22 @@ void write_skeleton(ParsedOptions& r_options, const Variant& p_value) {
     r_options.pipeline.skeleton.method = treerec::parse_skeleton_method(to_std(p_value));
 }
 
+Variant read_flood(const ParsedOptions& p_options) {
+    return treerec::flood_kind_name(p_options.pipeline.skeleton.flood);
+}
+
+void write_flood(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.skeleton.flood = treerec::parse_flood_kind(to_std(p_value));
+}
+
+Variant read_radii(const ParsedOptions& p_options) {
+    return treerec::radius_rule_name(p_options.pipeline.radii);
+}
+
+void write_radii(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.radii = treerec::parse_radius_rule(to_std(p_value));
+}
+
 Variant read_scale(const ParsedOptions& p_options) {
     return p_options.pipeline.orient.metres_per_unit.value_or(0.0);
 }
@@ -237,10 +253,14 @@ const Option kOptions[] = {
     {"skeleton", read_skeleton, write_skeleton, PROPERTY_HINT_ENUM, "delaunay,flood",
      "How the branches are found: delaunay follows the shortest paths through the points, flood goes "
      "through voxels."},
+    {"flood", read_flood, write_flood, PROPERTY_HINT_ENUM, "ours,paper",
+     "How the flood is done: ours, or as papers/002 prints it, to compare."},
     {"voxel", OPTION_MEMBER(skeleton.voxel, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Edge of the flood's voxels; 0 chooses by the cloud."},
     {"flood_steps", OPTION_MEMBER(skeleton.keep_steps, bool), PROPERTY_HINT_NONE, "",
      "Keeps every step of the flood, for get_flood_step()."},
+    {"radii", read_radii, write_radii, PROPERTY_HINT_ENUM, "measured,linear,davinci",
+     "Where radii come from: the points, or a rule for what branches have of their parent's."},
     {"complete", OPTION_MEMBER(complete, bool), PROPERTY_HINT_NONE, "",
      "Looks again for branches where points are left over that the tree does not explain."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",

@@ -110,6 +110,10 @@ ReconstructOptions options_from(const Arguments& arguments) {
     options.skeleton.voxel = arguments.number("--voxel", 0.0, 1e-9, 1e3);
     if (arguments.has("--voxel") && options.skeleton.method != SkeletonMethod::kFlood)
         throw UsageError("--voxel is the size of the flood's voxels; add --skeleton flood.");
+    options.skeleton.flood = as_usage([&] { return parse_flood_kind(arguments.text("--flood", "ours")); });
+    if (arguments.has("--flood") && options.skeleton.method != SkeletonMethod::kFlood)
+        throw UsageError("--flood says how the flood is done; add --skeleton flood.");
+    options.radii = as_usage([&] { return parse_radius_rule(arguments.text("--radii", "measured")); });
     options.skeleton.keep_raw = false;
     options.skeleton.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
     const bool clean = !arguments.has("--no-clean");
@@ -206,7 +210,9 @@ const Command& reconstruct_command() {
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
          {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
+         {"--flood", "KIND", "ours, or paper: as papers/002 prints it, to compare (default ours)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
+         {"--radii", "RULE", "measured, or by a rule: linear or davinci (default measured)"},
          {"--complete", "", "look again for branches where points are left over"},
          {"--prune", "RULE",
           "cut twigs longer than the mean to it: paper (all, algorithm 3), leader (not the trunk's tip)"},

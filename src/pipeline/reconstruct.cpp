@@ -293,6 +293,7 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
         result.tree = result.tree.compacted();
         clock.stop("Pruning", result.tree.size());
     }
+    apply_radius_rule(result.tree, options.radii);
     return result;
 }
 
@@ -307,7 +308,8 @@ void score_reconstruction(Reconstruction& result, const ReconstructOptions& opti
     if (result.measured.nodes == 0) result.measured = measure(result.tree);
     result.fit = score_scan(result.tree, judged, 0.0, progress, options.score_points);
     const bool unexplained = result.fit.explained_2cm < kLeastExplained;
-    const bool guessed = result.measured.measured_volume_share < kLeastMeasured;
+    const bool guessed =
+        options.radii == RadiusRule::kMeasured && result.measured.measured_volume_share < kLeastMeasured;
     const bool noisy = result.noise > 0.0;
     if (unexplained && !noisy)
         result.warnings.push_back("Only " + std::to_string(std::lround(100.0 * result.fit.explained_2cm)) +

@@ -15,6 +15,7 @@
 #include "scan/clean_cloud.h"
 #include "scan/point_cloud.h"
 #include "scan/read_cloud.h"
+#include "skeleton/radius_rules.h"
 #include "skeleton/skeleton.h"
 #include "stage_clock.h"
 #include "tree/measure.h"
@@ -33,7 +34,8 @@ struct ReconstructOptions {
     std::optional<PruneOptions> prune;
     bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;
-    size_t score_points = 200000;  // about how many points the fit is measured on
+    RadiusRule radii = RadiusRule::kMeasured;  // of the whole tree, whichever way it was found
+    size_t score_points = 200000;              // about how many points the fit is measured on
 };
 
 struct Reconstruction {

@@ -54,8 +54,11 @@ Json options_json(const ReportDetails& details) {
     json["known_length_m"] =
         options.orient.known_length ? Json(options.orient.known_length->metres) : Json(nullptr);
     json["skeleton"] = skeleton_method_name(options.skeleton.method);
-    if (options.skeleton.method == SkeletonMethod::kFlood)
+    json["radii"] = radius_rule_name(options.radii);
+    if (options.skeleton.method == SkeletonMethod::kFlood) {
+        json["flood"] = flood_kind_name(options.skeleton.flood);
         json["voxel_m"] = options.skeleton.voxel > 0.0 ? Json(options.skeleton.voxel) : Json("auto");
+    }
     json["spacing_m"] = options.skeleton.spacing > 0.0 ? Json(options.skeleton.spacing) : Json("auto");
     json["columns"] = options.read.columns;
     json["classes"] = options.read.classes ? Json(*options.read.classes) : Json("auto");

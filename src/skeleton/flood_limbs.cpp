@@ -131,25 +131,11 @@ FloodLimbs limbs_of(const FloodResult& flooded, const FloodGrid& grid, size_t po
     return made;
 }
 
-void drop_short(FloodLimbs& made, double least) {
-    std::vector<uint32_t> bears(made.limbs.size(), 0);
-    for (const Limb& limb : made.limbs)
-        if (limb.parent >= 0) bears[limb.parent]++;
-    std::vector<int32_t> now(made.limbs.size(), 0);
-    for (size_t l = made.limbs.size(); l-- > 1;) {
-        if (bears[l] > 0) continue;
-        const std::vector<Station>& line = made.axes[l];
-        const Station& fork = made.axes[made.limbs[l].parent][made.limbs[l].attach];
-        double length = glm::distance(fork.position, line[0].position) - fork.radius;
-        for (size_t i = 0; i + 1 < line.size(); i++)
-            length += glm::distance(line[i].position, line[i + 1].position);
-        if (length >= least) continue;
-        now[l] = -1;
-        bears[made.limbs[l].parent]--;
-    }
+std::vector<int32_t> drop_limbs(FloodLimbs& made, const std::vector<uint8_t>& goes) {
+    std::vector<int32_t> now(made.limbs.size(), -1);
     size_t kept = 0;
     for (size_t l = 0; l < made.limbs.size(); l++) {
-        if (now[l] < 0) continue;
+        if (goes[l] != 0) continue;
         now[l] = static_cast<int32_t>(kept);
         if (made.limbs[l].parent >= 0) made.limbs[l].parent = now[made.limbs[l].parent];
         if (kept != l) {
@@ -160,6 +146,26 @@ void drop_short(FloodLimbs& made, double least) {
     }
     made.limbs.resize(kept);
     made.axes.resize(kept);
+    return now;
+}
+
+void drop_short(FloodLimbs& made, double least) {
+    std::vector<uint32_t> bears(made.limbs.size(), 0);
+    for (const Limb& limb : made.limbs)
+        if (limb.parent >= 0) bears[limb.parent]++;
+    std::vector<uint8_t> goes(made.limbs.size(), 0);
+    for (size_t l = made.limbs.size(); l-- > 1;) {
+        if (bears[l] > 0) continue;
+        const std::vector<Station>& line = made.axes[l];
+        const Station& fork = made.axes[made.limbs[l].parent][made.limbs[l].attach];
+        double length = glm::distance(fork.position, line[0].position) - fork.radius;
+        for (size_t i = 0; i + 1 < line.size(); i++)
+            length += glm::distance(line[i].position, line[i + 1].position);
+        if (length >= least) continue;
+        goes[l] = 1;
+        bears[made.limbs[l].parent]--;
+    }
+    drop_limbs(made, goes);
 }
 
 }  // namespace treerec

@@ -20,6 +20,10 @@ struct FloodLimbs {
 // are stations about a radius apart. point_count: of the points in the grid.
 FloodLimbs limbs_of(const FloodResult& flooded, const FloodGrid& grid, size_t point_count);
 
+// Takes away the limbs that are marked in `goes`, whose children are, too, and returns by limb which it is
+// now, -1 for those that are gone. The places know nothing of it.
+std::vector<int32_t> drop_limbs(FloodLimbs& made, const std::vector<uint8_t>& goes);
+
 // Takes away the limbs that bear nothing and do not reach `least` metres along out of their parent. The
 // places know nothing of it.
 void drop_short(FloodLimbs& made, double least);

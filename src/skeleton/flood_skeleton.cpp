@@ -1,12 +1,15 @@
 #include "skeleton/flood_skeleton.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "skeleton/assemble.h"
 #include "skeleton/bark.h"
 #include "skeleton/flood_limbs.h"
+#include "skeleton/flood_paper.h"
+#include "skeleton/flood_twigs.h"
 #include "skeleton/foot.h"
 #include "skeleton/radii.h"
 #include "skeleton/root.h"
@@ -21,9 +24,14 @@ constexpr double kBranchVoxels = 1.5;  // what reaches less far out of the bark 
 constexpr double kLeastEscape = 0.02;  // metres,
 constexpr double kNoiseEscape = 2.5;   // and times the scan's noise, likewise
 constexpr double kFineVoxel = 0.4;     // of the automatic size: the user is told of finer voxels
+constexpr double kResolved = 2.0;      // points in a voxel
 constexpr int kPasses = 2;             // the flood's nodes lie farther from the axis than slices do
 constexpr double kThinnest = 0.001;    // metres
 constexpr std::array<const char*, 2> kMethods = {"delaunay", "flood"};
+constexpr std::array<const char*, 2> kFloods = {"ours", "paper"};
+constexpr double kFewestPrinted = 8.0;  // voxels along an axis of the printed flood
+constexpr double kCoarser = 1.3;        // times fewer in the next try
+constexpr double kMostReached = 0.9;    // of the points: the user is told that the printed flood left more
 
 // The flood's own tree, before anything is smoothed or left out.
 Tree raw_tree(const std::vector<FloodNode>& nodes) {
@@ -54,6 +62,50 @@ void trust_radii(std::vector<std::vector<Station>>& axes, double voxel) {
             station.measured = station.radius > voxel;
 }
 
+// The tree that the printed flood makes of the points, which the wood found so far fills where they are its
+// skin. Nothing of it is fitted again or left out.
+Tree printed_tree(const std::vector<Vec3>& points, const DVec3& root, const SkeletonOptions& options,
+                  SkeletonResult& result, std::vector<FloodStep>& steps, Progress& progress) {
+    const std::vector<Vec3> filled =
+        result.kind == CloudKind::kSolid
+            ? points
+            : filled_solid(points, result.tree, result.spacing, result.voxel, options.seed);
+    Bounds bounds;
+    for (const Vec3& p : filled)
+        bounds.add(DVec3(p));
+    const DVec3 size = bounds.size();
+    const double extent = std::max({size.x, size.y, size.z});
+    // As small as continuity allows (5.1), where the user says nothing: a slender tree's are far narrower
+    // across.
+    PaperFlood found;
+    for (double dimension = std::ceil(extent / result.voxel); dimension >= kFewestPrinted;
+         dimension = std::floor(dimension / kCoarser)) {
+        PaperFloodOptions printed;
+        printed.dimension = static_cast<int>(dimension);
+        printed.keep_steps = options.keep_steps;
+        PaperFlood tried = flood_as_printed(filled, root, printed, progress);
+        if (found.flooded.nodes.empty() || tried.reached > found.reached) {
+            found = std::move(tried);
+            result.voxel = extent / dimension;
+        }
+        if (found.reached >= kMostReached || options.voxel > 0.0) break;
+    }
+    std::vector<FloodNode>& nodes = found.flooded.nodes;
+    if (nodes.size() < 2)
+        throw Error(
+            "The flood as printed finds no point beside the root: the voxels around it are empty. Take "
+            "larger "
+            "ones, or our own flood.");
+    nodes[0].radius = nodes[1].radius;
+    if (found.reached < kMostReached)
+        result.warnings.push_back("The flood as printed ended early: it reached " +
+                                  std::to_string(std::lround(100.0 * found.reached)) +
+                                  " % of the points. It goes over no gap, and not on where a node lies "
+                                  "beside the wood.");
+    steps = std::move(found.flooded.steps);
+    return raw_tree(nodes);
+}
+
 std::string fine_voxel_warning(double fitting) {
     std::array<char, 200> text;
     std::snprintf(
@@ -76,6 +128,16 @@ const char* skeleton_method_name(SkeletonMethod method) {
     return kMethods[static_cast<size_t>(method)];
 }
 
+FloodKind parse_flood_kind(const std::string& word) {
+    for (size_t k = 0; k < kFloods.size(); k++)
+        if (word == kFloods[k]) return static_cast<FloodKind>(k);
+    throw Error("There is no flood " + quote_word(word) + "; take ours or paper.");
+}
+
+const char* flood_kind_name(FloodKind kind) {
+    return kFloods[static_cast<size_t>(kind)];
+}
+
 void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
                     SkeletonResult& result, StageClock& clock, Progress* listener) {
     SubProgress gridding(listener, 0.1, 0.4);
@@ -86,8 +148,8 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
         result.warnings.push_back(fine_voxel_warning(fitting_voxel));
     const FloodGrid grid(points, result.voxel, gridding);
     gridding.check();
-    const RootGuess root =
-        find_root(grid.means, grid.graph, local_scale(grid.graph, result.voxel), options.foot, gridding);
+    const LocalScale scale = local_scale(grid.graph, result.voxel);
+    const RootGuess root = find_root(grid.means, grid.graph, scale, options.foot, gridding);
     clock.stop("Voxels", grid.size());
 
     SubProgress flooding(listener, 0.4, 0.8);
@@ -108,6 +170,8 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
     if (options.one_stem) {
         made.limbs.resize(1);
         made.axes.resize(1);
+        for (int32_t& limb : made.places.limb)
+            if (limb > 0) limb = -1;
     }
     double extent = 0.0;
     for (const Vec3& p : points)
@@ -117,26 +181,45 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
     const bool solid = flooded.kind == CloudKind::kSolid;
     if (solid) trust_radii(made.axes, result.voxel);
     infer_radii(made.axes, made.limbs);
+    const double noise = std::max(noise_of(made.axes), options.noise);
+    const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel, kNoiseEscape * noise});
+    double least_escape = escape;
+    // Voxels that hold several points are fine enough for the wood.
+    const bool sparse = static_cast<double>(points.size()) < kResolved * static_cast<double>(grid.size());
+    if (sparse && !options.one_stem) {
+        // Voxels are too coarse to tell a short branch from a strip of bark, but what is left over then is
+        // finer.
+        drop_flood_strips(made, escape);
+        TwigOptions twigs;
+        twigs.minimum_branch = least_branch;
+        twigs.least_escape = std::max(kLeastEscape, kNoiseEscape * noise);
+        add_flood_twigs(points, grid, scale, root, twigs, made, fitting);
+        infer_radii(made.axes, made.limbs);
+        least_escape = 0.5 * twigs.least_escape;
+    }
     if (options.fit_radii && !solid) {
-        PointPlaces& places = made.places;
-        for (int32_t& limb : places.limb)
-            if (limb >= static_cast<int32_t>(made.limbs.size())) limb = -1;
         for (int pass = 0; pass < kPasses; pass++) {
-            refine_axes(made.axes, made.limbs, places, points, fitting, options.noise);
+            refine_axes(made.axes, made.limbs, made.places, points, fitting, options.noise);
             infer_radii(made.axes, made.limbs);
         }
+    }
+    if (options.fit_radii && !solid) {
         if (!root.lying) limit_foot(made.axes.front());
         infer_radii(made.axes, made.limbs, true);
     }
-    const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel,
-                                    kNoiseEscape * std::max(noise_of(made.axes), options.noise)});
-    drop_strips(made.limbs, made.axes, escape);
+    drop_strips(made.limbs, made.axes, least_escape);
+    // Around wood that is thicker than a voxel, the flood's first lines lie too far from the axis for that.
+    drop_beside_stout(made, result.voxel, escape);
     drop_short(made, least_branch);
     draw_back_tips(made.axes, made.limbs, least_branch);
     clock.stop("Refinement", made.limbs.size());
 
     fitting.update(1.0, "Simplification");
     result.tree = assemble_tree(made.axes, made.limbs, options.simplify_distance);
+    if (options.flood == FloodKind::kPaper) {
+        result.tree = printed_tree(points, root.position, options, result, flooded.steps, fitting);
+        if (options.keep_raw) result.raw = result.tree;
+    }
     mark_trunk(result.tree);
     result.tree.set_frame(frame);
     const DVec3 base = result.tree.node(result.tree.root()).position;

@@ -17,13 +17,21 @@ namespace treerec {
 // Shortest paths through the points and slices across them, or a flood through voxels.
 enum class SkeletonMethod : uint8_t { kDelaunay, kFlood };
 
+// The flood as we do it, or as papers/002 prints it (skeleton/flood_paper.h), to be compared.
+enum class FloodKind : uint8_t { kOurs, kPaper };
+
 // "delaunay", "flood". Throws Error for any other word, naming both.
 SkeletonMethod parse_skeleton_method(const std::string& word);
 const char* skeleton_method_name(SkeletonMethod method);
 
+// "ours", "paper". Throws Error for any other word, naming both.
+FloodKind parse_flood_kind(const std::string& word);
+const char* flood_kind_name(FloodKind kind);
+
 // Lengths in metres; 0 where a length is "automatic" (from the cloud's own spacing and size).
 struct SkeletonOptions {
     SkeletonMethod method = SkeletonMethod::kDelaunay;
+    FloodKind flood = FloodKind::kOurs;
     double voxel = 0.0;              // edge of the flood's voxels; 0 automatic
     bool keep_steps = false;         // fill SkeletonResult::steps
     double spacing = 0.0;            // thinning: at most one point per cell of this size; 0 automatic

@@ -52,10 +52,37 @@ TEST_F(CliFlood, CompletesWhatIsLeftOver) {
                 0.01 * after["length_m"].get<double>());
 }
 
+TEST_F(CliFlood, FloodsAsPrintedAndTakesRadiiByRule) {
+    ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
+    const std::string words = "reconstruct s/scan.ply --quiet ";
+    ASSERT_EQ(run(words + "--skeleton flood --flood paper -o out/p.txt --report out/p.json").code, 0);
+    ASSERT_EQ(run(words + "--skeleton flood -o out/o.txt --report out/o.json").code, 0);
+    const auto paper = nlohmann::json::parse(get("out/p.json"));
+    const auto ours = nlohmann::json::parse(get("out/o.json"));
+    EXPECT_EQ(paper["options"]["flood"], "paper");
+    EXPECT_EQ(ours["options"]["flood"], "ours");
+    EXPECT_NE(get("out/p.txt"), get("out/o.txt"));
+    ASSERT_EQ(run(words + "--skeleton flood --flood paper --threads 3 -o out/q.txt").code, 0);
+    EXPECT_EQ(get("out/p.txt"), get("out/q.txt"));
+    ASSERT_EQ(run(words + "--radii measured -o out/a.txt --report out/a.json").code, 0);
+    ASSERT_EQ(run(words + "--radii davinci -o out/b.txt --report out/b.json").code, 0);
+    ASSERT_EQ(run(words + "--radii linear -o out/c.txt --report out/c.json").code, 0);
+    const auto measured = nlohmann::json::parse(get("out/a.json"));
+    for (const char* rule : {"out/b.json", "out/c.json"}) {
+        const auto by_rule = nlohmann::json::parse(get(rule));
+        EXPECT_EQ(by_rule["nodes"], measured["nodes"]);
+        EXPECT_NE(by_rule["volume_m3"], measured["volume_m3"]);
+        EXPECT_EQ(by_rule["measured_share"], 0.0);
+    }
+}
+
 TEST_F(CliFlood, RefusesWhatMakesNoSense) {
     ASSERT_EQ(run("synth -o s --seed 3 --height 5 --points 8000").code, 0);
     EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton voxels").code, 2);
     EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --voxel 0.03").code, 2);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --flood paper").code, 2);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --flood printed").code, 2);
+    EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --radii leonardo").code, 2);
     EXPECT_EQ(run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --voxel 0").code, 2);
     const auto large = run("reconstruct s/scan.ply -o out/a.txt --skeleton flood --voxel 40");
     EXPECT_EQ(large.code, 1);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fidelity/score.h"
 #include "geometry/segment.h"
 #include "skeleton/flood.h"
 #include "skeleton/flood_fit.h"
@@ -248,6 +249,34 @@ TEST(FloodTest, FitsLinesThroughTheNode) {
         EXPECT_GT(glm::dot(fit.direction, along), 1.0 - 1e-8);
         EXPECT_NEAR(fit.length, 1.0, 0.06);
         EXPECT_LT(fit.radius, 1e-4);
+    }
+}
+
+// Twigs that run side by side within a voxel are one neighbourhood to the flood, and its line runs between
+// them.
+TEST(FloodTest, ExplainsTwigsThatRunSideBySideWithinAVoxel) {
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        Random random(seed, 31);
+        PointCloud cloud;
+        PointCloud twigs;
+        test::add_cone(cloud, random, {0, 0, 0}, {0, 2.0, 0}, 0.05, 0.04, 0.035, 0.0);
+        for (int bundle = 0; bundle < 8; bundle++) {
+            const DVec3 foot(0.0, random.uniform(0.8, 1.9), 0.0);
+            DVec3 along = any_direction(random);
+            along = glm::normalize(DVec3(along.x, 0.5 * along.y, along.z) + DVec3(0.05, 0.0, 0.0));
+            const DVec3 side = any_perpendicular(along);
+            const DVec3 other = glm::cross(along, side);
+            for (int twig = 0; twig < 6; twig++) {
+                const DVec3 offset = 0.06 * ((twig % 3 - 1.0) * side + (twig / 3 - 0.5) * other);
+                for (double t = 0.05; t < 0.9; t += 0.04)
+                    twigs.positions.emplace_back(foot + t * along + std::min(1.0, t / 0.4) * offset +
+                                                 0.002 * any_direction(random));
+            }
+        }
+        cloud.positions.insert(cloud.positions.end(), twigs.positions.begin(), twigs.positions.end());
+        const SkeletonResult result = skeletonize(cloud, flooded(0.04));
+        ASSERT_EQ(result.tree.check(), std::nullopt);
+        EXPECT_GT(score_scan(result.tree, twigs).explained_2cm, 0.7) << seed;
     }
 }
 

@@ -9,7 +9,16 @@ enum PointColors { SCAN, HEIGHT, FIDELITY }
 const _SECTION: String = "tree_reconstruction"
 const _KEY: String = "view"
 const _KEPT: PackedStringArray = [
-	"editing", "points", "point_colors", "point_size", "skeleton", "mesh", "leaves", "axes", "grid"
+	"editing",
+	"points",
+	"point_colors",
+	"point_size",
+	"voxels",
+	"skeleton",
+	"mesh",
+	"leaves",
+	"axes",
+	"grid"
 ]
 
 ## Whether the viewport's clicks go to the tree's skeleton.
@@ -31,6 +40,11 @@ var point_colors: PointColors = PointColors.SCAN:
 var point_size: float = 2.0:
 	set(value):
 		point_size = value
+		changed.emit()
+## The voxels that hold the scan's points.
+var voxels: bool = false:
+	set(value):
+		voxels = value
 		changed.emit()
 ## The lines and joints that are edited.
 var skeleton: bool = true:

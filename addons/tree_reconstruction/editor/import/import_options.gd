@@ -78,6 +78,7 @@ const _NEEDS: Dictionary[String, Array] = {
 	"scan/known_length": ["scan/unit", [Unit.TWO_PLACES]],
 	"cleaning/tree_number": ["cleaning/separate_trees", [true]],
 	"skeleton/voxel": ["skeleton/method", ["flood"]],
+	"advanced/flood": ["skeleton/method", ["flood"]],
 	"advanced/tree_position": ["cleaning/separate_trees", [true]],
 	"advanced/white_above": ["cleaning/remove_extreme_colors", [true]],
 	"advanced/black_below": ["cleaning/remove_extreme_colors", [true]],

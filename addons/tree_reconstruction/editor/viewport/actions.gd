@@ -12,6 +12,7 @@ const Screenshot: GDScript = preload("screenshot.gd")
 ## What may be shown: the property of the view state, by the action that turns it on and off.
 const SHOWN: Dictionary[StringName, StringName] = {
 	&"show_points": &"points",
+	&"show_voxels": &"voxels",
 	&"show_skeleton": &"skeleton",
 	&"show_mesh": &"mesh",
 	&"show_leaves": &"leaves",

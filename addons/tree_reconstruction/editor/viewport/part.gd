@@ -7,6 +7,7 @@ const Session: GDScript = preload("../session.gd")
 const Gizmo: GDScript = preload("skeleton_gizmo.gd")
 const SkeletonView: GDScript = preload("skeleton_view.gd")
 const PointView: GDScript = preload("point_view.gd")
+const VoxelView: GDScript = preload("voxel_view.gd")
 const AxesGrid: GDScript = preload("axes_grid.gd")
 const Visibility: GDScript = preload("visibility.gd")
 const WindRest: GDScript = preload("wind_rest.gd")
@@ -27,6 +28,7 @@ var _session: Session
 var _gizmo: Gizmo
 var _skeleton: SkeletonView
 var _points: PointView
+var _voxels: VoxelView
 var _axes: AxesGrid
 var _visibility: Visibility
 var _wind_rest: WindRest
@@ -126,6 +128,8 @@ func _make_views() -> void:
 	_session.picker = _picker
 	_skeleton = SkeletonView.new(_session)
 	_points = PointView.new(_session)
+	_voxels = VoxelView.new(_session)
+	_voxels.built.connect(_redraw)
 	_axes = AxesGrid.new(_session)
 	_visibility = Visibility.new(_session)
 	_wind_rest = WindRest.new()
@@ -134,6 +138,7 @@ func _make_views() -> void:
 	_gizmo.set_session(_session)
 	_gizmo.layers.append_array(_axes.layers)
 	_gizmo.layers.append(_points.layer)
+	_gizmo.layers.append(_voxels.layer)
 	_gizmo.layers.append_array(_skeleton.layers)
 	_plugin.add_node_3d_gizmo_plugin(_gizmo)
 	_gizmo.join(EditorInterface.get_edited_scene_root())
@@ -236,6 +241,7 @@ func _on_tree_changed() -> void:
 	_skeleton.update_tree()
 	_axes.update()
 	_points.update()
+	_voxels.update()
 	_on_selection_changed()
 
 
@@ -282,6 +288,7 @@ func _take_in_hand() -> void:
 func _on_scan_changed() -> void:
 	_points.rebuild()
 	_points.update()
+	_voxels.update()
 	_strip.update_view()
 	_redraw()
 

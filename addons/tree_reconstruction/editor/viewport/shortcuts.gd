@@ -11,6 +11,7 @@ const NONE: StringName = &""
 const _KEYS: Dictionary[StringName, Array] = {
 	&"edit_skeleton": [KEY_TAB],
 	&"show_points": [KEY_P],
+	&"show_voxels": [KEY_V],
 	&"show_skeleton": [KEY_S],
 	&"show_mesh": [KEY_T],
 	&"show_leaves": [KEY_L],

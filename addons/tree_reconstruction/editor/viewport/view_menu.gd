@@ -70,6 +70,12 @@ func _fill() -> void:
 	)
 	# With an id that is no action's.
 	get_popup().add_submenu_node_item(tr("Point Colors"), _colors, 1000)
+	_add(
+		&"show_voxels",
+		tr("Voxels of the Scan"),
+		true,
+		tr("The boxes that hold the scan's points, as the voxel flood goes through them.")
+	)
 	_add(&"show_skeleton", tr("Skeleton"), true, tr("The lines and joints that are edited."))
 	_add(&"show_mesh", tr("Bark"), true, tr("The mesh of trunk and branches."))
 	_add(&"show_leaves", tr("Leaves"), true, tr("The leaves of the tree, if it bears any."))
