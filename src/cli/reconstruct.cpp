@@ -224,7 +224,7 @@ const Command& reconstruct_command() {
          {"--no-clean-colors", "", "near white and near black points stay"},
          {"--no-clean-outliers", "", "lone points stay"},
          {"--no-clean-fragments", "", "small far clusters stay"},
-         {"--no-clean-ground", "", "the ground stays"},
+         {"--no-clean-ground", "", "the ground and walls stay"},
          {"--tree", "N", "which of several trees: 1 is the largest (default 1)"},
          {"--tree-at", "X,Y,Z", "the tree that stands nearest to this place in the scan"},
          {"--one-tree", "", "there is only one tree; nothing is taken for another one"},

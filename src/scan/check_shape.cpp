@@ -129,27 +129,6 @@ bool is_surface(const std::vector<Vec3>& points, const Flat& flat, double extent
     return static_cast<double>(count) >= 0.45 * grid * grid;
 }
 
-double share_on_surfaces(const std::vector<Vec3>& points, double extent, const Progress* progress) {
-    Random random(1);
-    std::vector<uint32_t> left(points.size());
-    for (uint32_t i = 0; i < left.size(); i++)
-        left[i] = i;
-    size_t on_surfaces = 0;
-    for (int round = 0; round < kSurfaces && left.size() > 50; round++) {
-        if (progress) progress->check();
-        const Flat flat = best_flat(points, left, kSurface * extent, random);
-        if (flat.points.size() * 20 < points.size()) break;
-        if (is_surface(points, flat, extent)) on_surfaces += flat.points.size();
-        // The largest surfaces come first.
-        if (round == 1 && on_surfaces == 0) break;
-        std::vector<uint32_t> rest;
-        std::set_difference(left.begin(), left.end(), flat.points.begin(), flat.points.end(),
-                            std::back_inserter(rest));
-        left.swap(rest);
-    }
-    return static_cast<double>(on_surfaces) / static_cast<double>(points.size());
-}
-
 // The share of the box that holds points, in cells for two points each: 86 % where they are spread at random.
 double evenness(std::span<const Vec3> points, const std::array<Range, 3>& ranges, const Progress* progress) {
     const double volume = ranges[0].size() * ranges[1].size() * ranges[2].size();
@@ -176,6 +155,30 @@ bool is_ball(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges
 
 }  // namespace
 
+double share_on_surfaces(const std::vector<Vec3>& points, const Progress* progress) {
+    if (points.empty()) return 0.0;
+    const std::array<Range, 3> ranges = robust_ranges(points, progress);
+    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
+    Random random(1);
+    std::vector<uint32_t> left(points.size());
+    for (uint32_t i = 0; i < left.size(); i++)
+        left[i] = i;
+    size_t on_surfaces = 0;
+    for (int round = 0; round < kSurfaces && left.size() > 50; round++) {
+        if (progress) progress->check();
+        const Flat flat = best_flat(points, left, kSurface * extent, random);
+        if (flat.points.size() * 20 < points.size()) break;
+        if (is_surface(points, flat, extent)) on_surfaces += flat.points.size();
+        // The largest surfaces come first.
+        if (round == 1 && on_surfaces == 0) break;
+        std::vector<uint32_t> rest;
+        std::set_difference(left.begin(), left.end(), flat.points.begin(), flat.points.end(),
+                            std::back_inserter(rest));
+        left.swap(rest);
+    }
+    return static_cast<double>(on_surfaces) / static_cast<double>(points.size());
+}
+
 std::vector<std::string> check_shape(const PointCloud& cloud, const Progress* progress) {
     std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
     // In an order of their own.
@@ -199,8 +202,7 @@ std::vector<std::string> check_shape(const PointCloud& cloud, const Progress* pr
     std::vector<std::string> warnings;
     if (points.size() < 200) return warnings;
     const std::array<Range, 3> ranges = robust_ranges(points, progress);
-    const double extent = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});
-    const double flat = share_on_surfaces(points, extent, progress);
+    const double flat = share_on_surfaces(points, progress);
     if (flat > kMostOnSurfaces)
         warnings.push_back(
             std::to_string(std::lround(100.0 * flat)) +

@@ -15,4 +15,7 @@ namespace treerec {
 // the surface of a ball. cloud: oriented and clean.
 std::vector<std::string> check_shape(const PointCloud& cloud, const Progress* progress = nullptr);
 
+// The share of the points on surfaces that are flat, wide and filled. points: some thousands.
+double share_on_surfaces(const std::vector<Vec3>& points, const Progress* progress = nullptr);
+
 }  // namespace treerec

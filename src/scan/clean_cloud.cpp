@@ -1,7 +1,9 @@
 #include "scan/clean_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "geometry/parallel.h"
 #include "scan/clean_steps.h"
@@ -64,6 +66,22 @@ class Cleaning {
         }
         report_.steps.push_back({name, removed});
         return all > 0 ? static_cast<double>(removed) / static_cast<double>(all) : 0.0;
+    }
+
+    // Leaves out what stands flat. Says so in the report.
+    void take_walls(const Progress* progress) {
+        std::vector<DVec2> walls;
+        const std::vector<uint8_t> goes = find_walls(points(), walls, progress);
+        if (walls.empty()) return;
+        take("Walls", goes);
+        std::array<char, 200> text;
+        std::snprintf(
+            text.data(), text.size(),
+            "%zu points lie on %s, %.1f m long and %.1f m high, and were left out. If they are part "
+            "of the tree, leave out the cleaning of the ground.",
+            report_.steps.back().removed, walls.size() == 1 ? "a wall" : "walls, the widest", walls[0].x,
+            walls[0].y);
+        report_.warnings.emplace_back(text.data());
     }
 
     // Leaves one tree of several. Says so in the report.
@@ -134,7 +152,10 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     step(0.7);
     // Before the fragments, which the ground would hold together.
     Ground ground;
-    if (options.remove_ground) cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
+    if (options.remove_ground) {
+        cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
+        cleaning.take_walls(progress);
+    }
     step(0.75);
     if (options.pick.enabled) cleaning.take_others(ground, spacing, options.pick, progress);
     step(0.85);

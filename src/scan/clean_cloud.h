@@ -61,14 +61,15 @@ struct CleanOptions {
     int neighbours = 10;              // k of the k-nearest-neighbour mean distance
     double outlier_deviations = 6.0;  // removed beyond median + this many robust standard deviations
     bool remove_fragments = true;     // small clusters far from the rest
-    bool remove_ground = true;
-    PickOptions pick;  // which tree, where the cloud holds several
+    bool remove_ground = true;        // and walls
+    PickOptions pick;                 // which tree, where the cloud holds several
 
     bool operator==(const CleanOptions&) const = default;
 };
 
 struct CleanStep {
-    std::string name;    // "Extreme colours", "Outliers", "Ground", "Other trees", "Fragments"
+    std::string name;    // "Extreme colours", "Outliers", "Ground", "Walls" (where there are any), "Other
+                         // trees", "Fragments"
     size_t removed = 0;  // points
 };
 

@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "geometry/circle_fit.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "scan/round_stems.h"
@@ -36,10 +38,14 @@ constexpr double kThinnest = 0.25;      // of a thick stem's radius
 constexpr double kThinnestInAir = 0.4;  // where no ground tells what stands on it
 constexpr double kCoreContrast = 4.0;   // how much denser it is than the rest
 constexpr size_t kFewestPoints = 4;     // of a slice
+constexpr double kRoundSpread = 0.08;   // of its radius: how far half of the points lie off round bark,
+constexpr double kRoundCoverage = 0.8;  // seen from all sides,
+constexpr double kRoundInside = 0.05;   // and the share of the points within
 
 // The searches for round bark in a plot: between needles, and by a mobile scanner.
 constexpr std::array<RoundStemSearch, 2> kRoundSearches{{{}, kRoughBark}};
 constexpr size_t kFewestRound = 16;
+constexpr double kAlike = 0.1;      // of the thicker stem's radius: two culms, or a bundle and one
 constexpr double kRoundUpTo = 0.5;  // of the height
 constexpr size_t kMostRound = 200;
 constexpr double kStemRoom = 15.0;          // square metres of a plot for each of them
@@ -51,8 +57,19 @@ struct Cluster {
     double radius = 0.0;  // root mean square
     size_t slice = 0;
     bool in_branches = false;  // the core of a wider cluster
+    bool round = false;        // wider than most stems, but bark, and nothing within
     std::vector<uint32_t> points;
 };
+
+// A stem may be wider than any bush at its foot: a stump, a banyan, a baobab.
+bool is_round(const Cluster& wide, const std::vector<Vec3>& points, double height) {
+    std::vector<DVec2> section;
+    for (const uint32_t i : wide.points)
+        section.emplace_back(points[i].x, points[i].z);
+    const std::optional<CircleFit> circle = fit_circle(section, height, Random(1));
+    return circle && circle->spread <= kRoundSpread * circle->radius && circle->coverage >= kRoundCoverage &&
+           circle->inside <= kRoundInside;
+}
 
 // The densest spot of a wide cluster, as a cluster of its own: a stem among its own low branches.
 bool find_core(const Cluster& wide, const std::vector<Vec3>& points, double height, Cluster& core) {
@@ -140,7 +157,9 @@ std::vector<std::vector<Cluster>> cut_slices(const std::vector<Vec3>& points, co
             cluster.radius = std::sqrt(cluster.radius / static_cast<double>(cluster.points.size()));
             if (cluster.points.size() < kFewestPoints) continue;
             Cluster core;
-            if (cluster.radius > kWidest * height && find_core(cluster, points, height, core))
+            const bool wide = cluster.radius > kWidest * height;
+            cluster.round = wide && is_round(cluster, points, height);
+            if (wide && !cluster.round && find_core(cluster, points, height, core))
                 slices[s].push_back(std::move(core));
             slices[s].push_back(std::move(cluster));
         }
@@ -157,7 +176,7 @@ std::vector<Track> follow_up(const std::vector<std::vector<Cluster>>& slices, do
     std::vector<Track> tracks;
     for (size_t s = 0; s < slices.size(); s++) {
         for (const Cluster& cluster : slices[s]) {
-            if (cluster.radius > kWidest * height) continue;
+            if (cluster.radius > kWidest * height && !cluster.round) continue;
             // The best of the tracks that come from below.
             Track* best = nullptr;
             double best_distance = 0.0;
@@ -258,6 +277,11 @@ bool of_one_tree(const Stem& a, const Stem& b, double closest, double height) {
     return glm::length(apart) < least || meet(a, b, 0.01 * height, kHighestFork * height);
 }
 
+void take_in(Stem& stem, const Stem& other) {
+    stem.seed.insert(stem.seed.end(), other.seed.begin(), other.seed.end());
+    stem.feet.insert(stem.feet.end(), other.feet.begin(), other.feet.end());
+}
+
 struct Barked {
     Stem stem;
     bool stands = false;  // seen from the ground up
@@ -343,11 +367,13 @@ std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<
             if (of_one_tree(stem, c.stem, c.from_thicket ? kClosestInThicket : kClosest, height))
                 same = &stem;
         }
+        c.stem.feet.emplace_back(c.stem.foot.x, c.stem.foot.z);
         if (same)
-            same->seed.insert(same->seed.end(), c.stem.seed.begin(), c.stem.seed.end());
+            take_in(*same, c.stem);
         else
             stems.push_back(std::move(c.stem));
     }
+    join_clumps(stems, height);
     return stems;
 }
 
@@ -368,10 +394,11 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
                    std::max(kApartRadii * (other.radius + barked.stem.radius),
                             std::min(kClosestMetres, 0.15 * height));
         });
+        barked.stem.feet.emplace_back(barked.stem.foot.x, barked.stem.foot.z);
         if (same == all.end())
             all.push_back(std::move(barked.stem));
         else
-            same->seed.insert(same->seed.end(), barked.stem.seed.begin(), barked.stem.seed.end());
+            take_in(*same, barked.stem);
     }
     const std::vector<Stem> from_ground = all;
     const auto known = [&](const std::vector<Stem>& others, const Stem& stem) {
@@ -382,9 +409,34 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
         if (!all.empty()) stem.radius = std::min(stem.radius, all.front().radius);
         if (!known(from_ground, stem)) all.push_back(std::move(stem));
     }
-    for (Barked& barked : found)
-        if (!barked.stands && !known(all, barked.stem)) all.push_back(std::move(barked.stem));
+    for (Barked& barked : found) {
+        if (barked.stands || known(all, barked.stem)) continue;
+        barked.stem.feet.emplace_back(barked.stem.foot.x, barked.stem.foot.z);
+        all.push_back(std::move(barked.stem));
+    }
     stems = std::move(all);
+    join_clumps(stems, height);
+}
+
+void join_clumps(std::vector<Stem>& stems, double height) {
+    const double least = std::min(kClosestMetres, 0.15 * height);
+    const auto chained = [&](const Stem& a, const Stem& b) {
+        if (std::min(a.radius, b.radius) < kAlike * std::max(a.radius, b.radius)) return false;
+        return std::any_of(a.feet.begin(), a.feet.end(), [&](const DVec2& foot) {
+            return std::any_of(b.feet.begin(), b.feet.end(),
+                               [&](const DVec2& other) { return glm::distance(foot, other) < least; });
+        });
+    };
+    for (size_t a = 0; a < stems.size(); a++)
+        for (size_t b = a + 1; b < stems.size();) {
+            if (!chained(stems[a], stems[b])) {
+                b++;
+                continue;
+            }
+            take_in(stems[a], stems[b]);
+            stems.erase(stems.begin() + static_cast<ptrdiff_t>(b));
+            b = a + 1;  // its feet may lead on to those that were too far away
+        }
 }
 
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "geometry/bounds.h"
 #include "geometry/circle_fit.h"
@@ -20,15 +21,33 @@ constexpr double kMostWider = 1.67;     // than the stem usually is, or thinner
 constexpr double kMostAside = 0.5;      // of the radius, from slice to slice
 constexpr double kNearlyAll = 0.8;      // of the points
 
-}  // namespace
+constexpr double kStumpHeight = 2.5;  // diameters: no higher
+constexpr size_t kFewestRings = kSlices / 2;
+constexpr double kStumpShare = 0.95;   // of the points: on its bark and its cut faces
+constexpr double kRingCoverage = 0.9;  // of a section that is closed, but not round
+constexpr double kRingRough = 0.2;
+constexpr double kRingInside = 0.04;
+constexpr double kFaceWider = 1.15;  // than the bark next to it
 
-bool is_lone_trunk(const std::vector<Vec3>& points, const Progress& progress) {
-    if (points.size() < kSlices * kLeastPoints) return false;
+struct Trunk {
+    size_t on_bark = 0;
+    size_t on_faces = 0;  // points within the bark, where the trunk ends
+    double radius = 0.0;  // the median; 0 where no bark is seen
+    double low = 0.0;
+    double height = 0.0;
+    std::vector<TrunkRing> rings;  // from below
+};
+
+// flutes: whether sections that are closed but not round count as bark.
+Trunk trunk_of(const std::vector<Vec3>& points, bool flutes, const Progress* progress) {
+    Trunk trunk;
+    if (points.size() < kSlices * kLeastPoints) return trunk;
     Bounds bounds;
     for (const Vec3& p : points)
         bounds.add(DVec3(p));
-    const double height = bounds.size().y;
-    if (!(height > 0.0)) return false;
+    trunk.low = bounds.min.y;
+    const double height = trunk.height = bounds.size().y;
+    if (!(height > 0.0)) return trunk;
     const double widest = std::max(bounds.size().x, bounds.size().z);
     std::vector<std::vector<DVec2>> slices(kSlices);
     for (const Vec3& p : points) {
@@ -38,25 +57,71 @@ bool is_lone_trunk(const std::vector<Vec3>& points, const Progress& progress) {
     std::array<std::optional<CircleFit>, kSlices> rings;
     std::vector<double> radii;
     for (size_t s = 0; s < kSlices; s++) {
-        progress.check();
+        if (progress) progress->check();
         if (slices[s].size() < kLeastPoints) continue;
-        const std::optional<CircleFit> ring = fit_circle(slices[s], widest, Random(s));
-        if (!ring || ring->spread > kMostRough * ring->radius || ring->coverage < kLeastCoverage) continue;
+        std::optional<CircleFit> ring = fit_circle(slices[s], widest, Random(s));
+        if (ring && (ring->spread > kMostRough * ring->radius || ring->coverage < kLeastCoverage))
+            ring.reset();
+        if (!ring && flutes) {
+            ring = fit_ring(slices[s]);
+            if (ring && (ring->spread > kRingRough * ring->radius || ring->coverage < kRingCoverage ||
+                         ring->inside > kRingInside))
+                ring.reset();
+        }
+        if (!ring) continue;
         rings[s] = ring;
         radii.push_back(ring->radius);
     }
-    if (radii.empty()) return false;
-    const double radius = quantile(radii, 0.5);
-    size_t on_bark = 0;
+    if (radii.empty()) return trunk;
+    const double radius = trunk.radius = quantile(radii, 0.5);
     const CircleFit* below = nullptr;
+    std::array<bool, kSlices> bark{};
     for (size_t s = 0; s < kSlices; s++) {
         if (!rings[s] || rings[s]->radius > kMostWider * radius || rings[s]->radius * kMostWider < radius)
             continue;
         if (below && glm::distance(below->centre, rings[s]->centre) > kMostAside * radius) continue;
         below = &*rings[s];
-        on_bark += slices[s].size();
+        bark[s] = true;
+        trunk.on_bark += slices[s].size();
+        const double y =
+            bounds.min.y + (static_cast<double>(s) + 0.5) / static_cast<double>(kSlices) * height;
+        trunk.rings.push_back({{below->centre.x, y, below->centre.y}, below->radius, below->spread});
     }
-    return static_cast<double>(on_bark) > kNearlyAll * static_cast<double>(points.size());
+    for (const auto& [end, beside] : {std::pair<size_t, size_t>{0, 1}, {kSlices - 1, kSlices - 2}})
+        if (!bark[end] && bark[beside])
+            for (const DVec2& p : slices[end])
+                trunk.on_faces +=
+                    glm::distance(p, rings[beside]->centre) < kFaceWider * rings[beside]->radius;
+    return trunk;
+}
+
+}  // namespace
+
+bool is_lone_trunk(const std::vector<Vec3>& points, const Progress& progress) {
+    const Trunk trunk = trunk_of(points, false, &progress);
+    return static_cast<double>(trunk.on_bark) > kNearlyAll * static_cast<double>(points.size()) ||
+           !stump_rings(points, &progress).empty();
+}
+
+std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progress* progress) {
+    Trunk trunk = trunk_of(points, true, progress);
+    if (trunk.rings.size() < kFewestRings || trunk.height >= kStumpHeight * 2.0 * trunk.radius ||
+        static_cast<double>(trunk.on_bark + trunk.on_faces) <=
+            kStumpShare * static_cast<double>(points.size()))
+        return {};
+    // Half a slice on, to both ends, as the last two sections lead.
+    const auto end = [](const TrunkRing& last, const TrunkRing& before, double y) {
+        const double t = (y - last.centre.y) / (last.centre.y - before.centre.y);
+        return TrunkRing{last.centre + t * (last.centre - before.centre),
+                         std::max(0.5 * last.radius, last.radius + t * (last.radius - before.radius)),
+                         last.scatter};
+    };
+    std::vector<TrunkRing>& rings = trunk.rings;
+    const TrunkRing foot = end(rings[0], rings[1], trunk.low);
+    const TrunkRing top = end(rings[rings.size() - 1], rings[rings.size() - 2], trunk.low + trunk.height);
+    rings.insert(rings.begin(), foot);
+    rings.push_back(top);
+    return rings;
 }
 
 }  // namespace treerec

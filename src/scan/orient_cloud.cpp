@@ -4,7 +4,9 @@
 
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "scan/check_slab.h"
 #include "scan/clean_cloud.h"
+#include "scan/clean_steps.h"
 #include "scan/robust.h"
 #include "scan/scale.h"
 
@@ -152,6 +154,9 @@ struct UpGuess {
     UpAxis up = UpAxis::kZ;
     bool sure = true;
     UpAxis rival = UpAxis::kZ;  // another axis along which the tree would stand better; else the same
+    UpAxis usual = UpAxis::kZ;  // what is taken where no rival is
+
+    bool doubted() const { return !sure || rival != up || up != usual; }
 };
 
 // Whether both ends look like stems, and no crown tells which of them is one.
@@ -164,19 +169,16 @@ bool is_pole(const AxisView& view) {
 // the sky along X or -Z. So Z is taken unless Y has a better stem, and more than that is asked of a cloud
 // without colours, which photos would have given it. A branch may lie along any axis: X and -Z are only taken
 // for clouds from photos, whose axes may point anywhere, and told to the user otherwise.
-UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, const Progress* progress) {
+UpGuess guess_up(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges, bool has_colors) {
     UpGuess guess;
-    if (is_on_map(cloud.frame.origin)) return guess;
-
-    const std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
     std::array<AxisView, 3> views;
     parallel_for(views.size(), 1,
                  [&](size_t axis, size_t) { views[axis] = view_axis(points, ranges, axis); });
     const auto& [x, y, z] = views;
     const double y_score = std::max(y.low_end.score, y.high_end.score) + y.elongation_score;
     const double z_score = z.low_end.score + z.elongation_score;
-    const double margin = cloud.has_colors() ? 0.2 : 0.4;
-    const double least_slenderness = cloud.has_colors() ? 1.5 : kStemSlenderness;
+    const double margin = has_colors ? 0.2 : 0.4;
+    const double least_slenderness = has_colors ? 1.5 : kStemSlenderness;
     guess.sure = std::max(y_score, z_score) > 1.0 && std::abs(y_score - z_score) > margin;
     if (y_score > z_score + margin) {
         if (std::max(y.low_end.slenderness, y.high_end.slenderness) > least_slenderness)
@@ -185,7 +187,7 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
         else
             guess.sure = false;
     }
-    guess.rival = guess.up;
+    guess.rival = guess.usual = guess.up;
     const double score = guess.up == UpAxis::kZ ? z_score : y_score;
     double best = score + kRivalMargin;
     const auto consider = [&](UpAxis up, const EndView& end, double elongation) {
@@ -204,8 +206,33 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
         guess.rival = UpAxis::kNegY;
     if (guess.rival == guess.up) return guess;
     guess.sure = false;
-    if (cloud.has_colors() && best > score + kFlipMargin) guess.up = guess.rival;
+    if (has_colors && best > score + kFlipMargin) guess.up = guess.rival;
     return guess;
+}
+
+// What its surroundings say where the shape is in doubt: ground below everything tells which way is up, and
+// walls tell nothing.
+UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, const Progress* progress) {
+    if (is_on_map(cloud.frame.origin)) return {};
+    std::vector<Vec3> points = some_of(cloud.positions, kLookedAt, progress);
+    const UpGuess guess = guess_up(points, ranges, cloud.has_colors());
+    if (!guess.doubted()) return guess;
+    ScanFrame usual;
+    usual.up = guess.usual;
+    std::vector<Vec3> standing;
+    for (const Vec3& p : points)
+        standing.emplace_back(usual.turn_to_tree(DVec3(p)));
+    Ground ground;
+    find_ground(standing, ground, progress);
+    if (ground.found) return {guess.usual, true, guess.usual, guess.usual};
+    std::vector<DVec2> walls;
+    const std::vector<uint8_t> on_wall = find_walls(standing, walls, progress);
+    if (walls.empty()) return guess;
+    size_t kept = 0;
+    for (size_t i = 0; i < points.size(); i++)
+        if (!on_wall[i]) points[kept++] = points[i];
+    points.resize(kept);
+    return guess_up(points, robust_ranges(points, progress), cloud.has_colors());
 }
 
 std::string doubt_about_up(const UpGuess& guess) {
@@ -272,6 +299,7 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
     OrientReport report;
     if (cloud.empty()) throw Error("The cloud has no points.");
     const std::array<Range, 3> ranges = drop_impossible_points(cloud, report, progress);
+    refuse_slab(cloud, ranges, progress);
     const bool on_map = is_on_map(cloud.frame.origin);
     if (options.up) {
         report.up = *options.up;

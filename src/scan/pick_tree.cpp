@@ -59,11 +59,12 @@ PickReport choose_tree(const Separation& separation, const std::vector<Vec3>& po
     const StandingTree& taken = report.trees[report.taken];
     char height[32];
     std::snprintf(height, sizeof(height), "%.1f m", taken.height);
-    warnings.push_back("The cloud holds " + std::to_string(count) + " trees; number " +
-                       std::to_string(report.taken + 1) +
-                       (report.taken == 0 ? ", the largest, was taken. It is " : " was taken. It is ") +
-                       height + " high and stands at " + place_text(taken.foot) +
-                       " in the scan. Another one can be chosen by its number or by a place near it.");
+    warnings.push_back(
+        "The cloud holds " + std::to_string(count) + " trees; number " + std::to_string(report.taken + 1) +
+        (report.taken == 0 ? ", the largest, was taken. It is " : " was taken. It is ") + height +
+        " high and stands at " + place_text(taken.foot) +
+        " in the scan. Another one can be chosen by its number or by a place near it. If they are "
+        "one tree's stems or roots, take all of the scan for one tree (--one-tree).");
     return report;
 }
 

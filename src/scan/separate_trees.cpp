@@ -8,6 +8,7 @@
 #include "geometry/cell_grid.h"
 #include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
+#include "scan/lone_trunk.h"
 #include "scan/samples.h"
 
 namespace treerec {
@@ -195,6 +196,8 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
     const double height = quantile(heights, 0.999);
     if (!(height > 0.0)) return result;
 
+    // Its bark is wide enough to seem several stems.
+    if (!stump_rings(points, progress).empty()) return result;
     std::vector<Stem> stems = find_stems(points, above, height, spacing, ground.found, progress);
     std::vector<Vec3> canopy;
     for (size_t i = 0; i < points.size(); i++)
@@ -232,8 +235,33 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
             kept++;
         }
         if (kept < 2) return result;
-        if (kept == stems.size()) break;
-        stems.resize(kept);
+        if (kept < stems.size()) {
+            stems.resize(kept);
+            continue;
+        }
+        if (by_tops) break;
+        const std::vector<uint32_t> joined =
+            joined_by_wood(stems, voxels.centre, tree, voxels.grid.layout.cell, progress);
+        std::vector<Stem> apart;
+        std::vector<size_t> place(stems.size());
+        for (size_t s = 0; s < stems.size(); s++) {
+            if (joined[s] != s) continue;
+            place[s] = apart.size();
+            apart.push_back(stems[s]);
+        }
+        if (apart.size() == stems.size()) break;
+        for (size_t s = 0; s < stems.size(); s++)
+            if (joined[s] != s) {
+                std::vector<uint32_t>& seed = apart[place[joined[s]]].seed;
+                seed.insert(seed.end(), stems[s].seed.begin(), stems[s].seed.end());
+            }
+        if (apart.size() < 2) return result;
+        // What grew from any of its stems is the tree's.
+        for (uint32_t& owner : tree)
+            if (owner != Separation::kNone) owner = static_cast<uint32_t>(place[joined[owner]]);
+        stems = std::move(apart);
+        sizes = measure_trees(tree, low_above, stems.size());
+        break;
     }
     std::vector<uint32_t> rank(stems.size());
     for (uint32_t r = 0; r < sizes.size(); r++) {

@@ -19,6 +19,7 @@ struct Stem {
     double radius = 0.0;         // metres, root mean square over its slices
     bool in_branches = false;    // seen only as the densest spot among low branches
     std::vector<uint32_t> seed;  // points of its slices
+    std::vector<DVec2> feet;     // x, z: of all stems that were taken for its tree's, its own first
 };
 
 struct Separation {
@@ -47,6 +48,17 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
                      std::vector<Stem>& stems, const Progress* progress);
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
                             double spacing, const Progress* progress);
+
+// Makes one of those whose feet stand in a chain, each as near to the next as two trees never stand: the
+// culms of a clump.
+void join_clumps(std::vector<Stem>& stems, double height);
+// Which stems are one tree's though they stand apart, by stem: the thickest of its tree. Wood about as thick
+// as the thinner stem leads from one to the other, as from a banyan's trunk along its limb to a root that
+// came down from it; crowns that touch do so by leaves and twigs. centres: of the occupied voxels. tree: by
+// voxel, which stem it grew from.
+std::vector<uint32_t> joined_by_wood(const std::vector<Stem>& stems, const std::vector<Vec3>& centres,
+                                     const std::vector<uint32_t>& tree, double voxel,
+                                     const Progress* progress);
 
 // Which of them to take, with a sentence about it. points, weights (points of the cloud that each stands
 // for): those that were separated. Throws Error where there is no such tree.

@@ -20,6 +20,7 @@
 #include "scan/round_stems.h"
 #include "scan/samples.h"
 #include "scan/shape_terms.h"
+#include "scan/usual_size.h"
 
 namespace treerec {
 
@@ -432,6 +433,12 @@ WoodLeaf tell_by_labels(const PointCloud& cloud, const LabelledLeaves& labels) {
 }
 
 WoodLeaf tell_by_looks(const PointCloud& cloud, Progress* listener) {
+    if (const double factor = enlargement_to_usual(cloud.positions); factor != 1.0) {
+        WoodLeaf result = tell_by_looks(enlarged(cloud, factor), listener);
+        result.reach /= factor;
+        result.noise /= factor;
+        return result;
+    }
     const SubProgress progress(listener, 0.0, 1.0);
     const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
     WoodLeaf result = tell_by_samples(cloud, samples, false, progress);

@@ -139,13 +139,13 @@ const char* flood_kind_name(FloodKind kind) {
 }
 
 void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
-                    SkeletonResult& result, StageClock& clock, Progress* listener) {
+                    double factor, SkeletonResult& result, StageClock& clock, Progress* listener) {
     SubProgress gridding(listener, 0.1, 0.4);
     gridding.update(0.0, "Voxels");
     const double fitting_voxel = automatic_voxel(points, result.spacing, options.one_stem, gridding);
     result.voxel = options.voxel > 0.0 ? options.voxel : fitting_voxel;
     if (result.voxel < kFineVoxel * fitting_voxel)
-        result.warnings.push_back(fine_voxel_warning(fitting_voxel));
+        result.warnings.push_back(fine_voxel_warning(fitting_voxel / factor));
     const FloodGrid grid(points, result.voxel, gridding);
     gridding.check();
     const LocalScale scale = local_scale(grid.graph, result.voxel);

@@ -7,6 +7,7 @@
 #include "fidelity/segment_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "scan/usual_size.h"
 
 namespace treerec {
 
@@ -160,6 +161,17 @@ double chance_of(const std::array<double, 7>& looks) {
 
 DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const std::vector<float>& leafiness,
                              const LeavesTold& told, const Progress& progress) {
+    if (const double factor = enlargement_to_usual(points); factor != 1.0) {
+        Tree grown = tree;
+        grown.scale(factor);
+        DroppedTwigs dropped = drop_leaf_twigs(grown, enlarged(points, factor), leafiness, told, progress);
+        if (dropped.leaf.empty()) return dropped;
+        dropped.length /= factor;
+        grown.scale(1.0 / factor);
+        grown.set_frame(tree.frame());
+        tree = std::move(grown);
+        return dropped;
+    }
     const double many =
         std::clamp((kNearlyAllLeaves - told.share) / (kNearlyAllLeaves - kManyLeaves), 0.0, 1.0);
     const double least_chance =

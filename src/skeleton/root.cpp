@@ -24,7 +24,7 @@ constexpr double kFootReach = 0.03;  // of the height: what lies so far from a k
 constexpr double kFootAbove = 0.1;   // and so far above or below
 constexpr double kStemGapShare = 0.12;  // of the height: stems further from the base are other trees
 
-constexpr double kWidestStump = 0.5;    // radius, of the height
+constexpr double kWidestStump = 1.5;    // radius, of the height
 constexpr double kStumpSlab = 0.05;     // of the height: the lowest bark
 constexpr double kStumpRough = 0.08;    // of its radius
 constexpr double kStumpCoverage = 0.6;  // of the circle

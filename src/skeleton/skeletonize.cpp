@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "geometry/covariance.h"
+#include "scan/lone_trunk.h"
+#include "scan/usual_size.h"
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
@@ -63,8 +65,9 @@ bool is_flat(const std::vector<Vec3>& points) {
 }
 
 // A sentence about the widest gap that was bridged, if it is a remarkable one.
+// factor: by how much the cloud was enlarged.
 std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& axes,
-                                      const std::vector<Limb>& limbs, double extent) {
+                                      const std::vector<Limb>& limbs, double extent, double factor) {
     double widest = 0.0;
     int gaps = 0;
     const double least = std::max(kLeastGap, kGapShare * extent);
@@ -81,7 +84,7 @@ std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& a
     std::array<char, 200> text;
     std::snprintf(text.data(), text.size(),
                   "The scan has %s of up to %.1f m in the wood; what lies between is a guess.",
-                  gaps == 1 ? "a gap" : (std::to_string(gaps) + " gaps").c_str(), widest);
+                  gaps == 1 ? "a gap" : (std::to_string(gaps) + " gaps").c_str(), widest / factor);
     return {text.data()};
 }
 
@@ -96,9 +99,19 @@ PointPlaces places_of_sample(const ThinnedCloud& thinned, PointPlaces& places) {
     return own;
 }
 
-}  // namespace
+// A stump is one piece of wood: its sections, one after another.
+Tree stump_tree(const std::vector<TrunkRing>& rings, const SkeletonOptions& options) {
+    std::vector<Station> axis;
+    for (const TrunkRing& ring : rings)
+        axis.push_back({ring.centre, ring.radius, ring.scatter, options.fit_radii});
+    Limb limb;
+    limb.slices.resize(axis.size());
+    return assemble_tree({axis}, {limb}, options.simplify_distance);
+}
 
-SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options, Progress* listener) {
+// factor: by how much the cloud was enlarged, which the lengths in sentences leave out.
+SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions& options, double factor,
+                                 Progress* listener) {
     SubProgress progress(listener, 0.0, 1.0);
     SkeletonResult result;
     StageClock clock(result.stages);
@@ -115,7 +128,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     if (points.size() < kLeastPoints)
         throw Error(
             "The cloud has only " + std::to_string(points.size()) + " points more than " +
-            std::to_string(result.spacing) +
+            std::to_string(result.spacing / factor) +
             " m apart, and a tree needs at least 10. Check that the file is complete, that its unit is "
             "right, and that the cleaning steps did not take too much.");
     if (is_flat(points))
@@ -123,8 +136,20 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
             "All points lie on a plane or on a line, and a tree needs depth: this looks like a photo or a "
             "section of a scan.");
     clock.stop("Thinning", points.size());
+    if (const std::vector<TrunkRing> rings = stump_rings(cloud.positions, &progress); !rings.empty()) {
+        result.tree = stump_tree(rings, options);
+        if (floods) result.voxel = options.voxel > 0.0 ? options.voxel : kVoxelSpacings * result.spacing;
+        mark_trunk(result.tree);
+        result.tree.set_frame(cloud.frame);
+        const DVec3 foot = result.tree.node(result.tree.root()).position;
+        result.tree.rebase(foot);
+        if (options.keep_raw) result.raw = result.tree;
+        clock.stop("Simplification", result.tree.size());
+        progress.update(1.0, "Skeleton");
+        return result;
+    }
     if (floods) {
-        flood_skeleton(points, cloud.frame, options, result, clock, listener);
+        flood_skeleton(points, cloud.frame, options, factor, result, clock, listener);
         return result;
     }
 
@@ -209,7 +234,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     draw_back_tips(axes, limbs, limb_options.minimum_branch);
     clock.stop("Refinement", limbs.size());
 
-    result.warnings = gap_warnings(axes, limbs, extent);
+    result.warnings = gap_warnings(axes, limbs, extent, factor);
 
     progress.update(0.95, "Simplification");
     result.tree = assemble_tree(axes, limbs, options.simplify_distance);
@@ -223,6 +248,47 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     }
     clock.stop("Simplification", result.tree.size());
     progress.update(1.0, "Skeleton");
+    return result;
+}
+
+// All lengths back to those of the cloud that was enlarged, whose frame is given.
+void shrink(SkeletonResult& result, const ScanFrame& frame, double factor) {
+    const double back = 1.0 / factor;
+    for (Tree* tree : {&result.tree, &result.raw}) {
+        if (tree->size() == 0) continue;
+        tree->scale(back);
+        tree->set_frame({tree->frame().origin, frame.metres_per_unit, frame.up, frame.tilt});
+    }
+    result.spacing *= back;
+    result.voxel *= back;
+    for (FloodStep& step : result.steps) {
+        step.position *= back;
+        for (Vec3& voxel : step.voxels)
+            voxel = Vec3(DVec3(voxel) * back);
+        for (FloodDirection& direction : step.directions) {
+            direction.length *= back;
+            direction.radius *= back;
+        }
+    }
+}
+
+}  // namespace
+
+SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& options, Progress* listener) {
+    const double factor = enlargement_to_usual(cloud.positions);
+    if (factor == 1.0) return skeletonize_sized(cloud, options, factor, listener);
+    SkeletonOptions sized = options;
+    sized.voxel *= factor;
+    sized.spacing *= factor;
+    sized.minimum_branch *= factor;
+    sized.simplify_distance *= factor;
+    sized.noise *= factor;
+    if (sized.foot) *sized.foot *= factor;
+    SkeletonResult result = skeletonize_sized(enlarged(cloud, factor), sized, factor, listener);
+    shrink(result, cloud.frame, factor);
+    // As they were stated.
+    if (options.spacing > 0.0) result.spacing = options.spacing;
+    if (options.voxel > 0.0) result.voxel = options.voxel;
     return result;
 }
 
