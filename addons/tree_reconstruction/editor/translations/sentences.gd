@@ -93,12 +93,30 @@ const PATTERNS: PackedStringArray = [
 		+ " file of its own."
 	),
 	(
+		"%s points lie on a wall, %s m long and %s m high, and were left out. If they are part of the"
+		+ " tree, leave out the cleaning of the ground."
+	),
+	(
+		"%s points lie on walls, the widest, %s m long and %s m high, and were left out. If they are part"
+		+ " of the tree, leave out the cleaning of the ground."
+	),
+	(
+		"The cloud is a slice across a trunk, %s units thick and %s wide, and no tree can be made of it."
+		+ " Take the whole scan that it was cut from."
+	),
+	(
+		"The cloud is a slice across %s trunks, %s units thick and %s wide, and no tree can be made of"
+		+ " it. Take the whole scan that it was cut from."
+	),
+	(
 		"The cloud holds %s trees; number %s, the largest, was taken. It is %s high and stands at %s in"
-		+ " the scan. Another one can be chosen by its number or by a place near it."
+		+ " the scan. Another one can be chosen by its number or by a place near it. If they are one"
+		+ " tree's stems or roots, take all of the scan for one tree (--one-tree)."
 	),
 	(
 		"The cloud holds %s trees; number %s was taken. It is %s high and stands at %s in the scan."
-		+ " Another one can be chosen by its number or by a place near it."
+		+ " Another one can be chosen by its number or by a place near it. If they are one tree's stems"
+		+ " or roots, take all of the scan for one tree (--one-tree)."
 	),
 	(
 		"The cloud is %s units high; they were taken for %s. Set the scale or one known length by hand"
