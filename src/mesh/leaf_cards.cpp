@@ -12,8 +12,8 @@ namespace treerec {
 namespace {
 
 constexpr size_t kFloatsPerLeaf = 20;
-constexpr float kRoundness = 0.65f;    // how far the normals of baked leaves follow the crown
-constexpr float kSky = 0.35f;          // and how far they lean to where light comes from even below a crown
+constexpr float kRoundness = 0.65f;     // how far the normals of baked leaves follow the crown
+constexpr float kSky = 0.35f;           // and how far they lean to where light comes from even below a crown
 constexpr float kLeastTowards = 0.05f;  // how far a face's normal goes the way that the face looks, at least
 constexpr float kHalfThickness = 0.0005f;  // of a leaf with two faces, over its length
 constexpr float kMiddle = 0.5f;            // of a card, over its length

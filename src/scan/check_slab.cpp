@@ -26,6 +26,7 @@ constexpr double kWholeHeight = 0.9;    // of the slab's height, that a section 
 constexpr double kDisc = 0.4;           // height over width of one section: less is no stump
 constexpr double kSlab = 0.2;           // height over width of several sections, all alike cut off,
 constexpr double kShortPiece = 4.0;     // and over the trunks' own diameter
+constexpr double kUpright = 0.5;        // of its radius: how far its lower half stands from its upper one
 constexpr double kApart = 4.0;          // times the points' usual distance: between two sections
 
 // The distance from a point to the nearest other one, the median of some. points: seen from above, distinct.
@@ -83,6 +84,18 @@ void refuse_slab(const PointCloud& cloud, const std::array<Range, 3>& ranges, co
             continue;
         const double low = quantile(levels, 0.02);
         if (quantile(levels, 0.98) - low < kWholeHeight * height * 0.96) continue;
+        // What runs along, tilted, has its halves in different places.
+        const double middle = quantile(levels, 0.5);
+        std::array<DVec2, 2> centre{};
+        std::array<double, 2> count{};
+        for (size_t k = 0; k < section.size(); k++) {
+            const size_t half = heights[section[k]] > middle;
+            centre[half] += places[k];
+            count[half] += 1.0;
+        }
+        if (glm::distance(centre[0] / std::max(count[0], 1.0), centre[1] / std::max(count[1], 1.0)) >
+            kUpright * ring->radius)
+            continue;
         found++;
         on_bark += section.size();
         widest = std::max(widest, 2.0 * ring->radius);

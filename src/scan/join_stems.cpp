@@ -19,7 +19,7 @@ constexpr double kThick = 0.5;    // of the thinner stem's radius: a limb that m
 constexpr double kBothSides = 0.5;   // of the look: the limb goes on that far to either side
 constexpr double kReach = 2.5;       // voxels: what is no further away is beside, as the scan has gaps
 constexpr size_t kFewestAcross = 8;  // voxels where a limb is cut through
-constexpr double kCoarse = 3.0;  // of the thinner stem's radius: larger voxels do not tell limbs from twigs
+constexpr double kCoarse = 2.2;  // of the thinner stem's radius: larger voxels do not tell limbs from twigs
 constexpr size_t kFewest = 12;   // voxels of a limb
 constexpr double kWidest = 8.0;  // of the thicker stem's radius: what is wider is no limb
 

@@ -23,17 +23,18 @@ constexpr double kNearlyAll = 0.8;      // of the points
 
 constexpr double kStumpHeight = 2.5;  // diameters: no higher
 constexpr size_t kFewestRings = kSlices / 2;
-constexpr double kStumpShare = 0.95;   // of the points: on its bark and its cut faces
-constexpr double kRingCoverage = 0.9;  // of a section that is closed, but not round
+constexpr double kStumpNarrows = 0.75;  // of its usual radius: a ball does more, at both ends
+constexpr double kStumpShare = 0.95;    // of the points: on its bark and its cut faces
+constexpr double kRingCoverage = 0.9;   // of a section that is closed, but not round
 constexpr double kRingRough = 0.2;
 constexpr double kRingInside = 0.04;
-constexpr double kFaceWider = 1.15;  // than the bark next to it
+constexpr double kFaceWider = 1.15;    // than the bark next to it
+constexpr double kBeyondEnds = 0.005;  // of the points, at either end
 
 struct Trunk {
     size_t on_bark = 0;
     size_t on_faces = 0;  // points within the bark, where the trunk ends
     double radius = 0.0;  // the median; 0 where no bark is seen
-    double low = 0.0;
     double height = 0.0;
     std::vector<TrunkRing> rings;  // from below
 };
@@ -45,7 +46,6 @@ Trunk trunk_of(const std::vector<Vec3>& points, bool flutes, const Progress* pro
     Bounds bounds;
     for (const Vec3& p : points)
         bounds.add(DVec3(p));
-    trunk.low = bounds.min.y;
     const double height = trunk.height = bounds.size().y;
     if (!(height > 0.0)) return trunk;
     const double widest = std::max(bounds.size().x, bounds.size().z);
@@ -109,7 +109,17 @@ std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progre
         static_cast<double>(trunk.on_bark + trunk.on_faces) <=
             kStumpShare * static_cast<double>(points.size()))
         return {};
-    // Half a slice on, to both ends, as the last two sections lead.
+    for (const TrunkRing& ring : trunk.rings)
+        if (ring.radius < kStumpNarrows * trunk.radius) return {};
+    // On to both ends, as the last two sections lead. What is left of the ground lies lower than the foot.
+    std::vector<double> heights;
+    heights.reserve(points.size());
+    for (const Vec3& p : points)
+        heights.push_back(p.y);
+    const double low = quantile(heights, kBeyondEnds), high = quantile(heights, 1.0 - kBeyondEnds);
+    std::erase_if(trunk.rings,
+                  [&](const TrunkRing& ring) { return ring.centre.y <= low || ring.centre.y >= high; });
+    if (trunk.rings.size() < 2) return {};
     const auto end = [](const TrunkRing& last, const TrunkRing& before, double y) {
         const double t = (y - last.centre.y) / (last.centre.y - before.centre.y);
         return TrunkRing{last.centre + t * (last.centre - before.centre),
@@ -117,8 +127,8 @@ std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progre
                          last.scatter};
     };
     std::vector<TrunkRing>& rings = trunk.rings;
-    const TrunkRing foot = end(rings[0], rings[1], trunk.low);
-    const TrunkRing top = end(rings[rings.size() - 1], rings[rings.size() - 2], trunk.low + trunk.height);
+    const TrunkRing foot = end(rings[0], rings[1], low);
+    const TrunkRing top = end(rings[rings.size() - 1], rings[rings.size() - 2], high);
     rings.insert(rings.begin(), foot);
     rings.push_back(top);
     return rings;

@@ -31,7 +31,7 @@ TEST_F(CliEdit, RunsScriptsAndCommandsAndWritesALog) {
     EXPECT_NE(done.out.find("3 commands done, 0 left out; " + std::to_string(nodes_) + " nodes before, "),
               std::string::npos)
         << done.out;
-    EXPECT_EQ(done.error, "");
+    EXPECT_EQ(done.error, "Editing\n");
     EXPECT_LT(read_treefile(path("out/tree.txt")).size(), nodes_);
     EXPECT_GT(get("out/tree.glb").size(), 10000U);
     EXPECT_EQ(get("log.txt"),
@@ -45,7 +45,7 @@ TEST_F(CliEdit, TellsWhatIsWrongAndWritesNothing) {
     put("bad.txt", "prune\ncut node=99999\n");
     Outcome done = run("edit tree.txt --script bad.txt -o out/tree.txt");
     EXPECT_EQ(done.code, 1);
-    EXPECT_EQ(done.error, "'bad.txt': Line 2, column 1: There is no node 99999 in this tree.\n");
+    EXPECT_EQ(done.error, "Editing\n'bad.txt': Line 2, column 1: There is no node 99999 in this tree.\n");
     EXPECT_TRUE(out_is_empty());
     done = run("edit tree.txt --script bad.txt -o out/tree.txt --keep-going");
     EXPECT_EQ(done.code, 0);

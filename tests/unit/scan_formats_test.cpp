@@ -420,7 +420,7 @@ TEST(ScanLaz, ReadsRealScans) {
         {"lidr_MixedConifer_ALS.laz",
          37657,
          false,
-         "LAZ 1.2, point format 1",
+         "LAZ 1.2, point format 1, in metres",
          {18124509887.0000, 143584872818.7600, 452435.0100}},
         {"spanner_MLS_plot.laz",
          301477,

@@ -387,7 +387,6 @@ TEST(ScanTough, PrunedTreesFromPhotosAreNotDoubted) {
 TEST(ScanTough, RealTreesAreNotDoubtedUprightButOnTheirHeads) {
     const std::string folder = scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
-    size_t doubted = 0;
     size_t trees = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
@@ -402,11 +401,10 @@ TEST(ScanTough, RealTreesAreNotDoubtedUprightButOnTheirHeads) {
         for (Vec3& p : on_its_head.positions)
             p = Vec3(p.x, -p.y, -p.z);
         EXPECT_FALSE(says(orient_cloud(upright, {}).warnings, "up axis by hand"));
-        doubted += says(orient_cloud(on_its_head, {}).warnings, "up axis by hand");
+        EXPECT_TRUE(says(orient_cloud(on_its_head, {}).warnings, "up axis by hand"));
         trees++;
     }
     EXPECT_GE(trees, 12U);
-    EXPECT_EQ(doubted, trees);
 }
 
 }  // namespace
