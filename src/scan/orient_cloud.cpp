@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -32,6 +33,7 @@ constexpr double kFarthest = 1000.0;
 constexpr double kStemSlenderness = 4.0;
 // Coordinates this large are a map's (UTM and the like), and maps are Z up.
 constexpr double kMapCoordinates = 1e5;
+constexpr double kLeastGround = 0.1;  // of the points, on ground that tells the way up
 
 // How the cloud looks from one end of an axis: the stem that a tree standing on that end would have.
 struct EndView {
@@ -223,8 +225,11 @@ UpGuess detect_up(const PointCloud& cloud, const std::array<Range, 3>& ranges, c
     for (const Vec3& p : points)
         standing.emplace_back(usual.turn_to_tree(DVec3(p)));
     Ground ground;
-    find_ground(standing, ground, progress);
-    if (ground.found) return {guess.usual, true, guess.usual, guess.usual};
+    const std::vector<uint8_t> lying = find_ground(standing, ground, progress);
+    // Under a crown that stands on its head there may seem to be a little.
+    const auto on_ground = static_cast<double>(std::count(lying.begin(), lying.end(), uint8_t{1}));
+    if (ground.found && on_ground >= kLeastGround * static_cast<double>(standing.size()))
+        return {guess.usual, true, guess.usual, guess.usual};
     std::vector<DVec2> walls;
     const std::vector<uint8_t> on_wall = find_walls(standing, walls, progress);
     if (walls.empty()) return guess;
