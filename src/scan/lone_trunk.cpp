@@ -28,8 +28,8 @@ constexpr double kStumpShare = 0.95;    // of the points: on its bark and its cu
 constexpr double kRingCoverage = 0.9;   // of a section that is closed, but not round
 constexpr double kRingRough = 0.2;
 constexpr double kRingInside = 0.04;
-constexpr double kFaceWider = 1.15;    // than the bark next to it
-constexpr double kBeyondEnds = 0.005;  // of the points, at either end
+constexpr double kFaceWider = 1.15;   // than the bark next to it
+constexpr double kBeyondEnds = 0.02;  // of the points, at either end
 
 struct Trunk {
     size_t on_bark = 0;
