@@ -79,8 +79,8 @@ for title in headless Jolt gl_compatibility mobile forward_plus; do
     count "$title"
 done
 # As many caches as runs, and the user's own is none of them.
-caches=$(sed -n 's/^shader cache: \(..*\)/\1/p' "$logs"/* | sort -u | grep -cvxF "${MESA_SHADER_CACHE_DIR:-none}")
-if [ "$caches" = "$(grep -l '^shader cache:' "$logs"/* | wc -l)" ]; then
+caches=$(sed -n 's/^shader cache: \(..*\)/\1/p' "$logs"/*.engine | sort -u | grep -cvxF "${MESA_SHADER_CACHE_DIR:-none}")
+if [ "$caches" = "$(grep -l '^shader cache:' "$logs"/*.engine | wc -l)" ]; then
     passed=$((passed + 1))
     echo "ok      each run had a shader cache of its own"
 else

@@ -46,7 +46,7 @@ func test_says_what_is_wrong() -> void:
 	var tree: TreeReconstruction = reconstructor.reconstruct_file(write_scan("scan.xyz"))
 	var points: PackedVector3Array = reconstructor.get_cloud_points()
 	var before: Dictionary = tree.skeleton
-	expect_error("has no node 123456")
+	expect_error("no node 123456")
 	check(tree.complete_branch(points, 123456, Vector3.UP) == null, "There is no such node.")
 	expect_error("no length")
 	check(tree.complete_branch(points, tree.get_root(), Vector3.ZERO) == null, "No direction.")
