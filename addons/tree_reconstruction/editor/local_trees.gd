@@ -161,10 +161,7 @@ func keep_from_engine() -> void:
 		var tree: TreeReconstruction = known.get_ref() as TreeReconstruction
 		if tree == null or not has_file(tree):
 			continue
-		var parts: Array[Resource] = [tree]
-		if tree.leaf_rule != null and tree.leaf_rule.resource_path.begins_with(tree.resource_path):
-			parts.append(tree.leaf_rule)
-		for part: Resource in parts:
+		for part: Resource in _parts_of(tree):
 			if Engine.is_editor_hint() and EditorInterface.is_object_edited(part):
 				EditorInterface.set_object_edited(part, false)
 				_changed[tree.resource_path] = known
@@ -228,6 +225,11 @@ func drop_unused() -> void:
 ## These files were changed by another program and loaded again: their trees are as saved.
 func forget_changes(paths: PackedStringArray) -> void:
 	for path: String in paths:
+		var tree: TreeReconstruction = get_changed(path)
+		if tree != null and Engine.is_editor_hint():
+			# Else keep_from_engine() would take it for one that a step has changed.
+			for part: Resource in _parts_of(tree):
+				EditorInterface.set_object_edited(part, false)
 		_changed.erase(path)
 
 
@@ -329,6 +331,14 @@ static func _holds(value: Variant, tree: TreeReconstruction, seen: Dictionary) -
 		):
 			return true
 	return false
+
+
+# The resources that a tree's file holds.
+static func _parts_of(tree: TreeReconstruction) -> Array[Resource]:
+	var parts: Array[Resource] = [tree]
+	if tree.leaf_rule != null and tree.leaf_rule.resource_path.begins_with(tree.resource_path):
+		parts.append(tree.leaf_rule)
+	return parts
 
 
 func _on_changed(of: WeakRef) -> void:

@@ -55,12 +55,12 @@ func run() -> void:
 	)
 
 	await step("a click gives the leaves to the branch under the mouse")
-	var other: int = NO_NODE
+	var other: int = TreeReconstruction.NO_NODE
 	for id: int in clear_nodes(_node, large_branches(_of)):
 		if not id in above and not limb in _of.select_nodes("below:%d" % id):
 			other = id
 			break
-	if other != NO_NODE:
+	if other != TreeReconstruction.NO_NODE:
 		await user.move(node_on_screen(_node, other))
 		await until(func() -> bool: return _has_ghosts(), "the branch is shown")
 		await picture("before-the-click")
