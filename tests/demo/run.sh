@@ -36,6 +36,6 @@ else
     echo "FAILED  Khronos' validator"
     failed=$((failed + 1))
 fi
-rm -f build/demo_check*
+rm -rf build/demo_check*
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
