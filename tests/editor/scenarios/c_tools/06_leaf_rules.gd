@@ -38,15 +38,6 @@ func run() -> void:
 	check("birch_leaf.tres" in _shown(), "The tree's own leaves are gone: %s." % _shown())
 	await picture("a-limb-of-a-maple")
 
-	await step("the dock tells which rules there are, and which the limb has")
-	_fold_leaves(false)
-	await until(
-		func() -> bool: return _dock_says("maple: ") and _dock_says("The selected wood has:"),
-		"the dock tells of it"
-	)
-	await picture("rules-in-the-dock")
-	_fold_leaves(true)
-
 	await step("one undo takes it back, bit for bit, and one redo does it again")
 	await user.move(middle(view().get_parent() as Control))
 	await user.key("ctrl+z")
@@ -102,23 +93,6 @@ func _shown() -> PackedStringArray:
 		if leaves != null and leaves.multimesh != null and leaves.material_override != null:
 			names.append(leaves.material_override.resource_path.get_file())
 	return names
-
-
-# The dock's section of leaves: while it is folded it tells nothing.
-func _fold_leaves(folded: bool) -> void:
-	for section: Node in EditorInterface.get_base_control().find_children(
-		"*", "FoldableContainer", true, false
-	):
-		var script: Script = section.get_script()
-		if script != null and script.resource_path.ends_with("dock/leaf_rule.gd"):
-			(section as FoldableContainer).folded = folded
-
-
-func _dock_says(words: String) -> bool:
-	for label: Node in EditorInterface.get_base_control().find_children("*", "Label", true, false):
-		if words in (label as Label).text and (label as Label).is_visible_in_tree():
-			return true
-	return false
 
 
 func _has_ghosts() -> bool:
