@@ -214,3 +214,21 @@ func test_leaf_sliders_are_one_step() -> void:
 	shown._enabled.button_pressed = false
 	check(not _session.tree.leaf_rule.enabled, "It bears leaves.")
 	_end()
+
+
+func test_leaf_rules_of_wood_are_told() -> void:
+	_begin(grown_tree(2))
+	var shown: Leaves = _dock.sections[&"leaf_rule"] as Leaves
+	shown.folded = false
+	var limb: int = _session.tree.get_leaves()[0]
+	_session.run("Leaves", "leaves where=below:%d rule=maple" % limb)
+	_session.select(PackedInt32Array([limb]))
+	_frame()
+	check(shown._rules.visible and shown._rules.text.contains("maple: "), shown._rules.text)
+	check(
+		shown._selected.visible and shown._selected.text.contains("maple: "), shown._selected.text
+	)
+	_session.select(PackedInt32Array())
+	_frame()
+	check(not shown._selected.visible, "Nothing is selected, and the dock tells of it.")
+	_end()
