@@ -163,6 +163,35 @@ func test_baking_can_be_cancelled() -> void:
 	check_equal(tree.root.get_child_count(), children, "what is left in the scene")
 
 
+# The renderer's picture compressor is itself a task of the pool, which takes up others while it
+# waits: a compression among those would wait for itself.
+func test_a_busy_pool_does_not_stop_a_bake() -> void:
+	var picture: Image = Image.create_empty(64, 64, false, Image.FORMAT_RGBA8)
+	picture.compress(Image.COMPRESS_S3TC)
+	var ended: Array[bool] = [false]
+	var occupy: Callable = func() -> void:
+		while not ended[0]:
+			OS.delay_msec(5)
+	var tasks: PackedInt64Array = []
+	for i: int in OS.get_processor_count() - 1:
+		tasks.append(WorkerThreadPool.add_task(occupy, true))
+	var baker: TreeImpostorBaker = TreeImpostorBaker.new()
+	baker.resolution = 512
+	baker.views = 3
+	var made: Array[TreeImpostor] = [null]
+	var bake: Callable = func() -> void:
+		made[0] = await baker.bake(grown_tree(2))
+		ended[0] = true
+	bake.call()
+	var until: int = Time.get_ticks_msec() + 120_000
+	while not ended[0] and Time.get_ticks_msec() < until:
+		await tree.process_frame
+	check(made[0] != null, "It stands still while it is %s." % baker.get_stage())
+	ended[0] = true
+	for task: int in tasks:
+		WorkerThreadPool.wait_for_task_completion(task)
+
+
 func test_the_dock_bakes_and_undoes() -> void:
 	var undo: UndoRedo = UndoRedo.new()
 	var node: TreeInstance3D = TreeInstance3D.new()

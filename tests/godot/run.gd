@@ -8,14 +8,29 @@ extends SceneTree
 
 const ErrorCollector := preload("./error_collector.gd")
 const Suite: GDScript = preload("./suite.gd")
+# A test that takes longer has hung, though frames go on. The longest takes a fifth of it.
+const MOST_MSEC: int = 400_000
 
 var _passed: int = 0
 var _failed: int = 0
 var _errors: ErrorCollector = ErrorCollector.new()
+var _running: String = ""
+var _started: int = 0
 
 
 func _initialize() -> void:
 	_run.call_deferred()
+
+
+func _process(_delta: float) -> bool:
+	if _running.is_empty() or Time.get_ticks_msec() - _started < MOST_MSEC:
+		return false
+	print("FAILED  %s" % _running)
+	print(
+		"        It did not end within %d s; the tests after it were not run." % (MOST_MSEC / 1e3)
+	)
+	_end(_failed + 1)
+	return true
 
 
 func _run() -> void:
@@ -34,8 +49,12 @@ func _run() -> void:
 			await _run_file(here.path_join(file), folder)
 	OS.remove_logger(_errors)
 	_remove(folder)
-	print("%d passed, %d failed" % [_passed, _failed])
-	quit(1 if _failed > 0 or _passed == 0 else 0)
+	_end(_failed)
+
+
+func _end(failed: int) -> void:
+	print("%d passed, %d failed" % [_passed, failed])
+	quit(1 if failed > 0 or _passed == 0 else 0)
 
 
 func _run_file(path: String, folder: String) -> void:
@@ -54,9 +73,11 @@ func _run_file(path: String, folder: String) -> void:
 		_remove(folder)
 		DirAccess.make_dir_recursive_absolute(folder)
 		_errors.take()
-		var started: int = Time.get_ticks_msec()
+		_running = "%s: %s" % [path.get_file().get_basename(), name]
+		_started = Time.get_ticks_msec()
 		await test.call(name)
-		_judge("%s: %s" % [path.get_file().get_basename(), name], test, started)
+		_judge(_running, test, _started)
+		_running = ""
 		# What the test freed goes before the next one starts.
 		await process_frame
 
@@ -89,6 +110,8 @@ func _judge(title: String, test: Suite, started: int) -> void:
 func _remove(folder: String) -> void:
 	if not DirAccess.dir_exists_absolute(folder):
 		return
+	for inside: String in DirAccess.get_directories_at(folder):
+		_remove(folder.path_join(inside))
 	for file: String in DirAccess.get_files_at(folder):
 		DirAccess.remove_absolute(folder.path_join(file))
 	DirAccess.remove_absolute(folder)

@@ -22,7 +22,7 @@ trap cleanup EXIT
 run() {
     local title=$1
     shift
-    own_cache timeout 1800 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
+    own_cache timeout 1200 "$GODOT" --path project --log-file "$logs/$title.engine" --script "$PWD/tests/godot/run.gd" "$@" \
         >"$logs/$title" 2>&1
 }
 # render TITLE DRIVER METHOD: the tests look into viewports of their own; the window costs less the smaller it is.

@@ -224,7 +224,7 @@ func _fill(taken: Array[Image]) -> Array[Texture2D]:
 		var image: Image = viewport.get_texture().get_image()
 		image.convert(formats[kind])
 		_stage = "packing the pictures"
-		made.append(await _threaded(_packed.bind(image)) as Texture2D)
+		made.append(await _on_own_thread(_packed.bind(image)) as Texture2D)
 		_progress = lerpf(_TAKEN, 1.0, (kind + 1.0) / formats.size())
 	viewport.queue_free()
 	return ([] as Array[Texture2D]) if _cancelled else made
@@ -289,6 +289,19 @@ func _threaded(work: Callable) -> Variant:
 		await _main_loop().process_frame
 	WorkerThreadPool.wait_for_task_completion(task)
 	return result[0]
+
+
+# The same on a thread of its own. With Vulkan the engine's compressor of pictures is a task of the
+# pool that takes up others while it waits, so a task of the pool that compresses may wait for what
+# is below it on the same thread, for ever.
+func _on_own_thread(work: Callable) -> Variant:
+	var thread: Thread = Thread.new()
+	var error: Error = thread.start(work)
+	if error != OK:
+		return work.call()
+	while thread.is_alive():
+		await _main_loop().process_frame
+	return thread.wait_to_finish()
 
 
 static func _main_loop() -> SceneTree:
