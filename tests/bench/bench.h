@@ -38,6 +38,8 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
 // Lighter trees beside the paper's: size and outline, of scans or skeletons; of grown trees where none is
 // named.
 void bench_lighter(const std::vector<std::string>& files);
+// Bytes of each scan, of its skeleton, and of lighter ones (papers/002, table 9.2).
+void bench_bytes(const std::vector<std::string>& scans);
 // How long the fidelity takes to follow edits of the tree of each scan.
 void bench_fidelity(const std::vector<std::string>& scans, const Settings& settings);
 // The corrected skeleton of a scan, in the same coordinates: `folder`/STEM_skeleton_corrected….csv; or none.

@@ -25,6 +25,7 @@ const char* const kUsage =
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
     "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and papers/002's\n"
+    "       bench --bytes [SCAN…|FOLDER]       bytes of the cloud, of its skeleton and of lighter ones\n"
     "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
@@ -65,7 +66,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
-            word == "--edits" || word == "--variants" || word == "--help") {
+            word == "--bytes" || word == "--edits" || word == "--variants" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -153,6 +154,10 @@ int run(CommandLine line) {
     if (scans.empty()) throw Error("Name a scan.");
     if (line.mode == "--resize") {
         write_resized(scans.front(), line.settings.most_points, line.out);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--bytes") {
+        bench_bytes(scans);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--fidelity") {

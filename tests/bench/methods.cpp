@@ -1,4 +1,5 @@
-// Both skeletonizers side by side, and what guided completion makes of their trees.
+// The skeletonizers side by side, the flood also as papers/002 prints it, and what guided completion makes of
+// their trees.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,14 +36,25 @@ double processor_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-ReconstructOptions options_of(SkeletonMethod method) {
+struct Method {
+    const char* name;
+    SkeletonMethod method;
+    FloodKind flood;
+};
+
+constexpr Method kDelaunay{"delaunay", SkeletonMethod::kDelaunay, FloodKind::kOurs};
+constexpr Method kFlood{"flood", SkeletonMethod::kFlood, FloodKind::kOurs};
+constexpr Method kPrinted{"printed", SkeletonMethod::kFlood, FloodKind::kPaper};
+
+ReconstructOptions options_of(const Method& method) {
     ReconstructOptions options;
-    options.skeleton.method = method;
+    options.skeleton.method = method.method;
+    options.skeleton.flood = method.flood;
     options.skeleton.keep_raw = false;
     return options;
 }
 
-Run run_method(const std::string& scan, SkeletonMethod method) {
+Run run_method(const std::string& scan, const Method& method) {
     Run run;
     const double start = processor_seconds();
     run.made = reconstruct_file(scan, options_of(method));
@@ -148,15 +160,14 @@ void bench_methods(const std::vector<std::string>& scans, const Settings& settin
     std::printf("%-36s %-9s %7s %9s %7s %6s %18s %9s  recall precision length %%\n", "scan", "method",
                 "CPU s", "voxel mm", "nodes", "tips", "mm median/p95", "in 2 cm %");
     for (const std::string& scan : scans)
-        for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
+        for (const Method& method : {kDelaunay, kFlood, kPrinted}) {
             const std::string name = std::filesystem::path(scan).filename().string();
             try {
                 const Run run = run_method(scan, method);
                 const Reconstruction& made = run.made;
-                std::printf("%-36s %-9s %7.2f %9.1f %7zu %6zu %9.1f / %6.1f %9.1f", name.c_str(),
-                            skeleton_method_name(method), run.seconds, 1000.0 * made.voxel,
-                            made.measured.nodes, made.measured.tips, made.fit.median_mm, made.fit.p95_mm,
-                            100.0 * made.fit.explained_2cm);
+                std::printf("%-36s %-9s %7.2f %9.1f %7zu %6zu %9.1f / %6.1f %9.1f", name.c_str(), method.name,
+                            run.seconds, 1000.0 * made.voxel, made.measured.nodes, made.measured.tips,
+                            made.fit.median_mm, made.fit.p95_mm, 100.0 * made.fit.explained_2cm);
                 const std::string truth = truth_of(scan, settings.truth);
                 if (!truth.empty()) {
                     const SkeletonScore score = score_skeleton(made.tree, read_skeleton(truth));
@@ -165,7 +176,7 @@ void bench_methods(const std::vector<std::string>& scans, const Settings& settin
                 }
                 std::printf("\n");
             } catch (const Error& error) {
-                std::printf("%-36s %-9s %s\n", name.c_str(), skeleton_method_name(method), error.what());
+                std::printf("%-36s %-9s %s\n", name.c_str(), method.name, error.what());
             }
             std::fflush(stdout);
         }
@@ -178,11 +189,11 @@ void bench_clicks(const std::vector<std::string>& scans, const Settings& setting
         const Truth truth(file);
         std::printf("%s\n%-12s %6s %9s %8s %9s %11s\n", std::filesystem::path(scan).filename().c_str(),
                     "method", "clicks", "length %", "recall", "precision", "explained %");
-        for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
-            click_through(run_method(scan, method).made, skeleton_method_name(method), truth);
+        for (const Method& method : {kDelaunay, kFlood}) {
+            click_through(run_method(scan, method).made, method.name, truth);
             std::fflush(stdout);
         }
-        click_through(run_method(scan, SkeletonMethod::kDelaunay).made, "a third lost", truth, true);
+        click_through(run_method(scan, kDelaunay).made, "a third lost", truth, true);
     }
 }
 
