@@ -71,7 +71,7 @@ std::string lstring_file_text(std::string_view string, const ScanFrame& frame,
 void write_lstring_file(const std::string& path, const Tree& tree, const LStringOptions& options,
                         const Progress* progress) {
     if (tree.empty()) throw Error("The tree is empty; there is nothing to write to '" + path + "'.");
-    require_sound_measures(tree, path);
+    require_readable(tree, path, false);
     const std::string string = write_lstring(tree, tree.root(), options, progress);
     ScanFrame frame = tree.frame();
     frame.origin = frame.to_scan(tree.node(tree.root()).position);

@@ -99,7 +99,7 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 }  // namespace
 
 void write_treefile(const std::string& path, const Tree& tree) {
-    require_sound_measures(tree, path);
+    require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
     std::string text = "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) +
                        "\nx,y,z,radius,parent_id,flags\n";
