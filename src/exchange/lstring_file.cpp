@@ -109,7 +109,16 @@ LStringTree parse_lstring_file(std::string_view bytes, const std::string& path, 
 }
 
 bool is_lstring_file(std::string_view bytes) {
-    return has_heading(bytes);
+    if (has_heading(bytes)) return true;
+    // Its first line that says something draws wood and has nothing but a turtle's symbols and numbers; a
+    // table has names or no F.
+    while (const std::optional<std::string_view> line = next_line(bytes)) {
+        const size_t begin = line->find_first_not_of(" \t");
+        if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
+        return line->find('F') != std::string_view::npos &&
+               line->find_first_not_of(" \tFf[]()!+-&^\\/|$~{}%@.,0123456789eE") == std::string_view::npos;
+    }
+    return false;
 }
 
 }  // namespace treerec
