@@ -9,6 +9,7 @@
 #include "convert.h"
 #include "error.h"
 #include "foliage/leaf_rule_text.h"
+#include "l_system.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -17,6 +18,7 @@ namespace {
 
 constexpr int kMostLeaves = 2000000;
 constexpr int kCurveSteps = 33;
+constexpr uint32_t kReferenceCounted = 8;  // Object.CONNECT_REFERENCE_COUNTED
 // Where in a year (0 buds .. 1 bare) leaves unfold, begin to fall and have fallen.
 constexpr double kUnfolded = 0.2, kFirstFall = 0.72;
 constexpr double kBudSize = 0.3;     // of a full leaf
@@ -172,8 +174,12 @@ PackedColorArray LeafRule::get_tints_at(double p_shift, const String& p_look) co
     const double middle = std::clamp(season_ + p_shift, 0.0, 1.0);
     for (const double season : {middle - kOwnSeason, middle + kOwnSeason}) {
         const double at = std::clamp(season, 0.0, 1.0);
-        tints.push_back(own && season_colors_.is_valid() ? season_colors_->sample(float(at))
-                                                         : usual_color(own ? look_ : p_look, at));
+        const Color usual = usual_color(own ? look_ : p_look, at);
+        const Color tint = own && season_colors_.is_valid() ? season_colors_->sample(float(at)) : usual;
+        // A ramp may hold colours that are none.
+        const bool finite =
+            std::isfinite(tint.r) && std::isfinite(tint.g) && std::isfinite(tint.b) && std::isfinite(tint.a);
+        tints.push_back(finite ? tint : usual);
     }
     return tints;
 }
@@ -272,7 +278,8 @@ void LeafRule::_replace(Ref<T>& p_member, const Ref<T>& p_value) {
     }
     p_member = p_value;
     if (p_member.is_valid()) {
-        p_member->connect("changed", heard);
+        // One resource may serve two properties.
+        p_member->connect("changed", heard, kReferenceCounted);
     }
     take_resources();
 }
@@ -281,7 +288,12 @@ void LeafRule::take_resources() {
     std::shared_ptr<const treerec::LeafSprig> sprig;
     const Ref<TreeReconstruction> tree = sprig_;
     if (!sprig_string_.is_empty()) {
-        sprig = guarded(sprig, [&] { return treerec::read_sprig(to_std(sprig_string_)); });
+        sprig = guarded(sprig, [&] {
+            const treerec::LStringOptions options = LSystem::read_options(LSystem::Dialect(sprig_dialect_));
+            return treerec::read_sprig(to_std(sprig_string_), options.dialect_is_told
+                                                                  ? std::optional(options.dialect)
+                                                                  : std::nullopt);
+        });
     } else if (tree.is_valid() && tree->get_tree()->size() > 1) {
         auto made = std::make_shared<treerec::LeafSprig>();
         made->wood = *tree->get_tree();
@@ -326,6 +338,15 @@ void LeafRule::set_sprig(const Ref<Resource>& p_sprig) {
 void LeafRule::set_sprig_string(const String& p_string) {
     if (sprig_string_ != p_string) {
         sprig_string_ = p_string;
+        take_resources();
+    }
+}
+
+void LeafRule::set_sprig_dialect(int p_dialect) {
+    ERR_FAIL_INDEX_MSG(p_dialect, int(LSystem::DIALECT_TOLD) + 1,
+                       vformat("There is no dialect %d of L-strings.", p_dialect));
+    if (sprig_dialect_ != p_dialect) {
+        sprig_dialect_ = p_dialect;
         take_resources();
     }
 }
@@ -389,6 +410,7 @@ void LeafRule::_validate_property(PropertyInfo& p_property) const {
     hide_unless("petiole_length", form != treerec::LeafForm::kSpray && form != treerec::LeafForm::kSprig);
     hide_unless("sprig", form == treerec::LeafForm::kSprig);
     hide_unless("sprig_string", form == treerec::LeafForm::kSprig);
+    hide_unless("sprig_dialect", form == treerec::LeafForm::kSprig);
 }
 
 void LeafRule::_bind_methods() {
@@ -420,6 +442,8 @@ void LeafRule::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_sprig"), &LeafRule::get_sprig);
     ClassDB::bind_method(D_METHOD("set_sprig_string", "string"), &LeafRule::set_sprig_string);
     ClassDB::bind_method(D_METHOD("get_sprig_string"), &LeafRule::get_sprig_string);
+    ClassDB::bind_method(D_METHOD("set_sprig_dialect", "dialect"), &LeafRule::set_sprig_dialect);
+    ClassDB::bind_method(D_METHOD("get_sprig_dialect"), &LeafRule::get_sprig_dialect);
     ClassDB::bind_method(D_METHOD("set_season", "season"), &LeafRule::set_season);
     ClassDB::bind_method(D_METHOD("get_season"), &LeafRule::get_season);
     ClassDB::bind_method(D_METHOD("set_evergreen", "evergreen"), &LeafRule::set_evergreen);
@@ -468,6 +492,9 @@ void LeafRule::_bind_methods() {
     add_value("blade_width", "petiole_length");
     ADD_PROPERTY(PropertyInfo(Variant::OBJECT, "sprig", PROPERTY_HINT_RESOURCE_TYPE, "TreeReconstruction"),
                  "set_sprig", "get_sprig");
+    // Before the string: a saved one of the paper's would be refused without it.
+    ADD_PROPERTY(PropertyInfo(Variant::INT, "sprig_dialect", PROPERTY_HINT_ENUM, "Turtle,Paper,Told"),
+                 "set_sprig_dialect", "get_sprig_dialect");
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "sprig_string", PROPERTY_HINT_MULTILINE_TEXT),
                  "set_sprig_string", "get_sprig_string");
     ADD_GROUP("Pose", "");
