@@ -184,6 +184,7 @@ func test_parameters_cover_all_options() -> void:
 		check((preset == 0) == options.is_empty(), "preset %d gives %s" % [preset, options])
 		var named: int = values.size() - 2  # the unit is none, and a skeleton file's tree
 		check_equal(named, TreeReconstructor.get_option_list().size() - 1, "the number of options")
+	check_equal(ImportOptions.to_options({"advanced/prune": "paper"}), {"prune": "paper"}, "prune")
 	# A group of options that nobody arranged would have no place in the dock.
 	var groups: Dictionary = {}
 	for parameter: Dictionary in ImportOptions.list(0):
