@@ -184,7 +184,7 @@ TEST(Writers, WriteAndReadBackTreesOfAnySize) {
 TEST(Writers, WriteAndReadBackTreesOfAnyShape) {
     use_ready_pictures();
     Random random(4);
-    const int count = test::cases(60);
+    const int count = test::cases(40);
     for (int i = 0; i < count; i++) {
         Tree tree = test::wild_tree(static_cast<uint64_t>(i), 2 + static_cast<int>(random.below(20)));
         tree.set_frame(random_frame(random, 1e6, 0.1, 10.0));
@@ -204,7 +204,7 @@ TEST(Writers, RefuseWhatTheirReadersWould) {
     const double sizes[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e5, 1e9, 1e30};
     const double places[] = {1e7, 1e9, 1e10, 1e11, 9e11, 1e12, 1e13, 1e300};
     const double units[] = {1e-13, 1e-9, 1e-4, 1.0, 1e4, 1e11, 1e13};
-    const int count = test::cases(200);
+    const int count = test::cases(120);
     int written = 0;
     for (int i = 0; i < count; i++) {
         const double size = sizes[random.below(8)], place = places[random.below(8)];
@@ -230,7 +230,7 @@ TEST(Writers, NeverWriteWhatIsNoNumber) {
     Random random(8);
     const double odd[] = {1e300, 1e160, 1e39,  1e30,  1e20,   1e12,   1e7,    1e5,
                           1e-5,  1e-12, 1e-30, 1e-45, 1e-160, 1e-300, 5e-324, 0.0};
-    const int count = test::cases(120);
+    const int count = test::cases(80);
     for (int i = 0; i < count; i++) {
         Tree tree = test::random_tree(static_cast<uint64_t>(i), 2 + static_cast<int>(random.below(8)));
         // Where one number is too large the tree is refused, so that most have small ones.
