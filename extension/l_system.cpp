@@ -11,14 +11,6 @@ using namespace godot;
 
 namespace {
 
-treerec::LStringOptions options_of(LSystem::Dialect p_dialect) {
-    treerec::LStringOptions options;
-    options.dialect_is_told = p_dialect != LSystem::DIALECT_TOLD;
-    options.dialect = p_dialect == LSystem::DIALECT_PAPER ? treerec::LStringDialect::kPaper
-                                                          : treerec::LStringDialect::kTurtle;
-    return options;
-}
-
 // The leaves of a string count as those that a scan saw.
 Ref<TreeReconstruction> to_resource(treerec::LStringTree p_read, const Dictionary& p_provenance) {
     Ref<TreeReconstruction> made;
@@ -175,7 +167,7 @@ Ref<TreeReconstruction> LSystem::read_string(const String& p_text, Dialect p_dia
     return guarded(Ref<TreeReconstruction>(), [&] {
         Dictionary provenance;
         provenance["source"] = "L-string";
-        treerec::LStringOptions options = options_of(p_dialect);
+        treerec::LStringOptions options = read_options(p_dialect);
         if (!(p_angle_spread >= 0.0 && p_angle_spread <= 180.0 && p_length_spread >= 0.0 &&
               p_length_spread <= 1.0)) {
             throw treerec::Error(
@@ -193,6 +185,17 @@ Ref<TreeReconstruction> LSystem::read_string(const String& p_text, Dialect p_dia
     });
 }
 
+treerec::LStringOptions LSystem::read_options(Dialect p_dialect) {
+    if (p_dialect < DIALECT_TURTLE || p_dialect > DIALECT_TOLD) {
+        throw treerec::Error("There is no dialect " + std::to_string(int(p_dialect)) + " of L-strings.");
+    }
+    treerec::LStringOptions options;
+    options.dialect_is_told = p_dialect != DIALECT_TOLD;
+    options.dialect =
+        p_dialect == DIALECT_PAPER ? treerec::LStringDialect::kPaper : treerec::LStringDialect::kTurtle;
+    return options;
+}
+
 String LSystem::write_string(const Ref<TreeReconstruction>& p_tree, int64_t p_node, Dialect p_dialect) {
     return guarded(String(), [&] {
         if (p_tree.is_null()) {
@@ -203,7 +206,7 @@ String LSystem::write_string(const Ref<TreeReconstruction>& p_tree, int64_t p_no
             throw treerec::Error("The tree is empty; there is nothing to write as a string.");
         }
         // The heading says which dialect it is, wherever the string goes.
-        const treerec::LStringOptions options = options_of(p_dialect);
+        const treerec::LStringOptions options = read_options(p_dialect);
         const std::string heading = treerec::heading(options);
         if (p_node == TreeReconstruction::NO_NODE || p_node == tree->root()) {
             return to_godot(heading + treerec::write_lstring(*tree, tree->root(), options));

@@ -38,6 +38,8 @@ class LSystem : public godot::Resource {
     static godot::Ref<TreeReconstruction> read_string(const godot::String& p_text, Dialect p_dialect,
                                                       double p_angle_spread, double p_length_spread,
                                                       int64_t p_seed);
+    // How a string of that dialect is read. Throws treerec::Error for one that there is not.
+    static treerec::LStringOptions read_options(Dialect p_dialect);
     static godot::String write_string(const godot::Ref<TreeReconstruction>& p_tree, int64_t p_node,
                                       Dialect p_dialect);
 

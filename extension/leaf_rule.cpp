@@ -9,6 +9,7 @@
 #include "convert.h"
 #include "error.h"
 #include "foliage/leaf_rule_text.h"
+#include "l_system.h"
 #include "tree_reconstruction.h"
 
 using namespace godot;
@@ -17,77 +18,7 @@ namespace {
 
 constexpr int kMostLeaves = 2000000;
 constexpr int kCurveSteps = 33;
-// Where in a year (0 buds .. 1 bare) leaves unfold, begin to fall and have fallen.
-constexpr double kUnfolded = 0.2, kFirstFall = 0.72;
-constexpr double kBudSize = 0.3;     // of a full leaf
-constexpr double kOwnSeason = 0.07;  // how far leaves differ in what season it is for them
-constexpr double kSpring = 0.05, kSummer = 0.3, kLateSummer = 0.5, kAutumn = 0.68;
-
-const Color kSpringColor(0.55f, 0.66f, 0.30f, 0.4f);
-const Color kFallenColor(0.60f, 0.46f, 0.30f, 0.85f);
-
-// What a kind of tree turns to in autumn; alpha 0 for an evergreen.
-struct AutumnColor {
-    const char* look;
-    Color color;
-};
-const AutumnColor kAutumnColors[] = {
-    {"generic", Color(0.74f, 0.54f, 0.20f, 0.82f)},
-    {"maple", Color(0.70f, 0.27f, 0.12f, 0.85f)},
-    {"cherry", Color(0.72f, 0.37f, 0.16f, 0.82f)},
-    {"oak", Color(0.60f, 0.40f, 0.18f, 0.85f)},
-    {"birch", Color(0.80f, 0.65f, 0.20f, 0.85f)},
-    {"willow", Color(0.72f, 0.67f, 0.26f, 0.8f)},
-    {"apple", Color(0.68f, 0.56f, 0.22f, 0.8f)},
-    {"pine", Color(0, 0, 0, 0)},
-    {"spruce", Color(0, 0, 0, 0)},
-    {"palm", Color(0, 0, 0, 0)},
-};
-
-Color autumn_color(const String& p_look) {
-    for (const AutumnColor& entry : kAutumnColors) {
-        if (p_look == String(entry.look)) {
-            return entry.color;
-        }
-    }
-    return kAutumnColors[0].color;
-}
-
-double smooth(double p_low, double p_high, double p_x) {
-    const double t = std::clamp((p_x - p_low) / (p_high - p_low), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
-// How large leaves are in a season, over full ones.
-double unfolded_share(double p_season) {
-    return kBudSize + (1.0 - kBudSize) * smooth(0.0, kUnfolded, p_season);
-}
-
-Color mixed(const Color& p_a, const Color& p_b, double p_t) {
-    const float t = float(std::clamp(p_t, 0.0, 1.0));
-    return Color(p_a.r + (p_b.r - p_a.r) * t, p_a.g + (p_b.g - p_a.g) * t, p_a.b + (p_b.b - p_a.b) * t,
-                 p_a.a + (p_b.a - p_a.a) * t);
-}
-
-// The year of a kind of tree that brings no ramp of its own: young green, the leaves' own colour, autumn,
-// brown.
-Color usual_color(const String& p_look, double p_season) {
-    const Color autumn = autumn_color(p_look);
-    const Color spring(kSpringColor.r, kSpringColor.g, kSpringColor.b,
-                       autumn.a > 0.0f ? kSpringColor.a : 0.25f);
-    const Color summer(spring.r, spring.g, spring.b, 0.0f);
-    const Color late(autumn.r, autumn.g, autumn.b, 0.0f);
-    if (p_season < kSummer) {
-        return mixed(spring, summer, (p_season - kSpring) / (kSummer - kSpring));
-    }
-    if (autumn.a == 0.0f || p_season < kLateSummer) {
-        return p_season < 0.5 * (kSummer + kLateSummer) ? summer : late;
-    }
-    if (p_season < kAutumn) {
-        return mixed(late, autumn, (p_season - kLateSummer) / (kAutumn - kLateSummer));
-    }
-    return mixed(autumn, kFallenColor, (p_season - kAutumn) / (1.0 - kAutumn));
-}
+constexpr uint32_t kReferenceCounted = 8;  // Object.CONNECT_REFERENCE_COUNTED
 
 std::vector<float> table_of(const Ref<Curve>& p_curve) {
     std::vector<float> table;
@@ -157,37 +88,6 @@ treerec::LeafRules LeafRule::get_plain_rules() const {
     return rules;
 }
 
-treerec::LeafRules LeafRule::in_season(treerec::LeafRules p_rules, bool p_evergreen) const {
-    const std::lock_guard lock(mutex_);
-    if (!p_evergreen) {
-        p_rules.standing = 1.0 - smooth(kFirstFall, 1.0, season_);
-        p_rules.leaf_size *= unfolded_share(season_);
-    }
-    return p_rules;
-}
-
-PackedColorArray LeafRule::get_tints_at(double p_shift, const String& p_look) const {
-    PackedColorArray tints;
-    const bool own = p_look.is_empty() || p_look == look_;
-    const double middle = std::clamp(season_ + p_shift, 0.0, 1.0);
-    for (const double season : {middle - kOwnSeason, middle + kOwnSeason}) {
-        const double at = std::clamp(season, 0.0, 1.0);
-        tints.push_back(own && season_colors_.is_valid() ? season_colors_->sample(float(at))
-                                                         : usual_color(own ? look_ : p_look, at));
-    }
-    return tints;
-}
-
-Vector2 LeafRule::get_shares_at(double p_shift, bool p_evergreen) const {
-    const double season = std::clamp(season_ + p_shift, 0.0, 1.0);
-    return p_evergreen ? Vector2(1.0f, 1.0f)
-                       : Vector2(float(1.0 - smooth(kFirstFall, 1.0, season)), float(unfolded_share(season)));
-}
-
-bool LeafRule::is_look_evergreen(const String& p_look) {
-    return autumn_color(p_look).a == 0.0f;
-}
-
 Ref<LeafRule> LeafRule::with_rules(const treerec::LeafRules& p_rules, const String& p_look,
                                    bool p_evergreen) const {
     Ref<LeafRule> rule;
@@ -208,7 +108,7 @@ Ref<LeafRule> LeafRule::from_preset(const String& p_name) {
         preset.internode *= treerec::leaves_per_node(preset);
         rule->rules_ = preset;
         rule->look_ = preset.enabled ? p_name : String("generic");
-        rule->evergreen_ = autumn_color(rule->look_).a == 0.0f;
+        rule->evergreen_ = is_look_evergreen(rule->look_);
         return rule;
     });
 }
@@ -272,7 +172,8 @@ void LeafRule::_replace(Ref<T>& p_member, const Ref<T>& p_value) {
     }
     p_member = p_value;
     if (p_member.is_valid()) {
-        p_member->connect("changed", heard);
+        // One resource may serve two properties.
+        p_member->connect("changed", heard, kReferenceCounted);
     }
     take_resources();
 }
@@ -281,7 +182,12 @@ void LeafRule::take_resources() {
     std::shared_ptr<const treerec::LeafSprig> sprig;
     const Ref<TreeReconstruction> tree = sprig_;
     if (!sprig_string_.is_empty()) {
-        sprig = guarded(sprig, [&] { return treerec::read_sprig(to_std(sprig_string_)); });
+        sprig = guarded(sprig, [&] {
+            const treerec::LStringOptions options = LSystem::read_options(LSystem::Dialect(sprig_dialect_));
+            return treerec::read_sprig(to_std(sprig_string_), options.dialect_is_told
+                                                                  ? std::optional(options.dialect)
+                                                                  : std::nullopt);
+        });
     } else if (tree.is_valid() && tree->get_tree()->size() > 1) {
         auto made = std::make_shared<treerec::LeafSprig>();
         made->wood = *tree->get_tree();
@@ -330,34 +236,17 @@ void LeafRule::set_sprig_string(const String& p_string) {
     }
 }
 
-void LeafRule::set_season(double p_season) {
-    ERR_FAIL_COND_MSG(!std::isfinite(p_season), "season must be a finite number.");
-    const double season = std::clamp(p_season, 0.0, 1.0);
-    // What animates it may set the same again and again.
-    if (season != season_) {
-        _change([&] { season_ = season; });
+void LeafRule::set_sprig_dialect(int p_dialect) {
+    ERR_FAIL_INDEX_MSG(p_dialect, int(LSystem::DIALECT_TOLD) + 1,
+                       vformat("There is no dialect %d of L-strings.", p_dialect));
+    if (sprig_dialect_ != p_dialect) {
+        sprig_dialect_ = p_dialect;
+        take_resources();
     }
-}
-
-void LeafRule::set_evergreen(bool p_evergreen) {
-    _change([&] { evergreen_ = p_evergreen; });
 }
 
 void LeafRule::set_season_colors(const Ref<Gradient>& p_colors) {
     _replace(season_colors_, p_colors);
-}
-
-PackedColorArray LeafRule::get_season_tints() const {
-    return get_tints_at(0.0);
-}
-
-double LeafRule::get_standing_share() const {
-    return get_rules().standing;
-}
-
-double LeafRule::get_unfolded_share() const {
-    const std::lock_guard lock(mutex_);
-    return evergreen_ ? 1.0 : unfolded_share(season_);
 }
 
 void LeafRule::_validate_property(PropertyInfo& p_property) const {
@@ -389,6 +278,7 @@ void LeafRule::_validate_property(PropertyInfo& p_property) const {
     hide_unless("petiole_length", form != treerec::LeafForm::kSpray && form != treerec::LeafForm::kSprig);
     hide_unless("sprig", form == treerec::LeafForm::kSprig);
     hide_unless("sprig_string", form == treerec::LeafForm::kSprig);
+    hide_unless("sprig_dialect", form == treerec::LeafForm::kSprig);
 }
 
 void LeafRule::_bind_methods() {
@@ -420,6 +310,8 @@ void LeafRule::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_sprig"), &LeafRule::get_sprig);
     ClassDB::bind_method(D_METHOD("set_sprig_string", "string"), &LeafRule::set_sprig_string);
     ClassDB::bind_method(D_METHOD("get_sprig_string"), &LeafRule::get_sprig_string);
+    ClassDB::bind_method(D_METHOD("set_sprig_dialect", "dialect"), &LeafRule::set_sprig_dialect);
+    ClassDB::bind_method(D_METHOD("get_sprig_dialect"), &LeafRule::get_sprig_dialect);
     ClassDB::bind_method(D_METHOD("set_season", "season"), &LeafRule::set_season);
     ClassDB::bind_method(D_METHOD("get_season"), &LeafRule::get_season);
     ClassDB::bind_method(D_METHOD("set_evergreen", "evergreen"), &LeafRule::set_evergreen);
@@ -468,6 +360,9 @@ void LeafRule::_bind_methods() {
     add_value("blade_width", "petiole_length");
     ADD_PROPERTY(PropertyInfo(Variant::OBJECT, "sprig", PROPERTY_HINT_RESOURCE_TYPE, "TreeReconstruction"),
                  "set_sprig", "get_sprig");
+    // Before the string: a saved one of the paper's would be refused without it.
+    ADD_PROPERTY(PropertyInfo(Variant::INT, "sprig_dialect", PROPERTY_HINT_ENUM, "Turtle,Paper,Told"),
+                 "set_sprig_dialect", "get_sprig_dialect");
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "sprig_string", PROPERTY_HINT_MULTILINE_TEXT),
                  "set_sprig_string", "get_sprig_string");
     ADD_GROUP("Pose", "");

@@ -73,6 +73,9 @@ class LeafRule : public godot::Resource {
     godot::Ref<godot::Resource> get_sprig() const { return sprig_; }
     void set_sprig_string(const godot::String& p_string);
     godot::String get_sprig_string() const { return sprig_string_; }
+    // An LSystem::Dialect.
+    void set_sprig_dialect(int p_dialect);
+    int get_sprig_dialect() const { return sprig_dialect_; }
     void set_season(double p_season);
     double get_season() const { return season_; }
     void set_evergreen(bool p_evergreen);
@@ -117,6 +120,7 @@ class LeafRule : public godot::Resource {
     godot::Ref<godot::Curve> by_height_, by_radius_;
     godot::Ref<godot::Resource> sprig_;
     godot::String sprig_string_;
+    int sprig_dialect_ = 2;  // told
     godot::Ref<godot::Gradient> season_colors_;
 };
 

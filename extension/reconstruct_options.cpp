@@ -69,6 +69,24 @@ void write_radii(ParsedOptions& r_options, const Variant& p_value) {
     r_options.pipeline.radii = treerec::parse_radius_rule(to_std(p_value));
 }
 
+Variant read_prune(const ParsedOptions& p_options) {
+    const std::optional<treerec::PruneOptions>& prune = p_options.pipeline.prune;
+    return !prune ? "none" : prune->spare_leader ? "leader" : "paper";
+}
+
+void write_prune(ParsedOptions& r_options, const Variant& p_value) {
+    const std::string rule = to_std(p_value);
+    if (rule != "none" && rule != "paper" && rule != "leader") {
+        throw treerec::Error("The option \"prune\" is none, paper or leader, not " +
+                             treerec::quote_word(rule) + ".");
+    }
+    r_options.pipeline.prune.reset();
+    if (rule != "none") {
+        r_options.pipeline.prune.emplace();
+        r_options.pipeline.prune->spare_leader = rule == "leader";
+    }
+}
+
 Variant read_scale(const ParsedOptions& p_options) {
     return p_options.pipeline.orient.metres_per_unit.value_or(0.0);
 }
@@ -263,6 +281,9 @@ const Option kOptions[] = {
      "Where radii come from: the points, or a rule for what branches have of their parent's."},
     {"complete", OPTION_MEMBER(complete, bool), PROPERTY_HINT_NONE, "",
      "Looks again for branches where points are left over that the tree does not explain."},
+    {"prune", read_prune, write_prune, PROPERTY_HINT_ENUM, "none,paper,leader",
+     "Cuts twigs that are longer than the mean to it at last: paper all of them, leader all but the trunk's "
+     "own tip."},
     {"spacing", OPTION_MEMBER(skeleton.spacing, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Keeps at most one point per cell of this size; 0 chooses by the cloud."},
     {"minimum_branch", OPTION_MEMBER(skeleton.minimum_branch, double), PROPERTY_HINT_RANGE,

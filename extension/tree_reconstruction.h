@@ -169,8 +169,6 @@ class TreeReconstruction : public godot::Resource {
     godot::Ref<TreeEdit> graft_many(const godot::PackedInt32Array& p_ids, const godot::Dictionary& p_options);
     godot::String take_branch(int64_t p_id) const;
     godot::TypedArray<godot::Dictionary> find_collisions(int64_t p_id, double p_clearance) const;
-    static godot::Dictionary measure_branch(const godot::String& p_lstring);
-    static godot::PackedByteArray draw_branch(const godot::String& p_lstring, int p_size);
     static godot::TypedArray<godot::Dictionary> get_twig_library();
 
     // For an editor (tree_reconstruction_viewing.cpp).

@@ -10,6 +10,7 @@
 #include "edit/twig_library.h"
 #include "edit/twig_picture.h"
 #include "error.h"
+#include "l_system.h"
 #include "lsystem/lstring.h"
 #include "tree_edit.h"
 #include "tree_reconstruction.h"
@@ -109,8 +110,9 @@ TypedArray<Dictionary> TreeReconstruction::find_collisions(int64_t p_id, double 
     });
 }
 
-static Dictionary describe_branch(std::string_view p_string) {
-    const treerec::Tree scion = treerec::read_lstring(p_string);
+static Dictionary describe_branch(std::string_view p_string,
+                                  LSystem::Dialect p_dialect = LSystem::DIALECT_TOLD) {
+    const treerec::Tree scion = treerec::read_lstring(p_string, LSystem::read_options(p_dialect));
     treerec::require_scion(scion);
     Dictionary entry;
     entry["length"] = treerec::scion_length(scion);
@@ -119,13 +121,15 @@ static Dictionary describe_branch(std::string_view p_string) {
     return entry;
 }
 
-Dictionary TreeReconstruction::measure_branch(const String& p_lstring) {
-    return guarded(Dictionary(), [&] { return describe_branch(to_std(p_lstring)); });
+static Dictionary measure_branch(const String& p_lstring, LSystem::Dialect p_dialect) {
+    return guarded(Dictionary(), [&] { return describe_branch(to_std(p_lstring), p_dialect); });
 }
 
-PackedByteArray TreeReconstruction::draw_branch(const String& p_lstring, int p_size) {
+static PackedByteArray draw_branch(const String& p_lstring, int p_size, LSystem::Dialect p_dialect) {
     return guarded(PackedByteArray(), [&] {
-        const treerec::Image image = treerec::draw_twig(treerec::read_lstring(to_std(p_lstring)), p_size);
+        const treerec::Tree scion =
+            treerec::read_lstring(to_std(p_lstring), LSystem::read_options(p_dialect));
+        const treerec::Image image = treerec::draw_twig(scion, p_size);
         PackedByteArray pixels;
         pixels.resize(int64_t(image.pixels.size()));
         std::copy(image.pixels.begin(), image.pixels.end(), pixels.ptrw());
@@ -157,10 +161,10 @@ void TreeReconstruction::_bind_grafting() {
     ClassDB::bind_method(D_METHOD("take_branch", "id"), &TreeReconstruction::take_branch);
     ClassDB::bind_method(D_METHOD("find_collisions", "id", "clearance"), &TreeReconstruction::find_collisions,
                          DEFVAL(0.0));
-    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("measure_branch", "lstring"),
-                                &TreeReconstruction::measure_branch);
-    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("draw_branch", "lstring", "size"),
-                                &TreeReconstruction::draw_branch, DEFVAL(128));
+    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("measure_branch", "lstring", "dialect"),
+                                &measure_branch, DEFVAL(int(LSystem::DIALECT_TOLD)));
+    ClassDB::bind_static_method("TreeReconstruction", D_METHOD("draw_branch", "lstring", "size", "dialect"),
+                                &draw_branch, DEFVAL(128), DEFVAL(int(LSystem::DIALECT_TOLD)));
     ClassDB::bind_static_method("TreeReconstruction", D_METHOD("get_twig_library"),
                                 &TreeReconstruction::get_twig_library);
 }

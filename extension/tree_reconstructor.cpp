@@ -208,7 +208,8 @@ int64_t TreeReconstructor::get_cache_size() const {
 }
 
 Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path, const String& p_up_axis,
-                                                           int64_t p_tree_number) {
+                                                           int64_t p_tree_number,
+                                                           LSystem::Dialect p_dialect) {
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
     Ref<TreeReconstruction> made;
@@ -216,9 +217,13 @@ Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path,
         if (p_tree_number < 0) {
             throw treerec::Error("The number of a tree in a file is 1 or more, or 0 for the largest.");
         }
+        treerec::SkeletonChoice choice(treerec::parse_up_axis(to_std(p_up_axis)), size_t(p_tree_number));
+        const treerec::LStringOptions string = LSystem::read_options(p_dialect);
+        if (string.dialect_is_told) {
+            choice.dialect = string.dialect;
+        }
         treerec::SkeletonReport report;
-        treerec::Tree tree = treerec::read_skeleton(
-            file_path(p_path), {treerec::parse_up_axis(to_std(p_up_axis)), size_t(p_tree_number)}, &report);
+        treerec::Tree tree = treerec::read_skeleton(file_path(p_path), choice, &report);
         {
             const std::lock_guard lock(mutex_);
             report_json_ = treerec::skeleton_report_json(report);
@@ -350,8 +355,9 @@ void TreeReconstructor::_bind_methods() {
                          DEFVAL(500000));
     ClassDB::bind_method(D_METHOD("clear_cache"), &TreeReconstructor::clear_cache);
     ClassDB::bind_method(D_METHOD("get_cache_size"), &TreeReconstructor::get_cache_size);
-    ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis", "tree_number"),
-                         &TreeReconstructor::import_skeleton, DEFVAL("z"), DEFVAL(0));
+    ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis", "tree_number", "dialect"),
+                         &TreeReconstructor::import_skeleton, DEFVAL("z"), DEFVAL(0),
+                         DEFVAL(int(LSystem::DIALECT_TOLD)));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path", "levels", "pictures_beside"),
                          &TreeReconstructor::export_file, DEFVAL(1), DEFVAL(false));
     ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <string>
 
+#include "l_system.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
@@ -27,7 +28,8 @@ class TreeReconstructor : public godot::RefCounted {
     void clear_cache();
     int64_t get_cache_size() const;
     godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,
-                                                   const godot::String& p_up_axis, int64_t p_tree_number);
+                                                   const godot::String& p_up_axis, int64_t p_tree_number,
+                                                   LSystem::Dialect p_dialect);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
                              int p_levels = 1, bool p_pictures_beside = false);
     godot::Error save_html_report(const godot::String& p_path);

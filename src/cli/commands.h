@@ -2,6 +2,7 @@
 // result on stdout.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +21,14 @@ UpAxis up_axis_from(const Arguments& arguments);
 ReadCloudOptions read_options_from(const Arguments& arguments);
 // The skeleton at `path`, of the number that `option` names ("" takes the largest); what there is to say of
 // it goes to stderr. Throws Error, and UsageError.
-Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option = "--tree");
+Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option = "--tree",
+                   std::optional<LStringDialect> dialect = std::nullopt);
 // "--levels" of a model.
 int levels_from(const Arguments& arguments);
 // "--dialect paper" (default turtle). Throws UsageError.
 LStringDialect dialect_from(const Arguments& arguments);
+// The same of a command that reads an L-string; nothing without it.
+std::optional<LStringDialect> told_dialect_from(const Arguments& arguments);
 
 // Throws UsageError where a file at `path` has something in it and is not of ours, which begin with `mark` in
 // their first 4 kB: to be asked for what no -o names. what: "no report of a reconstruction".

@@ -29,8 +29,10 @@ ReadCloudOptions read_options_from(const Arguments& arguments) {
     return options;
 }
 
-Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option) {
-    const SkeletonChoice choice(up_axis_from(arguments), arguments.whole(option, 0, 1, 1'000'000'000));
+Tree skeleton_from(const Arguments& arguments, const std::string& path, const std::string& option,
+                   std::optional<LStringDialect> dialect) {
+    const SkeletonChoice choice(up_axis_from(arguments), arguments.whole(option, 0, 1, 1'000'000'000),
+                                dialect);
     SkeletonReport report;
     Tree tree = read_skeleton(path, choice, &report);
     for (const std::string& warning : report.warnings)

@@ -73,6 +73,7 @@ const Command& edit_command() {
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
+         {"--dialect", "NAME", "of an L-string: turtle or paper (default: as it says itself, or turtle)"},
          {"--commands", "", "lists the commands and what they take"},
          {"--quiet", "", "print errors only"}},
         "IN: a skeleton (see 'treerec info'). Places and lengths in a script are metres from the tree's "
@@ -122,7 +123,7 @@ void run_edit(const std::vector<std::string>& words) {
         for (const std::string& line : arguments.all("-c"))
             scripts.emplace_back("", line);
 
-    Tree tree = skeleton_from(arguments, arguments.positional()[0]);
+    Tree tree = skeleton_from(arguments, arguments.positional()[0], "--tree", told_dialect_from(arguments));
     const size_t before = tree.size();
     EditLog log;
     size_t done = 0, left_out = 0;

@@ -103,11 +103,12 @@ void info_of_cloud(const std::string& path, const ReadCloudOptions& options, boo
 const Command& info_command() {
     static const Command command{
         "info",
-        "info FILE [--json] [--up AXIS] [--tree N] [--columns LIST] [--classes LIST]",
+        "info FILE [--json] [--up AXIS] [--tree N] [--dialect NAME] [--columns LIST] [--classes LIST]",
         "Tells what is in a point cloud or a skeleton file.",
         {{"--json", "", "as JSON"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
+         {"--dialect", "NAME", "of an L-string: turtle or paper (default: as it says itself, or turtle)"},
          {"--columns", "LIST", "names of a text file's columns, such as x,y,z,r,g,b; - skips one"},
          {"--classes", "LIST",
           "classes of LAS points to read, such as 2,4-5, or all (default: all but noise, 7 and 18)"}},
@@ -125,8 +126,9 @@ void run_info(const std::vector<std::string>& words) {
     const std::string path = arguments.positional()[0];
     const UpAxis up = up_axis_from(arguments);
     const size_t tree = arguments.whole("--tree", 0, 1, 1'000'000'000);
+    const std::optional<LStringDialect> dialect = told_dialect_from(arguments);
     if (is_skeleton_file(path))
-        info_of_skeleton(path, {up, tree}, arguments.has("--json"));
+        info_of_skeleton(path, {up, tree, dialect}, arguments.has("--json"));
     else
         info_of_cloud(path, read_options_from(arguments), arguments.has("--json"));
 }

@@ -28,6 +28,7 @@ const Command& lighten_command() {
          {"--pixels", "N", "of the pictures in which the outline is compared (default 1024)"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
+         {"--dialect", "NAME", "of an L-string: turtle or paper (default: as it says itself, or turtle)"},
          {"--quiet", "", "print errors only"}},
         "IN: a skeleton (see 'treerec info'). Tells how much of the bark's outline, seen from four sides, "
         "differs."};
@@ -55,7 +56,8 @@ void run_lighten(const std::vector<std::string>& words) {
 
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    const Tree before = skeleton_from(arguments, arguments.positional()[0]);
+    const Tree before =
+        skeleton_from(arguments, arguments.positional()[0], "--tree", told_dialect_from(arguments));
     if (arguments.has("--share"))
         options.nodes =
             std::max<size_t>(2, static_cast<size_t>(std::lround(share * static_cast<double>(before.size()))));

@@ -18,6 +18,11 @@ LStringDialect dialect_from(const Arguments& arguments) {
     }
 }
 
+std::optional<LStringDialect> told_dialect_from(const Arguments& arguments) {
+    if (!arguments.has("--dialect")) return std::nullopt;
+    return dialect_from(arguments);
+}
+
 const Command& lstring_command() {
     static const Command command{
         "lstring",

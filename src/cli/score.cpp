@@ -190,7 +190,7 @@ void print_text(const ScanReport& report, const Tree& tree) {
 
 Tree read_scaled(const Arguments& arguments, const std::string& path, const std::string& option,
                  double metres_per_unit) {
-    Tree tree = skeleton_from(arguments, path, option);
+    Tree tree = skeleton_from(arguments, path, option, told_dialect_from(arguments));
     if (metres_per_unit > 0.0) tree.scale(metres_per_unit / tree.frame().metres_per_unit);
     return tree;
 }
@@ -211,6 +211,7 @@ const Command& score_command() {
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
          {"--tree", "N", "which tree of a model's file with several, in its order (default: the largest)"},
          {"--reference-tree", "N", "likewise of a reference's file"},
+         {"--dialect", "NAME", "of L-strings: turtle or paper (default: as they say themselves, or turtle)"},
          {"--columns", "LIST", "names of a text scan's columns, such as x,y,z,r,g,b; - skips one"},
          {"--classes", "LIST",
           "classes of LAS points to read, such as 2,4-5, or all (default: all but noise, 7 and 18)"},

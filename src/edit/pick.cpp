@@ -16,6 +16,13 @@ DVec3 to_screen(const ScreenView& view, const glm::dvec4& clip) {
             clip.z / clip.w};
 }
 
+bool is_sound(const ScreenView& view) {
+    for (int column = 0; column < 4; column++)
+        for (int row = 0; row < 4; row++)
+            if (!std::isfinite(view.to_clip[column][row])) return false;
+    return std::isfinite(view.width) && std::isfinite(view.height);
+}
+
 // Cuts a-b down to what lies between the near and the far plane; false where nothing does.
 bool clip_depth(glm::dvec4& a, glm::dvec4& b) {
     // Each is positive on the side that is seen.
@@ -70,7 +77,7 @@ bool project(const ScreenView& view, const DVec3& place, DVec3& seen) {
 }
 
 NodeId pick_node(const Tree& tree, const ScreenView& view, const DVec2& position, double distance) {
-    if (!std::isfinite(position.x) || !std::isfinite(position.y)) return kNoNode;
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !is_sound(view)) return kNoNode;
     std::vector<glm::dvec4> clip(static_cast<size_t>(tree.id_end()));
     Nearest nodes(distance);
     for (NodeId id = 0; id < tree.id_end(); id++) {
@@ -99,7 +106,8 @@ NodeId pick_node(const Tree& tree, const ScreenView& view, const DVec2& position
         // How far along the wood that is: the view foreshortens it.
         const double w = 1.0 / ((1.0 - t) / a.w + t / b.w);
         const double radius = tree.node(id).radius * metre / w;
-        wood.offer(id, std::max(0.0, across - radius), from.z + t * (to.z - from.z));
+        // In this order, so that what is no number stays none.
+        wood.offer(id, std::max(across - radius, 0.0), from.z + t * (to.z - from.z));
     }
     return wood.winner();
 }
@@ -108,6 +116,7 @@ std::vector<NodeId> pick_nodes(const Tree& tree, const ScreenView& view, const D
                                const DVec2& other_corner) {
     const DVec2 least = glm::min(one_corner, other_corner), most = glm::max(one_corner, other_corner);
     std::vector<NodeId> ids;
+    if (!is_sound(view)) return ids;
     DVec3 seen;
     for (NodeId id = 0; id < tree.id_end(); id++) {
         if (!tree.contains(id) || !project(view, tree.node(id).position, seen)) continue;

@@ -23,7 +23,8 @@ bool project(const ScreenView& view, const DVec3& place, DVec3& seen);
 
 // Of the nodes seen within `distance` pixels of `position` the nearest one; of those within two pixels of it
 // the one nearest to the eye. Where there is none, the same for wood (the segments, as thick as they are
-// seen): then the upper node of the segment. kNoNode where there is nothing. Linear; allocates once.
+// seen): then the upper node of the segment. kNoNode where there is nothing, and where the view or the
+// position is no number. Linear; allocates once.
 NodeId pick_node(const Tree& tree, const ScreenView& view, const DVec2& position, double distance);
 
 // The nodes seen in the rectangle between two corners, by rising id.

@@ -71,7 +71,7 @@ std::string lstring_file_text(std::string_view string, const ScanFrame& frame,
 void write_lstring_file(const std::string& path, const Tree& tree, const LStringOptions& options,
                         const Progress* progress) {
     if (tree.empty()) throw Error("The tree is empty; there is nothing to write to '" + path + "'.");
-    require_sound_measures(tree, path);
+    require_readable(tree, path, false);
     const std::string string = write_lstring(tree, tree.root(), options, progress);
     ScanFrame frame = tree.frame();
     frame.origin = frame.to_scan(tree.node(tree.root()).position);
@@ -109,7 +109,16 @@ LStringTree parse_lstring_file(std::string_view bytes, const std::string& path, 
 }
 
 bool is_lstring_file(std::string_view bytes) {
-    return has_heading(bytes);
+    if (has_heading(bytes)) return true;
+    // Its first line that says something draws wood and has nothing but a turtle's symbols and numbers; a
+    // table has names or no F.
+    while (const std::optional<std::string_view> line = next_line(bytes)) {
+        const size_t begin = line->find_first_not_of(" \t");
+        if (begin == std::string_view::npos || (*line)[begin] == '#') continue;
+        return line->find('F') != std::string_view::npos &&
+               line->find_first_not_of(" \tFf[]()!+-&^\\/|$~{}%@.,0123456789eE") == std::string_view::npos;
+    }
+    return false;
 }
 
 }  // namespace treerec

@@ -23,7 +23,7 @@ LStringTree read_lstring_file(const std::string& path, const LStringOptions& opt
 LStringTree parse_lstring_file(std::string_view bytes, const std::string& path,
                                const LStringOptions& options = {}, const Progress* progress = nullptr);
 
-// Whether the bytes begin with that comment.
+// Whether the bytes begin with that comment, or with turtle commands alone.
 bool is_lstring_file(std::string_view bytes);
 
 }  // namespace treerec

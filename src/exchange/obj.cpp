@@ -25,8 +25,12 @@ struct Writer {
         at += length;
     }
     void integer(uint64_t value) { at = std::to_chars(at, at + 20, value).ptr; }
-    // With `decimals` digits after the point, without trailing zeros.
+    // With `decimals` digits after the point, without trailing zeros; below zero: as many as it takes.
     void number(float value, int decimals) {
+        if (decimals < 0) {
+            at = std::to_chars(at, at + 48, value).ptr;
+            return;
+        }
         static constexpr double kScales[] = {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
         const double scaled = std::abs(static_cast<double>(value)) * kScales[decimals] + 0.5;
         if (!(scaled < 9e15)) {
@@ -69,15 +73,24 @@ void append_lines(std::string& out, size_t count, size_t longest, const Progress
         out += part;
 }
 
+// A hundredth of a millimetre will do, but for what is hardly larger.
+int decimals_for(const Mesh& mesh) {
+    constexpr float kSmall = 0.05f;  // metres
+    for (const Vec3& p : mesh.positions)
+        if (std::abs(p.x) > kSmall || std::abs(p.y) > kSmall || std::abs(p.z) > kSmall) return 5;
+    return -1;
+}
+
 void append_mesh(std::string& out, const Mesh& mesh, const std::string& name, uint64_t first,
                  const Progress* progress) {
     out += "o " + name + "\n";
     const size_t count = mesh.positions.size();
+    const int decimals = decimals_for(mesh);
     append_lines(out, count, 160, progress, [&](Writer& writer, size_t i) {
         writer.text("v");
         for (int axis = 0; axis < 3; axis++) {
             writer.text(" ");
-            writer.number(mesh.positions[i][axis], 5);
+            writer.number(mesh.positions[i][axis], decimals);
         }
         writer.text("\n");
     });

@@ -17,7 +17,7 @@
 namespace treerec {
 
 void write_qsm_csv(const std::string& path, const Tree& tree) {
-    require_sound_measures(tree, path);
+    require_readable(tree, path);
     std::string text =
         "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent_1based,branch,order,measured\n";
     text.reserve(text.size() + 160 * tree.size());

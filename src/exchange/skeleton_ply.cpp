@@ -94,7 +94,7 @@ void read_element(ValueReader& reader, const PlyElement& element, Row row) {
 }  // namespace
 
 void write_skeleton_ply(const std::string& path, const Tree& tree) {
-    require_sound_measures(tree, path);
+    require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
     const size_t count = table.positions.size();
     const size_t edges = count > 0 ? count - 1 : 0;

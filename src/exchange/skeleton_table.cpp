@@ -3,16 +3,13 @@
 #include <cmath>
 
 #include "error.h"
+#include "exchange/finite.h"
 
 namespace treerec {
 
 namespace {
 
 constexpr double kLeastRadius = 1e-4;  // metres
-// Beyond these a number is damage, in units of the file: from zero and from the root, as in clouds
-// (scan/read_cloud.cpp).
-constexpr double kLargestCoordinate = 1e12;
-constexpr double kLargestOffset = 1e9;
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "error.h"
+#include "exchange/finite.h"
 
 namespace treerec {
 
@@ -67,7 +68,7 @@ bool read_stamp(std::string_view comment, FileStamp& stamp, const std::string& p
     if (!version || !unit) return false;
     if (*version > kStampVersion)
         throw Error("'" + path + "' was written by a newer version of this program; update to open it.");
-    if (!(*unit > 1e-12) || !(*unit < 1e12)) return false;
+    if (!(*unit > kSmallestUnit) || !(*unit < kLargestUnit)) return false;
     try {
         stamp.up = parse_up_axis(words[3]);
     } catch (const Error& error) {

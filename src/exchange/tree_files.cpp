@@ -13,6 +13,7 @@
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
 #include "file_bytes.h"
+#include "lsystem/grammar.h"
 #include "tree/trunk.h"
 
 namespace treerec {
@@ -99,7 +100,7 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 }  // namespace
 
 void write_treefile(const std::string& path, const Tree& tree) {
-    require_sound_measures(tree, path);
+    require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
     std::string text = "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) +
                        "\nx,y,z,radius,parent_id,flags\n";
@@ -230,7 +231,7 @@ std::string first_bytes(const std::string& path) {
 
 SkeletonFormat sniff(const std::string& path) {
     const std::string bytes = first_bytes(path);
-    if (is_lstring_file(bytes)) return SkeletonFormat::kLString;
+    if (is_lstring_file(bytes) || extension_of(path) == "lstring") return SkeletonFormat::kLString;
     if (looks_like_mtg(bytes)) return SkeletonFormat::kMtg;
     if (looks_like_qsm_sections(bytes)) return SkeletonFormat::kQsmCsv;
     std::string_view rest = bytes;
@@ -274,6 +275,18 @@ std::string other_kind(const std::string& path) {
            "cylinders (.csv), SWC, MTG, an L-string.";
 }
 
+Tree read_string_of(const std::string& path, std::optional<LStringDialect> dialect) {
+    const FileBytes file = read_file(path);
+    if (!has_heading(file.view()) && is_grammar(file.view()))
+        throw Error("'" + path + "' is a grammar; 'treerec grow' makes a tree of it.");
+    LStringOptions options;
+    options.dialect_is_told = dialect.has_value();
+    options.dialect = dialect.value_or(options.dialect);
+    Tree tree = parse_lstring_file(file.view(), path, options).tree;
+    require_wood(tree, "The L-string '" + path + "'");
+    return tree;
+}
+
 }  // namespace
 
 bool is_skeleton_file(const std::string& path) {
@@ -292,7 +305,7 @@ Tree read_skeleton(const std::string& path, const SkeletonChoice& choice, Skelet
             return read_qsm_csv(path, choice, report);
         case SkeletonFormat::kLString:
             choose_tree({1}, choice, path, report);
-            return read_lstring_file(path).tree;
+            return read_string_of(path, choice.dialect);
         case SkeletonFormat::kSwc:
             return read_swc(path, choice, report);
         case SkeletonFormat::kMtg:

@@ -10,9 +10,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lsystem/lstring.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -21,8 +23,12 @@ namespace treerec {
 struct SkeletonChoice {
     UpAxis up;    // of files that do not say
     size_t tree;  // of a file with several: its number in the file's order, from 1; 0: the largest
+    // Of an L-string, whatever its heading says; nothing: as that says, or a turtle's.
+    std::optional<LStringDialect> dialect;
 
-    SkeletonChoice(UpAxis up_axis = UpAxis::kZ, size_t number = 0) : up(up_axis), tree(number) {}
+    SkeletonChoice(UpAxis up_axis = UpAxis::kZ, size_t number = 0,
+                   std::optional<LStringDialect> string_dialect = std::nullopt)
+        : up(up_axis), tree(number), dialect(string_dialect) {}
 };
 
 // What there was to read.

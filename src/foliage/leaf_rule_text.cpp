@@ -62,7 +62,7 @@ struct Words {
 };
 
 std::vector<std::string> known_names() {
-    std::vector<std::string> names{"look", "arrangement", "form", "sprig"};
+    std::vector<std::string> names{"look", "arrangement", "form", "sprig", "sprig_dialect"};
     for (const Number& number : kNumbers)
         names.emplace_back(number.name);
     for (const Whole& whole : kWholes)
@@ -154,13 +154,19 @@ LeafKind kind_of(const Words& words, const LeafRules& own) {
     rules.follow_color = std::min(rules.follow_color, own.follow_color);
     if (!words.preset.empty() && rules.enabled) kind.look = words.preset;
     rules.internode *= leaves_per_node(rules);
+    std::optional<LStringDialect> dialect;
+    for (const auto& [name, text] : words.changes)
+        if (name == "sprig_dialect") dialect = parse_lstring_dialect(text);
+    if (dialect && std::none_of(words.changes.begin(), words.changes.end(),
+                                [](const auto& one) { return one.first == "sprig"; }))
+        throw Error("The leaf rule's sprig_dialect is of a sprig, and it has none.");
     for (const auto& [name, text] : words.changes) {
         if (name == "look") kind.look = read_look(text);
         if (name == "arrangement")
             rules.arrangement = static_cast<LeafArrangement>(read_choice(name, text, kArrangements));
         if (name == "form") rules.form = static_cast<LeafForm>(read_choice(name, text, kForms));
         if (name == "sprig") {
-            rules.sprig = read_sprig(text);
+            rules.sprig = read_sprig(text, dialect);
             rules.form = LeafForm::kSprig;
         }
         for (const Number& number : kNumbers)
@@ -223,8 +229,10 @@ std::vector<LeafKind> leaf_kinds(const Tree& tree, const LeafRules& own) {
     return kinds;
 }
 
-std::shared_ptr<const LeafSprig> read_sprig(std::string_view string) {
+std::shared_ptr<const LeafSprig> read_sprig(std::string_view string, std::optional<LStringDialect> dialect) {
     LStringOptions options;
+    options.dialect_is_told = dialect.has_value();
+    options.dialect = dialect.value_or(options.dialect);
     options.leaf_symbols = "L";
     options.angle = kSprigAngle;
     LStringTree read = read_lstring_with_leaves(string, options);

@@ -7,17 +7,19 @@
 //     default                      the tree's own
 //
 // The names are those of LeafRules, but for `internode`, which counts from node to node, however many leaves
-// one bears; `whorl_size` and `petiole_length`; `sprig`; and `look`, the preset whose pictures the leaves
-// show. How far leaves follow a scan is the tree's affair: a preset follows it no further than the tree's own
-// do.
+// one bears; `whorl_size` and `petiole_length`; `sprig` and its `sprig_dialect`, turtle or paper; and `look`,
+// the preset whose pictures the leaves show. How far leaves follow a scan is the tree's affair: a preset
+// follows it no further than the tree's own do.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "foliage/leaf_rules.h"
+#include "lsystem/lstring.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -42,7 +44,9 @@ LeafKind make_leaf_kind(std::string_view text, const LeafRules& own);
 std::vector<LeafKind> leaf_kinds(const Tree& tree, const LeafRules& own);
 
 // The twig that a string of turtle commands draws, to be drawn at every leaf's place; a turn without a number
-// is 45 degrees. Throws Error for what is no such string, or draws no wood.
-std::shared_ptr<const LeafSprig> read_sprig(std::string_view string);
+// is 45 degrees. dialect: whatever its first line says; nothing: as that says, or a turtle's. Throws Error
+// for what is no such string, or draws no wood.
+std::shared_ptr<const LeafSprig> read_sprig(std::string_view string,
+                                            std::optional<LStringDialect> dialect = std::nullopt);
 
 }  // namespace treerec

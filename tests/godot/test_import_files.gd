@@ -182,8 +182,9 @@ func test_parameters_cover_all_options() -> void:
 			)
 		var options: Dictionary = ImportOptions.to_options(values)
 		check((preset == 0) == options.is_empty(), "preset %d gives %s" % [preset, options])
-		var named: int = values.size() - 2  # the unit is none, and a skeleton file's tree
+		var named: int = values.size() - 3  # the unit is none, nor what only skeleton files have
 		check_equal(named, TreeReconstructor.get_option_list().size() - 1, "the number of options")
+	check_equal(ImportOptions.to_options({"advanced/prune": "paper"}), {"prune": "paper"}, "prune")
 	# A group of options that nobody arranged would have no place in the dock.
 	var groups: Dictionary = {}
 	for parameter: Dictionary in ImportOptions.list(0):
@@ -194,7 +195,7 @@ func test_parameters_cover_all_options() -> void:
 func test_every_parameter_has_a_tooltip() -> void:
 	for parameter: Dictionary in ImportOptions.list(0):
 		var name: String = parameter["name"]
-		if name not in ["scan/unit", "scan/tree_in_file"]:
+		if name not in ["scan/unit", "scan/tree_in_file", "scan/dialect"]:
 			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
 	var tooltip: String = OptionTips.to_tooltip("Up | Axis", 'With [b]tags[/b], "quotes" | bars.')
 	var parts: PackedStringArray = tooltip.split("|", true, 3)
@@ -270,6 +271,9 @@ func test_only_what_matters_is_shown() -> void:
 	check(ImportOptions.is_visible("a.las", false, "scan/classes", guess), "classes of LAS")
 	check(not ImportOptions.is_visible("a.xyz", false, "scan/classes", guess), "classes of text")
 	check(ImportOptions.is_visible("a.treefile", true, "scan/tree_in_file", guess), "of many trees")
+	check(ImportOptions.is_visible("a.lstring", true, "scan/dialect", guess), "of an L-string")
+	check(not ImportOptions.is_visible("a.treefile", true, "scan/dialect", guess), "of no L-string")
+	check(not ImportOptions.is_visible("a.las", false, "scan/dialect", guess), "of a cloud's")
 	check(not ImportOptions.is_visible("a.las", false, "scan/tree_in_file", guess), "of one cloud")
 	check(not ImportOptions.is_visible("a.swc", true, "skeleton/spacing", guess), "of a skeleton")
 	check(ImportOptions.is_visible("a.swc", true, "scan/up_axis", guess), "the axis of a skeleton")

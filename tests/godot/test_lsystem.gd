@@ -215,6 +215,97 @@ func test_a_heading_says_the_dialect() -> void:
 	check_equal(again.skeleton["positions"], made.skeleton["positions"], "the same graft")
 
 
+# A paper's string says 10 cm of wood that lies flat; as a turtle's, that it stands.
+func test_an_argument_says_the_dialect_of_a_branch() -> void:
+	const PAPER: LSystem.Dialect = LSystem.DIALECT_PAPER
+	var text: String = "[+45&60F0.5[-30&80F0.2]]"
+	check_equal(TreeReconstruction.measure_branch(text, PAPER)["node_count"], 3, "its nodes")
+	check_near(TreeReconstruction.measure_branch(text, PAPER)["length"], 0.7, 1e-6, "its length")
+	check(not TreeReconstruction.draw_branch(text, 64, PAPER).is_empty(), "It was not drawn.")
+	# The argument goes before the heading.
+	var headed: String = "# L-string; dialect paper\n&(90)F(1)&(90)F(1)"
+	check_equal(
+		TreeReconstruction.draw_branch(headed, 64),
+		TreeReconstruction.draw_branch("&(90)F(1)&(90)F(1)", 64, PAPER),
+		"the picture"
+	)
+	check(
+		(
+			TreeReconstruction.draw_branch(headed, 64)
+			!= TreeReconstruction.draw_branch(headed, 64, LSystem.DIALECT_TURTLE)
+		),
+		"The argument was not heard."
+	)
+	for dialect: int in [-1, 3]:
+		expect_error("no dialect %d" % dialect)
+		check(TreeReconstruction.measure_branch("F(1)", dialect).is_empty(), "It was measured.")
+		expect_error("no dialect %d" % dialect)
+		check(LSystem.read_string("F(1)", dialect) == null, "It was read.")
+	var file: String = folder.path_join("bare.lstring")
+	FileAccess.open(file, FileAccess.WRITE).store_string(text)
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	var read: TreeReconstruction = reconstructor.import_skeleton(file, "y", 0, PAPER)
+	check(read != null, reconstructor.get_error_message())
+	if read != null:
+		check_equal(read.get_node_count(), 3, "the file's nodes")
+	check(reconstructor.import_skeleton(file) == null, "A file of the paper's was misread.")
+	check("dialect paper" in reconstructor.get_error_message(), reconstructor.get_error_message())
+	FileAccess.open(file, FileAccess.WRITE).store_string("F(1)[+(30)F(0.5)]F(1)")
+	check_equal(reconstructor.import_skeleton(file).get_node_count(), 4, "a turtle's file")
+
+
+func test_a_twig_has_a_dialect() -> void:
+	var text: String = "[+45&60F0.5[-30&80F0.2]]"
+	var twig: Twig = Twig.new()
+	twig.dialect = LSystem.DIALECT_PAPER
+	twig.lstring = text
+	check_near(twig.length, 0.7, 1e-6, "its length")
+	twig.draw_thumbnail()
+	check(twig.thumbnail != null, "It has no picture.")
+	var right: PackedInt64Array = (
+		LSystem.read_string(text, LSystem.DIALECT_PAPER).skeleton["positions"]
+	)
+	check_equal(LSystem.read_string(twig.get_string()).skeleton["positions"], right, "its wood")
+	for heading: String in ["# L-string; dialect turtle\n", "# L-string; radius 0.02\n"]:
+		twig.lstring = heading + text
+		check_equal(LSystem.read_string(twig.get_string()).skeleton["positions"], right, heading)
+	var made: TreeReconstruction = grown_tree(3)
+	var count: int = made.get_node_count()
+	var edit: TreeEdit = made.graft(made.get_leaves()[0], {"string": twig.get_string()})
+	check(edit != null and made.get_node_count() == count + 2, "It was not grafted.")
+	twig.dialect = LSystem.DIALECT_TOLD
+	twig.lstring = "F(1)"
+	check_equal(twig.get_string(), "F(1)", "as it is")
+	check_near(twig.length, 1.0, 1e-6, "a turtle's length")
+	# It is saved.
+	twig.dialect = LSystem.DIALECT_PAPER
+	var path: String = folder.path_join("paper.tres")
+	check_equal(ResourceSaver.save(twig, path), OK, "saving")
+	var again: Twig = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as Twig
+	check_equal(again.dialect, LSystem.DIALECT_PAPER, "the saved dialect")
+
+
+func test_a_sprig_has_a_dialect() -> void:
+	var rule: LeafRule = LeafRule.new()
+	rule.form = LeafRule.FORM_SPRIG
+	rule.sprig_dialect = LSystem.DIALECT_PAPER
+	rule.sprig_string = "[+45&60F0.5[-30&80F0.2]]"
+	var made: TreeReconstruction = grown_tree(4)
+	made.leaf_rule = rule
+	var sprig: int = made.build_leaf_form_arrays(0)[Mesh.ARRAY_VERTEX].size()
+	var path: String = folder.path_join("paper_rule.tres")
+	check_equal(ResourceSaver.save(rule, path), OK, "saving")
+	var read: LeafRule = ResourceLoader.load(path, "", ResourceLoader.CACHE_MODE_IGNORE) as LeafRule
+	check_equal(read.sprig_dialect, int(LSystem.DIALECT_PAPER), "the saved dialect")
+	made.leaf_rule = read
+	check_equal(made.build_leaf_form_arrays(0)[Mesh.ARRAY_VERTEX].size(), sprig, "the saved sprig")
+	expect_error("dialect paper")
+	rule.sprig_dialect = LSystem.DIALECT_TOLD
+	expect_error("no dialect 3")
+	rule.sprig_dialect = 3
+	check_equal(rule.sprig_dialect, int(LSystem.DIALECT_TOLD), "as before")
+
+
 func test_segments_vary_by_a_seed() -> void:
 	var text: String = LSystem.write_string(grown_tree(4))
 	var plain: TreeReconstruction = LSystem.read_string(text)

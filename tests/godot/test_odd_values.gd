@@ -89,3 +89,140 @@ func test_numbers_of_a_pusher() -> void:
 			check(sphere.is_finite(), "The shaders have %s." % sphere)
 	pusher.free()
 	await tree.process_frame
+
+
+# Each property of a rule by itself, then all at once at either end of their ranges.
+func test_numbers_of_a_leaf_rule() -> void:
+	var made: TreeReconstruction = grown_tree(4)
+	var usual: LeafRule = LeafRule.from_preset("maple")
+	var numbers: PackedStringArray = []
+	for entry: Dictionary in usual.get_property_list():
+		if entry["type"] in [TYPE_FLOAT, TYPE_INT] and entry["usage"] & PROPERTY_USAGE_STORAGE:
+			numbers.append(entry["name"])
+	check(numbers.size() > 20, "A rule has %d numbers." % numbers.size())
+	expect_error("must be a finite number")
+	expect_error("There is no ")
+	for name: String in numbers:
+		var rule: LeafRule = usual.duplicate()
+		made.leaf_rule = rule
+		for number: float in ODD + ([0.0, -1e30, 1e300, -1e300] as Array[float]):
+			if rule.get(name) is float:
+				rule.set(name, number)
+			elif is_finite(number):
+				rule.set(name, int(clampf(number, -1e15, 1e15)))
+			check(is_finite(rule.get(name)), "%s is %s after %s." % [name, rule.get(name), number])
+		# Two million are the most that there may be, and no stall.
+		rule.maximum_leaves = mini(rule.maximum_leaves, 20_000)
+		_check_leaves(made, name)
+	for number: float in [-1e30, 1e30]:
+		var rule: LeafRule = usual.duplicate()
+		for name: String in numbers:
+			if rule.get(name) is float:
+				rule.set(name, number)
+		rule.maximum_leaves = 20_000
+		made.leaf_rule = rule
+		_check_leaves(made, "all at %s" % number)
+
+
+func test_resources_of_a_leaf_rule() -> void:
+	var made: TreeReconstruction = grown_tree(4)
+	var rule: LeafRule = LeafRule.new()
+	made.leaf_rule = rule
+	var curve: Curve = Curve.new()
+	curve.max_value = 1e30
+	for number: float in ODD:
+		curve.add_point(Vector2(0.5, number))
+		rule.density_by_height = curve
+		rule.density_by_radius = curve
+		_check_leaves(made, "a curve with %s" % number)
+		var colors: Gradient = Gradient.new()
+		colors.set_color(0, Color(number, number, number, number))
+		rule.season_colors = colors
+		for color: Color in rule.get_season_tints():
+			check(
+				is_finite(color.r) and is_finite(color.g) and is_finite(color.b),
+				"A tint is %s after %s." % [color, number]
+			)
+	rule.season_colors = null
+	for shares: PackedFloat32Array in [[NAN], [INF], [-1.0], [0.5, NAN]]:
+		expect_error("density_by_order")
+		rule.density_by_order = shares
+		check(rule.density_by_order.is_empty(), "%s were taken." % shares)
+
+
+func _check_leaves(made: TreeReconstruction, what: String) -> void:
+	var begun: int = Time.get_ticks_msec()
+	for lod: int in [0, 2]:
+		for number: float in made.build_leaf_buffer(lod):
+			if not is_finite(number):
+				check(false, "A leaf is not finite: %s." % what)
+				break
+		for vertex: Vector3 in made.build_leaf_form_arrays(lod)[Mesh.ARRAY_VERTEX]:
+			if not vertex.is_finite():
+				check(false, "A card is not finite: %s." % what)
+				break
+	check(Time.get_ticks_msec() - begun < 20_000, "It stalls: %s." % what)
+
+
+func test_numbers_of_a_pick() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	var size: Vector2 = Vector2(1280.0, 720.0)
+	var view: Projection = (
+		Projection.create_perspective(60.0, size.aspect(), 0.05, 500.0)
+		* Projection(Transform3D(Basis(), Vector3(0.0, 3.0, 12.0)).affine_inverse())
+	)
+	var all: Rect2 = Rect2(Vector2.ZERO, size)
+	check(not made.pick_nodes(view, size, all).is_empty(), "Nothing is in the view.")
+	for number: float in [NAN, INF, -INF]:
+		for column: int in 4:
+			var odd: Projection = view
+			odd[column][1] = number
+			check_equal(made.pick_node(odd, size, size / 2.0), -1, "a view with %s" % number)
+			check(made.pick_nodes(odd, size, all).is_empty(), "A view with %s." % number)
+		for viewport: Vector2 in [Vector2(number, 720.0), Vector2(1280.0, number)]:
+			check_equal(made.pick_node(view, viewport, size / 2.0), -1, "through %s" % viewport)
+			check(made.pick_nodes(view, viewport, all).is_empty(), "Through %s." % viewport)
+		check_equal(made.pick_node(view, size, Vector2(number, 360.0)), -1, "at %s" % number)
+	check(made.pick_nodes(view, size, Rect2(NAN, 0.0, 10.0, 10.0)).is_empty(), "In no rectangle.")
+	for distance: float in [NAN, -1.0, -INF]:
+		check_equal(made.pick_node(view, size, size / 2.0, distance), -1, "within %s" % distance)
+	for distance: float in [INF, 1e30]:
+		check(
+			made.has_node(made.pick_node(view, size, size / 2.0, distance)), "Nothing is nearest."
+		)
+	for viewport: Vector2 in [Vector2.ZERO, -size, size * 1e30]:
+		made.pick_node(view, viewport, size / 2.0)
+		made.pick_nodes(view, viewport, all)
+
+
+# What a script may ask for in bulk is bounded, or refused.
+func test_huge_counts() -> void:
+	var made: TreeReconstruction = grown_tree(3)
+	for sentence: String in [
+		"between 1 and 10000 capsules",
+		"between 1 and 10000 convex parts",
+		"16 to 1024 pixels",
+		"no level of detail -1",
+		"Capsules need a minimum radius",
+		"Convex parts need a minimum radius",
+		"The amount of variation must be 0 to 1",
+	]:
+		expect_error(sentence)
+	var begun: int = Time.get_ticks_msec()
+	for seed: int in [-1, 1 << 62, -(1 << 63), 9223372036854775807]:
+		var variant: TreeReconstruction = made.make_variant(seed, 1.0, 1.2)
+		check(variant != null and variant.get_aabb().size.is_finite(), "Seed %d makes none." % seed)
+	for number: int in [-(1 << 40), -1, 0, 100_000, 1 << 40]:
+		var capsules: Array[Dictionary] = made.build_capsules(number)
+		check(capsules.size() <= 100_000, "%d capsules." % capsules.size())
+		made.build_convex_parts(number)
+		made.build_leaf_buffer(number)
+		made.build_mesh_arrays(number)
+		made.draw(number)
+	for number: float in ODD:
+		var capsules: Array[Dictionary] = made.build_capsules(24, number)
+		for capsule: Dictionary in capsules:
+			check(is_finite(capsule["radius"]), "A capsule of %s." % number)
+		made.build_convex_parts(24, number)
+		check(made.make_variant(3, number) == null or number == 1.0, "An amount of %s." % number)
+	check(Time.get_ticks_msec() - begun < 30_000, "It stalls.")

@@ -273,6 +273,30 @@ func test_reads_the_tree_of_a_file_that_is_asked_for() -> void:
 		check_sentence(reconstructor.get_error_message(), "the message for tree %d" % number)
 
 
+# As the command does to the tree that comes without.
+func test_long_twigs_are_cut_where_asked() -> void:
+	var path: String = write_scan("long_twigs.xyz")
+	var plain: TreeReconstruction = TreeReconstructor.new().reconstruct_file(path)
+	check_equal(
+		TreeReconstructor.new().reconstruct_file(path, {"prune": "none"}).skeleton,
+		plain.skeleton,
+		"the default"
+	)
+	for rule: String in ["paper", "leader"]:
+		var pruned: TreeReconstruction = TreeReconstructor.new().reconstruct_file(
+			path, {"prune": rule}
+		)
+		check_equal(pruned.provenance["options"]["prune"], rule, "the provenance")
+		var expected: TreeReconstruction = plain.duplicate()
+		expected.edit("prune spare_leader=" + ("yes" if rule == "leader" else "no"))
+		check(expected.get_node_count() < plain.get_node_count(), "%s cuts nothing." % rule)
+		check_equal(pruned.get_node_count(), expected.get_node_count(), rule)
+		check_equal(pruned.get_aabb(), expected.get_aabb(), "the size by " + rule)
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	check(reconstructor.reconstruct_file(path, {"prune": "some"}) == null, "'some' was taken.")
+	check_sentence(reconstructor.get_error_message(), "the message")
+
+
 func test_options_are_described() -> void:
 	var options: Array[Dictionary] = TreeReconstructor.get_option_list()
 	check(options.size() > 8, "There are %d options." % options.size())

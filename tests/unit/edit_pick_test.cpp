@@ -142,6 +142,36 @@ TEST(Pick, AgreesWithLookingAtEveryNode) {
     }
 }
 
+// A view of no size or without an end sees nothing, whichever of its numbers is none.
+TEST(Pick, NothingIsSeenThroughWhatIsNoView) {
+    const Tree tree = test::random_tree(3, 60);
+    const double odd[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308, 0.0};
+    const ScreenView good{glm::dmat4(1.0), 1280.0, 720.0};
+    for (const double value : odd) {
+        for (int entry = 0; entry < 18; entry++) {
+            ScreenView view = good;
+            if (entry < 16)
+                view.to_clip[entry / 4][entry % 4] = value;
+            else
+                (entry == 16 ? view.width : view.height) = value;
+            const NodeId one = pick_node(tree, view, {640.0, 360.0}, 8.0);
+            const std::vector<NodeId> all = pick_nodes(tree, view, {0.0, 0.0}, {1280.0, 720.0});
+            if (std::isfinite(value)) {
+                EXPECT_TRUE(one == kNoNode || tree.contains(one)) << value << ", " << entry;
+            } else {
+                EXPECT_EQ(one, kNoNode) << value << ", " << entry;
+                EXPECT_TRUE(all.empty()) << value << ", " << entry;
+            }
+        }
+        if (std::isfinite(value)) continue;
+        EXPECT_EQ(pick_node(tree, good, {value, 360.0}, 8.0), kNoNode);
+        EXPECT_EQ(pick_node(tree, good, {640.0, value}, 8.0), kNoNode);
+    }
+    EXPECT_EQ(pick_node(tree, good, {640.0, 360.0}, NAN), kNoNode);
+    EXPECT_EQ(pick_node(tree, good, {640.0, 360.0}, -1.0), kNoNode);
+    EXPECT_TRUE(pick_nodes(tree, good, {NAN, 0.0}, {1280.0, 720.0}).empty());
+}
+
 // The wood that a preview leaves is the wood that the edit leaves.
 TEST(Preview, ShowsWhatTheEditDoes) {
     using Line = std::array<double, 6>;

@@ -82,6 +82,11 @@ TEST(LeafKinds, RulesHaveOneText) {
         error_of("form=leaf"),
         "The leaf rule's form must be one of spray, simple, pinnate, palmate, needles, sprig, not 'leaf'.");
     EXPECT_EQ(error_of("look=none"), "There is no picture of 'none' for the leaf rule's look.");
+    EXPECT_EQ(make_leaf_kind("sprig=[+45&60F0.5] sprig_dialect=paper", {}).rules.sprig->wood.size(), 2u);
+    EXPECT_EQ(plain_leaf_rule("sprig_dialect=paper sprig=F1"), "sprig=F1 sprig_dialect=paper");
+    EXPECT_NE(error_of("sprig=[+45&60F0.5]").find("dialect paper"), std::string::npos);
+    EXPECT_NE(error_of("sprig=F sprig_dialect=latin").find("latin"), std::string::npos);
+    EXPECT_NE(error_of("sprig_dialect=paper").find("has none"), std::string::npos);
     EXPECT_EQ(error_of("sprig=+"), "This string draws no twig: it has no F.");
 }
 

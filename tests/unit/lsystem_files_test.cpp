@@ -199,6 +199,55 @@ TEST_F(LStringCli, TheDialectIsTheFilesOrAsToldAndNeverGuessed) {
     EXPECT_EQ(get("e.csv"), get("f.csv"));
 }
 
+// Without a heading: told by its ending, and by what is in it.
+TEST_F(LStringCli, EveryCommandReadsAStringWithoutAHeading) {
+    for (const std::string text : {"F(1)[+(30)F(.5)]F(1)\n", "\n# ours\n  F(1)\n[+(30)F(.5)] X F(1)"})
+        for (const std::string name : {"bare.lstring", "bare.txt"}) {
+            put(name, text);
+            ASSERT_EQ(run("info " + name).code, 0) << get("stderr.log");
+            EXPECT_NE(get("stdout.log").find("a skeleton"), std::string::npos) << get("stdout.log");
+            EXPECT_NE(get("stdout.log").find("nodes          4"), std::string::npos) << get("stdout.log");
+            ASSERT_EQ(run("edit " + name + " -c 'prune_below node=1' -o out.csv").code, 0)
+                << get("stderr.log");
+            EXPECT_EQ(read_skeleton(path("out.csv")).size(), 2u);
+            EXPECT_EQ(run("lstring " + name).code, 0) << get("stderr.log");
+            EXPECT_EQ(run("reconstruct " + name + " -o out.glb").code, 1);
+            EXPECT_NE(get("stderr.log").find("is a skeleton"), std::string::npos) << get("stderr.log");
+        }
+    // By its ending alone: letters of a grammar, which a turtle skips.
+    put("letters.lstring", "AF(1)[+(30)BF(.5)]F(1)\n");
+    EXPECT_EQ(run("info letters.lstring").code, 0) << get("stderr.log");
+    // What is no string is told as such, and tables stay tables.
+    put("points.lstring", "1 2 3\n4 5 6\n");
+    EXPECT_EQ(run("info points.lstring").code, 1);
+    EXPECT_NE(get("stderr.log").find("L-string"), std::string::npos) << get("stderr.log");
+    put("grammar.lstring", "axiom: F\nF -> FF\n");
+    EXPECT_EQ(run("info grammar.lstring").code, 1);
+    EXPECT_NE(get("stderr.log").find("treerec grow"), std::string::npos) << get("stderr.log");
+    for (const char* table : {"1 2 3\n-4 5e0 6\n", "x y z\n1 2 3\n", "FID,x,y,z\n1,2,3,4\n", ""}) {
+        put("points.txt", table);
+        EXPECT_FALSE(is_skeleton_file(path("points.txt"))) << table;
+    }
+}
+
+TEST_F(LStringCli, EveryCommandTakesTheDialectOfAString) {
+    put("paper.lstring", "[+(45)&(60)F(0.5)[-(30)&(80)F(0.2)]]");
+    put("headed.lstring", "# L-string; dialect paper\n[+(45)&(60)F(0.5)[-(30)&(80)F(0.2)]]");
+    ASSERT_EQ(run("grow headed.lstring -o right.csv").code, 0) << get("stderr.log");
+    for (const std::string command : {"edit paper.lstring -c 'smooth_paths rounds=0'",
+                                      "lighten paper.lstring --angle 0 --distance 0 --deviation 0"}) {
+        ASSERT_EQ(run(command + " --dialect paper -o told.csv").code, 0) << command << get("stderr.log");
+        ASSERT_EQ(run(command + " -o misread.csv").code, 0) << command << get("stderr.log");
+        EXPECT_EQ(get("told.csv"), get("right.csv")) << command;
+        EXPECT_NE(get("misread.csv"), get("right.csv")) << command;
+    }
+    ASSERT_EQ(run("info paper.lstring --dialect paper --json").code, 0) << get("stderr.log");
+    const std::string told = get("stdout.log");
+    ASSERT_EQ(run("info headed.lstring --json").code, 0) << get("stderr.log");
+    EXPECT_EQ(told.substr(told.find("height")), get("stdout.log").substr(get("stdout.log").find("height")));
+    EXPECT_EQ(run("info paper.lstring --dialect latin").code, 2);
+}
+
 TEST_F(LStringCli, AGrammarHasItsBounds) {
     put("many.lsys", "iterations: 12\naxiom: F\nF -> FF\n");
     EXPECT_EQ(run("grow many.lsys --most-nodes 1000 -o a.csv").code, 1);

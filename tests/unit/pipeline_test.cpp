@@ -170,6 +170,34 @@ TEST_F(Pipeline, LongTwigsAreCutAtLast) {
     }
 }
 
+// A rule gives radii to the wood that is left, none of which counts as measured; what was cut has no say.
+TEST_F(Pipeline, ARuleOfRadiiIsForThePrunedTree) {
+    const Reconstruction plain = reconstruct_tree(path("scan.ply"), {});
+    for (const RadiusRule rule : {RadiusRule::kLinear, RadiusRule::kDaVinci}) {
+        ReconstructOptions options;
+        options.prune.emplace();
+        options.prune->spare_leader = false;
+        options.radii = rule;
+        const Reconstruction both = reconstruct_tree(path("scan.ply"), options);
+        Tree expected = plain.tree;
+        prune_twigs(expected, *options.prune);
+        expected = expected.compacted();
+        apply_radius_rule(expected, rule);
+        EXPECT_EQ(both.tree.check(), std::nullopt);
+        ASSERT_EQ(both.tree.size(), expected.size());
+        EXPECT_LT(both.tree.size(), plain.tree.size());
+        for (const NodeId id : expected.depth_first()) {
+            ASSERT_EQ(both.tree.node(id).position, expected.node(id).position);
+            ASSERT_EQ(both.tree.node(id).radius, expected.node(id).radius);
+            ASSERT_FALSE(both.tree.node(id).is_measured());
+        }
+        // Pruning goes by nodes, so that the rule has no say in it either.
+        Tree ruled = plain.tree;
+        apply_radius_rule(ruled, rule);
+        EXPECT_EQ(prune_twigs(ruled, *options.prune).nodes.size(), both.pruned);
+    }
+}
+
 TEST_F(Pipeline, ASkeletonIsNoCloud) {
     for (const char* name : {"truth.ply", "truth.txt", "truth.csv"}) {
         export_tree(path(name), truth_, leaf_preset("none"), 1);

@@ -6,8 +6,10 @@ extends Resource
 ##
 ## [TwigLibrary] holds the ones that ship with the addon. Make others of any branch of a tree with
 ## [method from_branch], or write an L-string. [codeblock]
-## tree.graft(node, {"string": twig.lstring, "seed": 5})
+## tree.graft(node, {"string": twig.get_string(), "seed": 5})
 ## [/codeblock]
+
+const _HEADING: String = "# L-string;"
 
 ## The name in a list.
 @export var title: String = "":
@@ -25,6 +27,14 @@ extends Resource
 @export_multiline var lstring: String = "":
 	set(value):
 		lstring = value
+		_measures = {}
+		emit_changed()
+
+## How [member lstring] is read: as its first line says, or else as a turtle's, or in a dialect
+## whatever it says. [method get_string] has it in its first line.
+@export var dialect: LSystem.Dialect = LSystem.DIALECT_TOLD:
+	set(value):
+		dialect = value
 		_measures = {}
 		emit_changed()
 
@@ -60,9 +70,21 @@ static func from_branch(tree: TreeReconstruction, id: int, called: String = "") 
 	return twig
 
 
+## [member lstring] with a first line that says its [member dialect], where that is told.
+func get_string() -> String:
+	if dialect == LSystem.DIALECT_TOLD or lstring.is_empty():
+		return lstring
+	var word: String = " dialect " + ("paper" if dialect == LSystem.DIALECT_PAPER else "turtle")
+	if not lstring.begins_with(_HEADING):
+		return "%s%s\n%s" % [_HEADING, word, lstring]
+	# Of two words in a line the later one is heard.
+	var end: int = lstring.find("\n")
+	return lstring.insert(lstring.length() if end < 0 else end, word)
+
+
 ## Makes [member thumbnail] anew from [member lstring], [param size] pixels wide and high.
 func draw_thumbnail(size: int = 128) -> void:
-	var pixels: PackedByteArray = TreeReconstruction.draw_branch(lstring, size)
+	var pixels: PackedByteArray = TreeReconstruction.draw_branch(lstring, size, dialect)
 	if pixels.is_empty():
 		thumbnail = null
 		return
@@ -72,5 +94,5 @@ func draw_thumbnail(size: int = 128) -> void:
 
 func _measure() -> Dictionary:
 	if _measures.is_empty() and not lstring.is_empty():
-		_measures = TreeReconstruction.measure_branch(lstring)
+		_measures = TreeReconstruction.measure_branch(lstring, dialect)
 	return _measures

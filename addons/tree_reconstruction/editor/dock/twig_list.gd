@@ -19,7 +19,7 @@ func _init() -> void:
 
 ## What grafts [param twig]: the words for one of the addon's, or the L-string of another.
 static func scion_of(twig: Twig) -> String:
-	return twig.lstring if twig.resource_name.is_empty() else "twig=" + twig.resource_name
+	return twig.get_string() if twig.resource_name.is_empty() else "twig=" + twig.resource_name
 
 
 func _get_drag_data(at: Vector2) -> Variant:

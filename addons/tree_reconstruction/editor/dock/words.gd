@@ -29,6 +29,7 @@ static func option_titles(of: Object) -> Dictionary[String, String]:
 		"voxel": of.tr("Voxel size"),
 		"radii": of.tr("Thickness by"),
 		"complete": of.tr("Look for missing branches"),
+		"prune": of.tr("Cut long twigs"),
 		"spacing": of.tr("Point spacing"),
 		"minimum_branch": of.tr("Shortest branch"),
 		"simplify_distance": of.tr("Simplify by"),

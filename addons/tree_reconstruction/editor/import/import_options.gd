@@ -56,6 +56,7 @@ const _PLACES: Dictionary[String, String] = {
 	"scan/columns": "columns",
 	"scan/classes": "classes",
 	"scan/tree_in_file": "",
+	"scan/dialect": "",
 	"cleaning/remove_outliers": "remove_outliers",
 	"cleaning/remove_fragments": "remove_fragments",
 	"cleaning/remove_ground": "remove_ground",
@@ -101,6 +102,12 @@ static func list(preset: int) -> Array[Dictionary]:
 			parameters.append(_parameter(place, Unit.GUESS, PROPERTY_HINT_ENUM, _UNITS))
 		elif place == "scan/tree_in_file":
 			parameters.append(_parameter(place, 0, PROPERTY_HINT_RANGE, "0,100,1,or_greater"))
+		elif place == "scan/dialect":
+			parameters.append(
+				_parameter(
+					place, LSystem.DIALECT_TOLD, PROPERTY_HINT_ENUM, "Turtle,Paper,As It Says"
+				)
+			)
 		elif place == "scan/known_length":
 			# Text takes what other programs copy, and keeps the digits of large coordinates.
 			var example: String = "x, y, z, x, y, z, metres"
@@ -120,6 +127,8 @@ static func list(preset: int) -> Array[Dictionary]:
 
 ## Whether the dock shows the parameter for this file.
 static func is_visible(path: String, skeleton: bool, name: String, values: Dictionary) -> bool:
+	if name == "scan/dialect":
+		return path.is_empty() or path.get_extension().to_lower() == "lstring"
 	if skeleton:
 		return name in _OF_SKELETONS
 	if name == "scan/tree_in_file":

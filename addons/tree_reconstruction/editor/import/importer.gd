@@ -105,7 +105,8 @@ func _make(source_file: String, target: String, options: Dictionary) -> Error:
 	if ScanFiles.is_skeleton(scan):
 		var up: String = options.get("scan/up_axis", "auto")
 		var number: int = options.get("scan/tree_in_file", 0)
-		tree = reconstructor.import_skeleton(scan, "z" if up == "auto" else up, number)
+		var dialect: LSystem.Dialect = options.get("scan/dialect", LSystem.DIALECT_TOLD)
+		tree = reconstructor.import_skeleton(scan, "z" if up == "auto" else up, number, dialect)
 		var leaves: String = options.get("leaves/preset", "auto")
 		if tree != null and leaves != "auto":
 			tree.leaf_preset = leaves

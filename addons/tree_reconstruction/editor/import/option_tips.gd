@@ -41,6 +41,10 @@ func describe(parameter: String) -> String:
 			)
 		"scan/tree_in_file":
 			return tr("Which tree of a skeleton file with several, in its order; 0 is the largest.")
+		"scan/dialect":
+			return tr(
+				"How an L-string is read: as its first line says, or in a dialect whatever it says."
+			)
 		"scan/known_length":
 			return tr(
 				(

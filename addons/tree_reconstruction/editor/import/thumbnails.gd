@@ -51,7 +51,7 @@ func _generate(resource: Resource, size: Vector2i, _metadata: Dictionary) -> Tex
 	if resource is TreeReconstruction:
 		image = _of_tree(resource as TreeReconstruction, edge)
 	elif resource is Twig:
-		image = _of_branch((resource as Twig).lstring, edge)
+		image = _of_branch((resource as Twig).get_string(), edge)
 	elif resource is TwigLibrary:
 		image = _of_library(resource as TwigLibrary, edge)
 	elif resource is LeafRule:
@@ -95,7 +95,7 @@ static func _of_library(library: TwigLibrary, edge: int) -> Image:
 	for twig: Twig in library.twigs:
 		if shown == _SHOWN:
 			break
-		var part: Image = null if twig == null else _of_branch(twig.lstring, half)
+		var part: Image = null if twig == null else _of_branch(twig.get_string(), half)
 		if part == null:
 			continue
 		@warning_ignore("integer_division")
