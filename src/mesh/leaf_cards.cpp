@@ -34,8 +34,9 @@ double kept_share(double level, size_t count) {
 
 // As leaf.gdshader has it: the crown is shaded as one round volume, from whichever side a leaf is seen.
 Vec3 crown_normal(const Vec3& flat, const Vec3& outward) {
-    const float side = glm::dot(flat, outward) < 0.0f ? -1.0f : 1.0f;
-    const Vec3 normal = flat * (side * (1.0f - kRoundness)) + outward * kRoundness + Vec3(0.0f, kSky, 0.0f);
+    const Vec3 lit = outward * kRoundness + Vec3(0.0f, kSky, 0.0f);
+    const float side = glm::dot(flat, lit) < 0.0f ? -1.0f : 1.0f;
+    const Vec3 normal = flat * (side * (1.0f - kRoundness)) + lit;
     const float length = glm::length(normal);
     return length > 1e-3f ? normal / length : flat * side;
 }

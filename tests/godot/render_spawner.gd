@@ -55,3 +55,46 @@ func test_leaves_fall_without_another_build() -> void:
 	check(_summary(winter)[0] > 0.0, "The trees have gone, too.")
 	check_near(_summary(again)[0], full, 0.02 * full, "what leaves cover at last")
 	_viewport.free()
+
+
+# Compatibility reads whatever is at hand for the colours of a multimesh that has none, and the
+# meshes' own colours are multiplied by it: normals of leaves and shade of bark.
+func test_trees_have_their_meshes_colours() -> void:
+	_open_stage(Vector2i(160, 160))
+	var shader: Shader = Shader.new()
+	shader.code = """shader_type spatial;
+render_mode unshaded, cull_disabled;
+void fragment() {
+	ALBEDO = vec3(COLOR.r, 0.5 + 0.5 * COLOR.g, 0.5 * COLOR.a);
+}"""
+	var shown: ShaderMaterial = ShaderMaterial.new()
+	shown.shader = shader
+	var forest: TreeVariantSpawner3D = TreeVariantSpawner3D.new()
+	forest.source = grown_tree(3, 120)
+	forest.bark_material = shown
+	forest.leaf_material = shown
+	forest.variants = 2
+	forest.levels = 1
+	forest.placement = TreeVariantSpawner3D.Placement.GIVEN
+	for i: int in 5:
+		forest.transforms.append(
+			Transform3D(Basis(Vector3.UP, i), Vector3(3.0 * (i - 2), 0.0, 0.0))
+		)
+	var box: AABB = forest.source.get_aabb()
+	_camera.position = box.get_center() + Vector3(0.0, 0.0, 16.0 + box.size.z)
+	_viewport.add_child(forest)
+	await forest.finished
+	var drawn: Image = await _picture()
+	forest.visible = false
+	for id: int in 5:
+		var single: MeshInstance3D = MeshInstance3D.new()
+		single.mesh = forest.get_variant_mesh(forest.get_tree_variant(id))
+		single.transform = forest.get_tree_transform(id)
+		for surface: int in single.mesh.get_surface_count():
+			single.set_surface_override_material(surface, shown)
+		_viewport.add_child(single)
+	var wanted: Image = await _picture()
+	check(_summary(wanted)[0] > 0.02, "No tree is to be seen.")
+	var difference: float = _difference(drawn, wanted)
+	check(difference < 0.005, "A pixel differs by %.4f." % difference)
+	_viewport.free()

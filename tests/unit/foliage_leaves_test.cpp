@@ -432,6 +432,32 @@ TEST(LeafCards, BakedLeavesAreLitAlikeFromBothSides) {
     }
 }
 
+// A leaf at a crown's lower side, as leaf.gdshader lights it: by the side of it that looks to where the
+// crown's light comes from, not to where the crown ends.
+TEST(LeafCards, BakedLeavesAreLitFromWhereTheShaderSaysSo) {
+    LeafPlacement leaf = place_leaves(test::random_tree(7, 40), leaf_preset("oak"), 3).at(0);
+    leaf.x = {1.0f, 0.0f, 0.0f};
+    leaf.y = {0.0f, 0.0f, -1.0f};
+    leaf.z = {0.0f, 1.0f, 0.0f};
+    leaf.outward = glm::normalize(Vec3(1.0f, -0.4f, 0.0f));
+    const Vec3 lit = 0.65f * leaf.outward + Vec3(0.0f, 0.35f, 0.0f);
+    ASSERT_GT(lit.y, 0.0f);
+    const Mesh card = build_leaf_card(), mesh = bake_leaves({leaf}, card);
+    const size_t corners = card.positions.size();
+    size_t plain = 0;
+    for (size_t k = 0; k < corners; k++) {
+        const glm::mat3 turn(leaf.x, leaf.y, leaf.z);
+        const Vec3 flat = turn * card.normals[k];
+        const float side = glm::dot(flat, lit) < 0.0f ? -1.0f : 1.0f;
+        const Vec3 wanted = glm::normalize(0.35f * side * flat + lit);
+        // The face that looks there has just that normal.
+        if (side * glm::dot(flat, wanted) < 0.05f) continue;
+        plain++;
+        EXPECT_NEAR(glm::distance(mesh.normals[side < 0.0f ? corners + k : k], wanted), 0.0f, 1e-4f);
+    }
+    EXPECT_GT(plain, corners / 2);
+}
+
 TEST(BranchAxis, PassesThroughTheNodesAndNeverStandsStill) {
     for (uint64_t seed = 0; seed < 60; seed++) {
         const Tree tree = seed % 2 ? test::random_tree(seed, 200) : test::wild_tree(seed, 60);

@@ -11,6 +11,9 @@ extends Resource
 ## card.mesh = impostor.get_mesh()
 ## [/codeblock]
 ## It takes 8 triangles. Lights, shadows, seasons and the wind reach it as they do the tree.
+## [br][br]
+## A card follows one rule of season, that of the tree's own leaves. Leaves of further kinds, which
+## some of the wood has by a rule of its own, stay as they were when it was baked.
 
 ## The version of what is saved. A file of a newer one is refused.
 const FORMAT_VERSION: int = 1

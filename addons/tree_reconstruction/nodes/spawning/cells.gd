@@ -314,6 +314,7 @@ func _take_part() -> MultiMeshInstance3D:
 	var part: MultiMeshInstance3D = MultiMeshInstance3D.new()
 	part.multimesh = MultiMesh.new()
 	part.multimesh.transform_format = MultiMesh.TRANSFORM_3D
+	part.multimesh.use_colors = true
 	part.multimesh.use_custom_data = true
 	part.gi_mode = GeometryInstance3D.GI_MODE_DISABLED
 	parent.add_child(part, false, Node.INTERNAL_MODE_BACK)

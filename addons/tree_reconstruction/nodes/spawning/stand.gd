@@ -3,8 +3,9 @@ extends RefCounted
 ## The trees of a forest: where each stands, which individual it is, and in which cells they are.
 
 const Scatter := preload("scatter.gd")
-## Of a multimesh: twelve of the transform, then its own tone, its own season and two that are free.
-const FLOATS: int = 16
+## Of a multimesh: twelve of the transform, four of a colour, its own tone, its own season and two
+## that are free. The colour is white: Compatibility takes anything for one that is not there.
+const FLOATS: int = 20
 ## Ids of trees that were added begin here; below are those of the forest's own trees, by their row.
 const FIRST_ADDED: int = 1 << 30
 const LAST_ID: int = 0x7fffffff
@@ -263,6 +264,10 @@ func _append(id: int, frame: Transform3D) -> void:
 				axes.y.z,
 				axes.z.z,
 				frame.origin.z,
+				1.0,
+				1.0,
+				1.0,
+				1.0,
 				2.0 * Scatter.share(Scatter.mix(key, 1)) - 1.0,
 				Scatter.share(Scatter.mix(key, 2)),
 				0.0,
