@@ -173,7 +173,7 @@ func test_the_finder_looks_into_folders() -> void:
 func test_parameters_cover_all_options() -> void:
 	for preset: int in ImportOptions.PRESETS.size():
 		var values: Dictionary = {}
-		for parameter: Dictionary in ImportOptions.list(preset):
+		for parameter: Dictionary in ImportOptions.list(preset, self):
 			check(not values.has(parameter["name"]), "%s is there twice" % parameter["name"])
 			values[parameter["name"]] = parameter["default_value"]
 			check(
@@ -186,13 +186,13 @@ func test_parameters_cover_all_options() -> void:
 		check_equal(named, TreeReconstructor.get_option_list().size() - 1, "the number of options")
 	# A group of options that nobody arranged would have no place in the dock.
 	var groups: Dictionary = {}
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		groups[(parameter["name"] as String).get_slice("/", 0)] = true
 	check_equal(groups.keys(), ["scan", "cleaning", "skeleton", "leaves", "advanced"], "the groups")
 
 
 func test_every_parameter_has_a_tooltip() -> void:
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		var name: String = parameter["name"]
 		if name not in ["scan/unit", "scan/tree_in_file"]:
 			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
@@ -208,7 +208,7 @@ func test_every_parameter_has_a_tooltip() -> void:
 
 func test_presets_set_what_exists() -> void:
 	var names: PackedStringArray = []
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		names.append(parameter["name"])
 	for values: Dictionary in ImportOptions.PRESET_VALUES:
 		for name: String in values:
@@ -244,7 +244,7 @@ func test_every_preset_reconstructs() -> void:
 	var scan: String = write_scan("scan.xyz")
 	for preset: int in ImportOptions.PRESETS.size():
 		var values: Dictionary = {}
-		for parameter: Dictionary in ImportOptions.list(preset):
+		for parameter: Dictionary in ImportOptions.list(preset, self):
 			values[parameter["name"]] = parameter["default_value"]
 		var reconstructor: TreeReconstructor = TreeReconstructor.new()
 		var tree: TreeReconstruction = reconstructor.reconstruct_file(
