@@ -1,6 +1,9 @@
 extends "suite.gd"
 ## Which files are scans, and what the Import dock's parameters become.
 
+const Translations: GDScript = preload(
+	"res://addons/tree_reconstruction/editor/translations/part.gd"
+)
 const ScanFiles: GDScript = preload("res://addons/tree_reconstruction/editor/import/scan_files.gd")
 const OptionTips: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/import/option_tips.gd"
@@ -196,6 +199,8 @@ func test_every_parameter_has_a_tooltip() -> void:
 		var name: String = parameter["name"]
 		if name not in ["scan/unit", "scan/tree_in_file"]:
 			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
+		if name == "cleaning/remove_ground":
+			check("walls" in ImportOptions.get_description(name), "It says nothing of walls.")
 	var tooltip: String = OptionTips.to_tooltip("Up | Axis", 'With [b]tags[/b], "quotes" | bars.')
 	var parts: PackedStringArray = tooltip.split("|", true, 3)
 	check_equal(parts[2], "Up / Axis", "the name in a tooltip")
@@ -238,6 +243,25 @@ func test_units_become_scales() -> void:
 		"a length"
 	)
 	check(is_nan(ImportOptions.parse_numbers("1 two 3")[1]), "a word is a number")
+
+
+# As many as there are values, in any language, and no comma in one.
+func test_units_are_in_the_editor_s_language() -> void:
+	var name: StringName = &"tree_reconstruction_test"
+	var object: RefCounted = RefCounted.new()
+	object.set_translation_domain(name)
+	var wanted: Dictionary[String, String] = {
+		"en": "Metres", "ja": "メートル", "zh_CN": "米", "zh_TW": "公尺"
+	}
+	for language: String in wanted:
+		Translations.fill(TranslationServer.get_or_add_domain(name), language)
+		for parameter: Dictionary in ImportOptions.list(0, object):
+			if parameter["name"] == "scan/unit":
+				var units: PackedStringArray = (parameter["hint_string"] as String).split(",")
+				check_equal(units.size(), ImportOptions.Unit.size(), "units")
+				var metres: String = units[ImportOptions.Unit.METRES]
+				check_equal(metres, wanted[language], "metres in " + language)
+	TranslationServer.remove_domain(name)
 
 
 func test_every_preset_reconstructs() -> void:
