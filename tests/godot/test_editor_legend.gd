@@ -34,11 +34,13 @@ func test_points_have_a_legend_while_they_are_colored_by_a_measure() -> void:
 	var keys: Array[Legend.Meaning] = _keys()
 	check_equal(keys.size(), 1, "legends")
 	check_equal(keys[0].title, "Height", "the measure")
-	check_equal(keys[0].values, PackedStringArray(["25 cm", "2 m"]), "the values")
+	check_equal(keys[0].values, PackedStringArray(["0.25 m", "2.00 m"]), "the values")
 	check_equal(keys[0].ramp, PointView.HEIGHTS, "the colors")
-	_session.scan.points = [Vector3.ZERO, Vector3(0, 12.34, 0)]
+	_session.scan.points = [Vector3(0, -0.001, 0), Vector3(0, 12.34, 0)]
 	_points.rebuild()
-	check_equal(_keys()[0].values, PackedStringArray(["0 m", "12.3 m"]), "values of another scan")
+	check_equal(
+		_keys()[0].values, PackedStringArray(["0.00 m", "12.34 m"]), "values of another scan"
+	)
 	_session.scan.colors = [Color.RED, Color.GREEN]
 	_points.rebuild()
 	check(_keys().is_empty(), "The scan's own colors have a legend.")

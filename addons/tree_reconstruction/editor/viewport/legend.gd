@@ -84,7 +84,7 @@ func draw(overlay: Control) -> void:
 func _add_points() -> void:
 	if _points.colored_by == ViewState.PointColors.HEIGHT:
 		var height: Meaning = Meaning.new(tr("Height"))
-		height.set_ramp(PointView.HEIGHTS, [_metres(_points.low), _metres(_points.high)])
+		height.set_ramp(PointView.HEIGHTS, [_height(_points.low), _height(_points.high)])
 		keys.append(height)
 	elif _points.colored_by == ViewState.PointColors.FIDELITY:
 		var tolerance: float = _session.scan.TOLERANCE
@@ -102,7 +102,7 @@ func _add_channel(channel: int) -> void:
 	match channel:
 		TreeWind.Channel.SWAY:
 			key = Meaning.new(tr("Height"))
-			key.set_ramp(_GREY, [_metres(0.0), _metres(_session.tree.get_aabb().end.y)])
+			key.set_ramp(_GREY, [_height(0.0), _height(_session.tree.get_aabb().end.y)])
 		TreeWind.Channel.ALONG:
 			key = Meaning.new(tr("Along the Branch"))
 			key.set_ramp(_GREY, [tr("Base"), tr("Tip")])
@@ -226,6 +226,11 @@ static func _line(overlay: Control) -> float:
 
 
 # --- values and colors ----------------------------------------------------------------------------
+
+
+# As elsewhere in the editor; nothing is below the ground by less than is shown.
+static func _height(above: float) -> String:
+	return "%.2f m" % (snappedf(above, 0.01) + 0.0)
 
 
 static func _metres(length: float) -> String:
