@@ -258,7 +258,7 @@ const Option kOptions[] = {
     {"remove_fragments", OPTION_MEMBER(clean.remove_fragments, bool), PROPERTY_HINT_NONE, "",
      "Removes small clusters of points far from the rest."},
     {"remove_ground", OPTION_MEMBER(clean.remove_ground, bool), PROPERTY_HINT_NONE, "",
-     "Removes the ground that the tree stands on."},
+     "Removes the ground that the tree stands on, and walls and fences beside it."},
     {"separate_trees", OPTION_MEMBER(clean.pick.enabled, bool), PROPERTY_HINT_NONE, "",
      "Takes one tree where the scan holds several; without it everything in the scan is one tree."},
     {"tree_number", read_tree_number, write_tree_number, PROPERTY_HINT_RANGE, "1,100,1,or_greater",

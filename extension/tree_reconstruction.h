@@ -16,6 +16,7 @@
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "leaf_rule.h"
+#include "mesh/mesh.h"
 #include "tree/tree.h"
 
 class TreeEdit;
@@ -208,6 +209,10 @@ class TreeReconstruction : public godot::Resource {
         const treerec::Tree& p_tree, const std::vector<treerec::LeafKind>& p_kinds, int p_lod) const;
     // With the season in them. Throw treerec::Error.
     std::vector<treerec::LeafKind> _leaf_kinds(const treerec::Tree& p_tree) const;
+    // Adds what is wanted of a kind's leaves and its card to what is told of the kind.
+    using AddLeaves = void (*)(godot::Dictionary& r_part, const std::vector<treerec::LeafPlacement>& p_leaves,
+                               treerec::Mesh p_card);
+    godot::TypedArray<godot::Dictionary> _build_foliage(int p_lod, AddLeaves p_add) const;
     godot::Dictionary _describe_kind(const treerec::LeafKind& p_kind, double p_season_shift) const;
     static void _bind_properties();
     static void _bind_editing();

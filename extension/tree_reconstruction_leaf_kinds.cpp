@@ -138,7 +138,7 @@ String TreeReconstruction::check_leaf_rule(const String& p_rule) {
     }
 }
 
-TypedArray<Dictionary> TreeReconstruction::build_foliage(int p_lod) const {
+TypedArray<Dictionary> TreeReconstruction::_build_foliage(int p_lod, AddLeaves p_add) const {
     const TypedArray<Dictionary> none;
     ERR_FAIL_COND_V_MSG(p_lod < 0, none, vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(none, [&] {
@@ -148,32 +148,30 @@ TypedArray<Dictionary> TreeReconstruction::build_foliage(int p_lod) const {
         TypedArray<Dictionary> parts;
         for (size_t i = 0; i < kinds.size(); i++) {
             Dictionary part = _describe_kind(kinds[i], 0.0);
-            part["leaves"] = to_godot(treerec::leaf_buffer(placed[i]));
-            treerec::Mesh card = treerec::build_leaf_card(kinds[i].rules, p_lod);
-            // As in build_leaf_form_arrays().
-            card.colors.clear();
-            part["card"] = to_surface_arrays(card);
+            p_add(part, placed[i], treerec::build_leaf_card(kinds[i].rules, p_lod));
             parts.push_back(part);
         }
         return parts;
     });
 }
 
+TypedArray<Dictionary> TreeReconstruction::build_foliage(int p_lod) const {
+    return _build_foliage(p_lod, [](Dictionary& r_part, const std::vector<treerec::LeafPlacement>& p_leaves,
+                                    treerec::Mesh p_card) {
+        treerec::Bounds box;
+        treerec::add_leaves(box, p_leaves);
+        r_part["leaves"] = to_godot(treerec::leaf_buffer(p_leaves));
+        r_part["box"] = box.empty() ? AABB() : AABB(to_godot(box.min), to_godot(box.size()));
+        // As in build_leaf_form_arrays().
+        p_card.colors.clear();
+        r_part["card"] = to_surface_arrays(p_card);
+    });
+}
+
 TypedArray<Dictionary> TreeReconstruction::build_joined_foliage(int p_lod) const {
-    const TypedArray<Dictionary> none;
-    ERR_FAIL_COND_V_MSG(p_lod < 0, none, vformat("There is no level of detail %d; 0 is the finest.", p_lod));
-    return guarded(none, [&] {
-        const std::shared_ptr<const treerec::Tree> tree = get_tree();
-        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
-        const auto placed = _place_foliage(*tree, kinds, p_lod);
-        TypedArray<Dictionary> parts;
-        for (size_t i = 0; i < kinds.size(); i++) {
-            Dictionary part = _describe_kind(kinds[i], 0.0);
-            part["arrays"] = to_surface_arrays(
-                treerec::join_leaves(placed[i], treerec::build_leaf_card(kinds[i].rules, p_lod)));
-            parts.push_back(part);
-        }
-        return parts;
+    return _build_foliage(p_lod, [](Dictionary& r_part, const std::vector<treerec::LeafPlacement>& p_leaves,
+                                    treerec::Mesh p_card) {
+        r_part["arrays"] = to_surface_arrays(treerec::join_leaves(p_leaves, p_card));
     });
 }
 

@@ -17,6 +17,7 @@ constexpr float kSky = 0.35f;           // and how far they lean to where light 
 constexpr float kLeastTowards = 0.05f;  // how far a face's normal goes the way that the face looks, at least
 constexpr float kHalfThickness = 0.0005f;  // of a leaf with two faces, over its length
 constexpr float kMiddle = 0.5f;            // of a card, over its length
+constexpr float kLeafReach = 0.75f;        // of a card from its middle, over its length, at any turn
 constexpr double kKept = 0.42;             // of the leaves of one level, by the next
 constexpr double kFewest = 64.0;           // leaves: fewer are not thinned,
 constexpr double kLastWhole = 4.0;         // up to this level
@@ -143,6 +144,11 @@ std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves,
 
 float leaf_growth(double level) {
     return static_cast<float>(1.0 / std::sqrt(leaf_share(level)));
+}
+
+void add_leaves(Bounds& bounds, const std::vector<LeafPlacement>& leaves, float growth) {
+    for (const LeafPlacement& leaf : leaves)
+        bounds.add(DVec3(leaf.position + leaf.y * (0.5f * leaf.size)), kLeafReach * growth * leaf.size);
 }
 
 std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foliage/leaves.h"
+#include "geometry/bounds.h"
 #include "mesh/mesh.h"
 #include "progress.h"
 
@@ -40,6 +41,8 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const 
 // one keeps, all finer ones do. Where there are no more than 64, all stay as they are up to level 4.
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level);
 float leaf_growth(double level);  // how much larger
+// Adds all that the cards of leaves may take, however they turn, each grown by `growth`.
+void add_leaves(Bounds& bounds, const std::vector<LeafPlacement>& leaves, float growth = 1.0f);
 
 // Godot's MultiMesh buffer: per leaf 12 floats of transform (3 rows of 4), 4 of colour (the outward direction
 // in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, wind code of the limb,

@@ -20,7 +20,6 @@ constexpr double kStep = 1.0 / 64;    // between two levels that a budget tells 
 constexpr double kWidestBark = 1.5;   // of a node's radius
 constexpr double kFoot = 1.5;         // likewise, where the trunk stands
 constexpr double kDeepestFoot = 0.3;  // metres below the root
-constexpr float kLeafReach = 0.75f;   // of a card from its middle, over its length, at any turn
 
 int whole(double level) {
     return static_cast<int>(level + 0.5);
@@ -60,10 +59,8 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
         const Node& root = wood_.node(wood_.root());
         box_.add(root.position - DVec3(0.0, kDeepestFoot + root.radius, 0.0), kFoot * root.radius);
     }
-    const float growth = kLeafReach * leaf_growth(kMostLevels - 1);
     for (const std::vector<LeafPlacement>& leaves : leaves_)
-        for (const LeafPlacement& leaf : leaves)
-            box_.add(DVec3(leaf.position + leaf.y * (0.5f * leaf.size)), growth * leaf.size);
+        add_leaves(box_, leaves, leaf_growth(kMostLevels - 1));
 }
 
 TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {

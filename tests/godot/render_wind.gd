@@ -48,6 +48,43 @@ func test_a_wind_without_speed_bends_and_holds() -> void:
 	_viewport.free()
 
 
+# Neither a tree nor what is baked of it is left out where the wind bends it into the picture.
+func test_what_is_bent_over_the_border_is_drawn() -> void:
+	# So slim that it bends far out of its box.
+	var made: TreeReconstruction = LSystem.read_string("!(0.03) F(1) F(1) F(1) F(1) F(1)")
+	await _stage(made)
+	_wind.speed = 0.0
+	_wind.direction = Vector2(1.0, 0.0)
+	_camera.projection = Camera3D.PROJECTION_ORTHOGONAL
+	_camera.size = made.get_aabb().size.y * 1.2
+	_wind.strength = 1.25
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 1
+	baker.global_wind = true
+	baker.collision = false
+	baker.bark_material = _plain("bark")
+	baker.leaf_material = _plain("leaf")
+	var baked: Node3D = baker.bake(made).instantiate()
+	_viewport.add_child(baked)
+	for shown: Node3D in [_instance, baked]:
+		_instance.visible = shown == _instance
+		baked.visible = shown == baked
+		var drawn: MeshInstance3D = shown as MeshInstance3D
+		if drawn == null:
+			drawn = shown.get_child(0)
+		var rest: AABB = (
+			drawn.custom_aabb if shown == baked else (drawn.mesh as ArrayMesh).custom_aabb
+		)
+		# The picture begins where the tree at rest ends.
+		_camera.position.x = rest.end.x + 0.5 * _camera.size + 0.005
+		var bent: Image = await _settled()
+		shown.visible = false
+		var change: float = _change(bent, await _settled())
+		check(change > 1.0, "%s is left out: %.2f." % [shown.name, change])
+	baked.free()
+	_viewport.free()
+
+
 func test_without_a_node_the_project_says_how_it_blows() -> void:
 	await _stage(grown_tree(2), false)
 	var first: Image = await _picture()

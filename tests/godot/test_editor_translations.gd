@@ -63,6 +63,44 @@ func test_sentences_of_the_library_are_translated() -> void:
 	TranslationServer.remove_domain(_DOMAIN)
 
 
+# The program's options are none of the editor.
+func test_options_are_named_as_in_the_editor() -> void:
+	var several: String = "'a.txt' holds 3 trees; the largest, tree 2 with 40 nodes, was taken."
+	several += " Ask for another one by its number (%s)."
+	var classes: String = "'a.las' holds no points of the classes that were asked for; "
+	var unit: String = "The file names its coordinate system without its unit; its units were taken"
+	unit += " for metres. If they are feet, set the unit (%sin the Import dock: Unit)."
+	var said: Dictionary[String, String] = {
+		several % "--tree": several % "in the Import dock: Tree in File",
+		classes + "leave out --classes.": classes + "clear Classes in the Import dock.",
+		unit % "--unit us-ft or --unit ft; ": unit % "",
+	}
+	for language: String in ["en", "ja", "zh_CN", "zh_TW"]:
+		Translations.fill(TranslationServer.get_or_add_domain(_DOMAIN), language)
+		for sentence: String in said:
+			var told: String = Sentences.translate(sentence, _DOMAIN)
+			check(not "--" in told, "%s: %s" % [language, told])
+			if language == "en":
+				check_equal(told, said[sentence], "what is told")
+			else:
+				check(told != said[sentence], "It is not translated into %s." % language)
+		for option: String in Sentences.IN_EDITOR:
+			check(not "--" in Sentences.translate(option, _DOMAIN), option)
+	# As the reader itself says it.
+	var reader: TreeReconstructor = TreeReconstructor.new()
+	var rows: String = ""
+	for stem: int in 2:
+		for i: int in 3000:
+			rows += "%f %f %f\n" % [stem * 4.0 + 0.1 * cos(i), 0.1 * sin(i), i * 0.001]
+	var made: TreeReconstruction = reader.reconstruct_file(write_text("two.xyz", rows))
+	check(made != null, reader.get_error_message())
+	var warnings: PackedStringArray = reader.get_report()["warnings"]
+	check("--one-tree" in " ".join(warnings), "It says nothing of several trees: %s" % warnings)
+	for warning: String in warnings:
+		check(not " --" in Sentences.translate(warning, _DOMAIN).replace("(", " "), warning)
+	TranslationServer.remove_domain(_DOMAIN)
+
+
 # What the editor's tools and menus do to a tree, and what they may be refused.
 func test_all_that_edits_say_is_known() -> void:
 	Translations.fill(TranslationServer.get_or_add_domain(_DOMAIN), "ja")

@@ -1,6 +1,9 @@
 extends "suite.gd"
 ## Which files are scans, and what the Import dock's parameters become.
 
+const Translations: GDScript = preload(
+	"res://addons/tree_reconstruction/editor/translations/part.gd"
+)
 const ScanFiles: GDScript = preload("res://addons/tree_reconstruction/editor/import/scan_files.gd")
 const OptionTips: GDScript = preload(
 	"res://addons/tree_reconstruction/editor/import/option_tips.gd"
@@ -173,7 +176,7 @@ func test_the_finder_looks_into_folders() -> void:
 func test_parameters_cover_all_options() -> void:
 	for preset: int in ImportOptions.PRESETS.size():
 		var values: Dictionary = {}
-		for parameter: Dictionary in ImportOptions.list(preset):
+		for parameter: Dictionary in ImportOptions.list(preset, self):
 			check(not values.has(parameter["name"]), "%s is there twice" % parameter["name"])
 			values[parameter["name"]] = parameter["default_value"]
 			check(
@@ -187,16 +190,18 @@ func test_parameters_cover_all_options() -> void:
 	check_equal(ImportOptions.to_options({"advanced/prune": "paper"}), {"prune": "paper"}, "prune")
 	# A group of options that nobody arranged would have no place in the dock.
 	var groups: Dictionary = {}
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		groups[(parameter["name"] as String).get_slice("/", 0)] = true
 	check_equal(groups.keys(), ["scan", "cleaning", "skeleton", "leaves", "advanced"], "the groups")
 
 
 func test_every_parameter_has_a_tooltip() -> void:
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		var name: String = parameter["name"]
 		if name not in ["scan/unit", "scan/tree_in_file", "scan/dialect"]:
 			check_sentence(ImportOptions.get_description(name), "what is told of " + name)
+		if name == "cleaning/remove_ground":
+			check("walls" in ImportOptions.get_description(name), "It says nothing of walls.")
 	var tooltip: String = OptionTips.to_tooltip("Up | Axis", 'With [b]tags[/b], "quotes" | bars.')
 	var parts: PackedStringArray = tooltip.split("|", true, 3)
 	check_equal(parts[2], "Up / Axis", "the name in a tooltip")
@@ -209,7 +214,7 @@ func test_every_parameter_has_a_tooltip() -> void:
 
 func test_presets_set_what_exists() -> void:
 	var names: PackedStringArray = []
-	for parameter: Dictionary in ImportOptions.list(0):
+	for parameter: Dictionary in ImportOptions.list(0, self):
 		names.append(parameter["name"])
 	for values: Dictionary in ImportOptions.PRESET_VALUES:
 		for name: String in values:
@@ -241,11 +246,30 @@ func test_units_become_scales() -> void:
 	check(is_nan(ImportOptions.parse_numbers("1 two 3")[1]), "a word is a number")
 
 
+# As many as there are values, in any language, and no comma in one.
+func test_units_are_in_the_editor_s_language() -> void:
+	var name: StringName = &"tree_reconstruction_test"
+	var object: RefCounted = RefCounted.new()
+	object.set_translation_domain(name)
+	var wanted: Dictionary[String, String] = {
+		"en": "Metres", "ja": "メートル", "zh_CN": "米", "zh_TW": "公尺"
+	}
+	for language: String in wanted:
+		Translations.fill(TranslationServer.get_or_add_domain(name), language)
+		for parameter: Dictionary in ImportOptions.list(0, object):
+			if parameter["name"] == "scan/unit":
+				var units: PackedStringArray = (parameter["hint_string"] as String).split(",")
+				check_equal(units.size(), ImportOptions.Unit.size(), "units")
+				var metres: String = units[ImportOptions.Unit.METRES]
+				check_equal(metres, wanted[language], "metres in " + language)
+	TranslationServer.remove_domain(name)
+
+
 func test_every_preset_reconstructs() -> void:
 	var scan: String = write_scan("scan.xyz")
 	for preset: int in ImportOptions.PRESETS.size():
 		var values: Dictionary = {}
-		for parameter: Dictionary in ImportOptions.list(preset):
+		for parameter: Dictionary in ImportOptions.list(preset, self):
 			values[parameter["name"]] = parameter["default_value"]
 		var reconstructor: TreeReconstructor = TreeReconstructor.new()
 		var tree: TreeReconstruction = reconstructor.reconstruct_file(

@@ -24,9 +24,7 @@ func test_numbers_of_a_tree() -> void:
 	instance.collision_minimum_radius = 0.03
 	instance.level_distances = PackedFloat32Array([NAN, INF])
 	instance.level_budgets = PackedInt32Array([-5, -5, -5])
-	# The engine's own sentence, for whatever is drawn there; it has others for bodies.
-	instance.collision = false
-	expect_error("v.is_finite()")
+	expect_error("can't stand at a place that is no number")
 	for frame: Transform3D in [
 		Transform3D(Basis.from_scale(Vector3.ZERO), Vector3.ZERO),
 		Transform3D(Basis(), Vector3(NAN, 0.0, 0.0)),
@@ -226,3 +224,55 @@ func test_huge_counts() -> void:
 		made.build_convex_parts(24, number)
 		check(made.make_variant(3, number) == null or number == 1.0, "An amount of %s." % number)
 	check(Time.get_ticks_msec() - begun < 30_000, "It stalls.")
+
+
+# With a body, and built before and after it gets there. A place that is no number is refused with
+# a sentence; one of no size only collides with nothing.
+func test_places_of_a_tree() -> void:
+	var here: Transform3D = Transform3D(Basis.IDENTITY, Vector3(1.0, 2.0, 3.0))
+	var odd: Array[Transform3D] = [
+		here.scaled_local(Vector3.ZERO),
+		here.scaled_local(Vector3(1.0, 0.0, 1.0)),
+		here.scaled_local(Vector3(-1.0, 1.0, 1.0)),
+		Transform3D(Basis.IDENTITY, Vector3(NAN, 0.0, 0.0)),
+		Transform3D(Basis.IDENTITY, Vector3(0.0, INF, 0.0)),
+		Transform3D(Basis(Vector3.ONE * NAN, Vector3.UP, Vector3.BACK), Vector3.ZERO),
+	]
+	expect_error("can't stand at a place that is no number")
+	for kind: TreeInstance3D.CollisionKind in TreeInstance3D.CollisionKind.values():
+		for frame: Transform3D in odd:
+			for late: bool in [false, true]:
+				await _place_tree(kind, here, frame, late)
+
+
+func _place_tree(
+	kind: TreeInstance3D.CollisionKind, here: Transform3D, frame: Transform3D, late: bool
+) -> void:
+	var instance: TreeInstance3D = TreeInstance3D.new()
+	instance.collision = true
+	instance.collision_kind = kind
+	instance.reconstruction = grown_tree(2)
+	instance.transform = here
+	if not late:
+		instance.transform = frame
+	tree.root.add_child(instance)
+	while instance.is_building_levels():
+		await tree.process_frame
+	instance.transform = frame
+	await tree.physics_frame
+	await tree.process_frame
+	var collides: bool = instance.transform.basis.determinant() != 0.0
+	check_equal(instance.transform, frame if frame.is_finite() else here, "its place")
+	check_equal(_has_body(instance), collides, "whether it collides at %s" % frame)
+	check(instance.get_tree_height() >= 0.0, "Its height is %s." % instance.get_tree_height())
+	instance.transform = here
+	await tree.physics_frame
+	check(_has_body(instance), "It does not collide any more after %s." % frame)
+	instance.free()
+
+
+func _has_body(instance: TreeInstance3D) -> bool:
+	for child: Node in instance.get_children(true):
+		if child is StaticBody3D:
+			return true
+	return false

@@ -212,18 +212,37 @@ func test_scenes_hold_the_tree_but_not_its_mesh() -> void:
 	instance.free()
 
 
-func test_the_mesh_has_room_for_the_wind() -> void:
-	var instance: TreeInstance3D = _instance(grown_tree(2))
-	await _settle(instance)
-	var box: AABB = instance.reconstruction.get_aabb()
-	check(
-		(instance.mesh as ArrayMesh).custom_aabb.encloses(box.grow(0.05 * box.size.y)),
-		"The box is too tight."
-	)
-	instance.free()
+# The box of the bark and of the leaves that stand on it, by their vertices.
+func _drawn_box(made: TreeReconstruction, lod: int) -> AABB:
+	var places: PackedVector3Array = made.build_mesh_arrays(lod)[Mesh.ARRAY_VERTEX]
+	for part: Dictionary in made.build_joined_foliage(lod):
+		if not (part.arrays as Array).is_empty():
+			places.append_array(part.arrays[Mesh.ARRAY_VERTEX])
+	var box: AABB = AABB(places[0], Vector3.ZERO)
+	for place: Vector3 in places:
+		box = box.expand(place)
+	return box
 
 
-# What is drawn is culled and measured by boxes that the wind needs, and no larger ones.
+# With leaves and without, in the wind and in still air, at a level of its own.
+func test_the_box_of_a_level_is_tight_around_bark_and_leaves() -> void:
+	for trial: int in 6:
+		var made: TreeReconstruction = grown_tree(trial + 2)
+		made.leaf_preset = ["oak", "birch", "none"][trial % 3]
+		var instance: TreeInstance3D = _instance(made)
+		instance.lod = trial % 3
+		instance.wind = trial % 2 == 0
+		await _settle(instance)
+		var drawn: AABB = _drawn_box(made, instance.lod)
+		var box: AABB = (instance.mesh as ArrayMesh).custom_aabb
+		check(box.grow(1e-4).encloses(drawn), "%s has no room for %s." % [box, drawn])
+		var most: float = 0.0 if made.leaf_preset == "none" else 0.05 * instance.get_tree_height()
+		check(drawn.grow(most + 1e-4).encloses(box), "%s is wider than %s." % [box, drawn])
+		check(drawn.grow(1e-4).encloses(instance.get_aabb()), "The bark is not in its box.")
+		instance.free()
+
+
+# What is drawn has the box of the tree at rest, and a margin for the wind before it is culled.
 func test_bounds_are_the_trees_own() -> void:
 	var made: TreeReconstruction = grown_tree(2)
 	made.leaf_preset = "oak"
@@ -237,12 +256,12 @@ func test_bounds_are_the_trees_own() -> void:
 		for child: Node in instance.get_children(true):
 			var part: GeometryInstance3D = child as GeometryInstance3D
 			check(
-				part.custom_aabb.is_equal_approx(rest.grow(room)),
+				part.custom_aabb.is_equal_approx(rest),
 				"%s has %s of %s, wind %s." % [part.name, part.custom_aabb, rest, wind]
 			)
-		check(
-			(instance.mesh as ArrayMesh).custom_aabb.is_equal_approx(rest.grow(room)), "The bark's."
-		)
+			check_near(part.extra_cull_margin, room, 1e-4, "the margin of %s" % part.name)
+		check((instance.mesh as ArrayMesh).custom_aabb.is_equal_approx(rest), "The bark's.")
+		check_equal(instance.extra_cull_margin, 0.0, "the property that is the user's")
 	instance.free()
 
 

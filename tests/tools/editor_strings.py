@@ -118,6 +118,28 @@ def sentences():
             yield word
 
 
+def in_editor():
+    """What the library says of its program's options, and what the editor says instead."""
+    source = without_comments(SENTENCES.read_text(encoding="utf-8"))
+    table = source[source.index("const IN_EDITOR") :]
+    pairs = re.findall(r'"((?:[^"\\\n]|\\.)*)":\s*"((?:[^"\\\n]|\\.)*)"', table[: table.index("}")])
+    return [(unescape(said), unescape(told)) for said, told in pairs]
+
+
+def of_the_program():
+    """Options of the program that sentences of the library name, and IN_EDITOR does not."""
+    for path in sorted([*(ROOT / "src").rglob("*.cpp"), *(ROOT / "extension").rglob("*.cpp")]):
+        if path.relative_to(ROOT).parts[:2] in (("src", "cli"), ("src", "drawer")):
+            continue
+        source = re.sub(r'"\s*\n\s*"', "", path.read_text(encoding="utf-8"))
+        for literal in re.findall(r'"((?:[^"\\\n]|\\.)*)"', source):
+            text = unescape(literal)
+            for said, _ in in_editor():
+                text = text.replace(said, "")
+            for option in re.findall(r"(?<![\w(-])\(?--[a-z][a-z-]+", text):
+                yield path.relative_to(ROOT).as_posix(), option
+
+
 def unsaid():
     """What the library's sources do not say, of the entries of PATTERNS."""
     paths = [path for end in ("*.cpp", "*.lstring") for path in (ROOT / "src").rglob(end)] + [*(ROOT / "extension").rglob("*.cpp")]
@@ -125,7 +147,10 @@ def unsaid():
     # Literals that follow each other are one.
     sources = unescape(re.sub(r'"\s*\n\s*"', "", sources))
     for word in sentences():
-        for piece in word.split("%s"):
+        said = word
+        for program, editor in in_editor():
+            said = said.replace(editor, program)
+        for piece in said.split("%s"):
             # The sources may put it together of several literals. A name in a library is capitalized when it is shown.
             rest = piece.strip() if piece.strip() in sources else piece.strip().lower() if " " not in piece else piece.strip()
             while len(rest) >= SHORTEST:
@@ -184,6 +209,7 @@ def read(path):
 
 def problems(words):
     found = ["%s: the library says nothing like %s" % (SENTENCES.name, quoted(piece)) for _, piece in unsaid()]
+    found += ["%s: %s is named to users of the editor; IN_EDITOR lacks it" % each for each in of_the_program()]
     if not POT.exists() or POT.read_text(encoding="utf-8") != file_text(words, "", {}):
         found.append("%s is out of date: run tests/tools/editor_strings.py" % POT.name)
     for language in LANGUAGES:

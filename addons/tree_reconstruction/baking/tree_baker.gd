@@ -215,6 +215,9 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 		# By such names, tools that scatter meshes know the levels; the impostor is the last one.
 		part.name = "%s_LOD%d" % [root.name, level]
 		part.mesh = meshes[level]
+		# The mesh has room for the wind in its own box, for whoever draws it without this node.
+		part.custom_aabb = parts.box
+		part.extra_cull_margin = _reach_of(parts)
 		part.gi_mode = _gi_mode(level == 0)
 		var drawn: Array[GeometryInstance3D] = [part]
 		root.add_child(part)
@@ -372,7 +375,8 @@ func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[Array]:
 					kind.leaves, kind.card, materials[i]
 				)
 			node.name = _node_name(i)
-			node.custom_aabb = _box_of(parts)
+			node.custom_aabb = parts.box
+			node.extra_cull_margin = _reach_of(parts)
 			# No lightmap has a place for each leaf.
 			node.gi_mode = _gi_mode(false)
 			nodes.append(node)
@@ -389,7 +393,11 @@ func _gi_mode(mapped: bool) -> GeometryInstance3D.GIMode:
 
 # With all that the wind may move.
 static func _box_of(parts: Parts) -> AABB:
-	return parts.box.grow(_SWAY * maxf(parts.height, 0.1))
+	return parts.box.grow(_reach_of(parts))
+
+
+static func _reach_of(parts: Parts) -> float:
+	return _SWAY * maxf(parts.height, 0.1)
 
 
 # What a TreeInstance3D sets for its instance.

@@ -12,7 +12,10 @@ const Jobs := preload("jobs.gd")
 
 ## At most so many points are shown and measured against.
 const MAXIMUM_POINTS: int = 1_000_000
-const _LEAF_COLOR: Color = Color(0.5, 0.5, 0.5)
+## Of leaves in the heat map.
+const LEAF_COLOR: Color = Color(0.5, 0.5, 0.5)
+## What [member fidelity] takes for true, in metres.
+const TOLERANCE: float = 0.02
 
 var points: PackedVector3Array
 ## As many as points, or none.
@@ -94,7 +97,7 @@ func get_heat_colors() -> PackedColorArray:
 		return heat
 	var all: PackedColorArray = []
 	all.resize(points.size())
-	all.fill(_LEAF_COLOR)
+	all.fill(LEAF_COLOR)
 	for i: int in _wood_indices.size():
 		all[_wood_indices[i]] = heat[i]
 	return all
@@ -188,7 +191,7 @@ func _measure() -> void:
 	var work: Callable = func(_job: Jobs.Job) -> TreeFidelity:
 		if measured == null:
 			measured = TreeFidelity.new()
-			if not measured.set_cloud(tree, cloud, 0.02):
+			if not measured.set_cloud(tree, cloud, TOLERANCE):
 				return null
 		return null if measured.update(tree).is_empty() else measured
 	_measuring = _jobs.start(tr("Comparing the tree with its scan"), work, _on_measured)

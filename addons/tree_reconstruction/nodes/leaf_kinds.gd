@@ -4,7 +4,12 @@ extends RefCounted
 ## tree's own first.
 
 const _PRESETS: String = "res://addons/tree_reconstruction/presets/%s_%s.tres"
+# As game_export.gd, which games don't have.
+const _KINDS_SETTING: String = "tree_reconstruction/export/more_kinds"
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
+
+# Those that were warned of.
+static var _missing: Dictionary[String, bool] = {}
 
 
 ## Whether leaves of [param kind] are drawn as the tree's own, [param own], are: with the material
@@ -21,8 +26,27 @@ static func material_path(kind: Dictionary) -> String:
 ## Where the addon's material for the [code]bark[/code], a [code]leaf[/code] (a spray) or a
 ## [code]blade[/code] of a preset is.
 static func preset_path(look: String, part: String) -> String:
+	return find_preset(look, part, ResourceLoader.exists)
+
+
+## As [method preset_path]; [param is_there] says of a path whether it leads to anything.
+static func find_preset(look: String, part: String, is_there: Callable) -> String:
 	var path: String = _PRESETS % [look, part]
-	return path if ResourceLoader.exists(path) else _PRESETS % ["generic", part]
+	if is_there.call(path):
+		return path
+	if look in TreeReconstruction.get_leaf_preset_names() and not _missing.has(look):
+		_missing[look] = true
+		push_warning(
+			(
+				(
+					"This game was exported without the pictures of the kind '%s', so its trees look"
+					+ " like those of no kind. Add it to the project setting %s and export the game"
+					+ " again."
+				)
+				% [look, _KINDS_SETTING]
+			)
+		)
+	return _PRESETS % ["generic", part]
 
 
 ## What shaders take of [param tints], the colors of leaves that are early, and late, in the season;

@@ -21,6 +21,8 @@ var revision: int
 var bark: ArrayMesh
 ## The leaves, by kind, as [method draw_leaves] makes them; none without any.
 var foliage: Array[Dictionary] = []
+## All that the leaves may take.
+var leaf_box: AABB
 var warning: String = ""
 var capsules_wanted: int = 0
 var capsule_radius: float
@@ -53,6 +55,7 @@ func run() -> void:
 			wood = made.bark
 			warning = made.warning
 			if leaves:
+				leaf_box = made.box
 				foliage = draw_leaves(made.foliage)
 	elif with_bark:
 		wood = source.build_mesh_arrays(lod)
@@ -61,7 +64,11 @@ func run() -> void:
 	var barked: int = Time.get_ticks_usec()
 	bark_time = (barked - started) / 1000.0
 	if budget == 0 and leaves:
-		foliage = draw_leaves(source.build_foliage(lod))
+		foliage = source.build_foliage(lod)
+		for part: Dictionary in foliage:
+			var box: AABB = part.box
+			leaf_box = leaf_box.merge(box) if leaf_box.has_volume() else box
+		foliage = draw_leaves(foliage)
 	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
 
 

@@ -2,6 +2,7 @@
 extends MeshInstance3D
 ## The card of a [TreeInstance3D]'s impostor, beyond its last level of detail.
 
+const Looks := preload("tree_looks.gd")
 const OwnMaterials := preload("own_materials.gd")
 const _SEASON_PARAMETERS: Array[StringName] = [&"season_early", &"season_late"]
 
@@ -16,6 +17,7 @@ func show_for(tree: TreeInstance3D) -> void:
 		material_override = tree.impostor.material
 	OwnMaterials.give(self, material_override)
 	custom_aabb = tree.mesh.custom_aabb
+	extra_cull_margin = Looks.get_reach(tree)
 	_set_value(&"tree_height", tree.get_tree_height())
 	_set_value(&"tree_wind", 1.0 if tree.wind else 0.0)
 	var tints: PackedColorArray = [Color(1.0, 1.0, 1.0, 0.0), Color(1.0, 1.0, 1.0, 0.0)]

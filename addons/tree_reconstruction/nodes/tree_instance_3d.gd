@@ -25,7 +25,7 @@ enum CollisionKind {
 }
 
 const Checked := preload("checked.gd")
-const Collision := preload("tree_collision.gd")
+const Body := preload("tree_body.gd")
 const Felling := preload("tree_felling.gd")
 const BuildJob := preload("tree_build_job.gd")
 const LevelNodes := preload("tree_level_nodes.gd")
@@ -35,8 +35,6 @@ const LeafNodes := preload("tree_leaf_nodes.gd")
 const Levels := preload("tree_levels.gd")
 const Looks := preload("tree_looks.gd")
 const Reading := preload("spawning/reading.gd")
-# How far the wind moves a tree beyond its box, over its height.
-const _SWAY: float = 0.15
 # What the leaves and the levels take over from this node.
 const _SHARED: PackedStringArray = [
 	"layers",
@@ -165,13 +163,13 @@ static var threaded: bool = true
 @export_flags_3d_physics var collision_layer: int = 1:
 	set(value):
 		collision_layer = value
-		_update_body()
+		_body.update()
 
 ## The layers that the body looks for. A body that does not move needs none.
 @export_flags_3d_physics var collision_mask: int = 1:
 	set(value):
 		collision_mask = value
-		_update_body()
+		_body.update()
 
 ## Whether this is wood that was felled: then the [RigidBody3D] that it is a child of gets its
 ## shapes when it comes into a scene without any, as after loading.
@@ -181,7 +179,9 @@ var _foliage: LeafNodes = LeafNodes.new(self, "Leaves", true)
 # What own_materials.gd draws this node with.
 var _own_material: RefCounted
 var _levels: LevelNodes = LevelNodes.new(self)
-var _body: StaticBody3D
+var _body: Body = Body.new(self)
+# The last that it can stand at.
+var _place: Transform3D
 var _queued: bool = false
 var _job: BuildJob
 var _reading: Reading = Reading.new()
@@ -226,10 +226,10 @@ func make_body(density: float = 800.0) -> RigidBody3D:
 func update_collision_now() -> void:
 	var parts: Array[Dictionary] = []
 	if collision and reconstruction != null:
-		parts = Collision.gather(
+		parts = Body.Collision.gather(
 			reconstruction, collision_kind, collision_shapes, collision_minimum_radius
 		)
-	_apply_collision(parts)
+	_body.fill(parts)
 
 
 ## Whether a build is waiting or under way.
@@ -259,7 +259,7 @@ func get_leaf_count() -> int:
 
 ## The tree's height in metres of the world, from its wood.
 func get_tree_height() -> float:
-	return _height * (global_basis.get_scale().y if is_inside_tree() else 1.0)
+	return _height * (absf(global_basis.get_scale().y) if is_inside_tree() else 1.0)
 
 
 ## The most triangles that a level may have, or 0.
@@ -278,6 +278,7 @@ func get_leaf_build_time() -> float:
 
 
 func _init() -> void:
+	set_notify_local_transform(true)
 	_levels.finest_leaves = _foliage
 	_levels.built.connect(_on_levels_built)
 
@@ -288,14 +289,31 @@ func _notification(what: int) -> void:
 		NOTIFICATION_PREDELETE:
 			_drop_job()
 			_levels.end()
+			_body.free_body()
 		NOTIFICATION_ENTER_TREE:
 			set_notify_transform(true)
+			_body.follow()
 			_update_instances()
 			if fallen:
 				# The body can't take children before it is in the scene, too.
 				_restore_shapes.call_deferred()
+		NOTIFICATION_LOCAL_TRANSFORM_CHANGED:
+			_check_place()
+			_body.follow()
 		NOTIFICATION_TRANSFORM_CHANGED:
+			_body.follow()
 			_update_instances()
+
+
+# Before the engine draws it there, and its body collides there.
+func _check_place() -> void:
+	if transform.is_finite():
+		_place = transform
+		return
+	transform = _place
+	push_error(
+		"The tree '%s' can't stand at a place that is no number: it stays where it was." % name
+	)
 
 
 func _restore_shapes() -> void:
@@ -308,6 +326,8 @@ func _set(property: StringName, _value: Variant) -> bool:
 		_update_instances.call_deferred()
 	elif property == &"material_override":
 		_update_materials.call_deferred()
+	elif property == &"extra_cull_margin":
+		_update_margin.call_deferred()
 	return false
 
 
@@ -334,7 +354,7 @@ func _start() -> void:
 		_bark_of = []
 		_levels.clear()
 		_foliage.show_nothing()
-		_apply_collision([])
+		_body.fill([])
 		rebuilt.emit()
 		return
 	if _job != null:
@@ -390,7 +410,9 @@ func _apply(job: BuildJob) -> void:
 		_bark_time = job.bark_time
 	_leaf_time = job.leaf_time
 	_foliage.fill(job.foliage)
-	_apply_collision(job.capsules)
+	var box: AABB = AABB() if mesh == null else mesh.get_aabb()
+	_set_box(box.merge(job.leaf_box) if job.leaf_box.has_volume() else box)
+	_body.fill(job.capsules)
 	_budget_warning = job.warning
 	_levels.begin()
 	_update_materials()
@@ -398,46 +420,34 @@ func _apply(job: BuildJob) -> void:
 	rebuilt.emit()
 
 
-func _apply_collision(capsules: Array[Dictionary]) -> void:
-	if capsules.is_empty():
-		if _body != null:
-			_body.queue_free()
-			_body = null
-		return
-	if _body == null:
-		_body = StaticBody3D.new()
-		_body.name = &"Body"
-		_update_body()
-		add_child(_body, false, Node.INTERNAL_MODE_BACK)
-	Collision.fill(_body, capsules)
-
-
-func _update_body() -> void:
-	if _body != null:
-		_body.collision_layer = collision_layer
-		_body.collision_mask = collision_mask
-
-
 func _apply_bark(job: BuildJob) -> void:
 	var bark: ArrayMesh = job.bark
-	var box: AABB = bark.get_aabb()
-	_height = maxf(box.end.y, 0.1)
+	_height = maxf(bark.get_aabb().end.y, 0.1)
 	mesh = bark
-	_set_box(box)
 	_bark_of = [job.source, job.revision, job.lod, job.budget]
 
 
-# Of all that is drawn, at rest: what can't move has no more room than that.
+# Of all that is drawn, at rest. Where the wind may move it is the margin's.
 func _set_box(rest: AABB) -> void:
 	_rest = rest
 	if mesh == null:
 		return
-	mesh.custom_aabb = rest.grow(_SWAY * _height if wind else 0.0)
+	mesh.custom_aabb = rest
+	var reach: float = Looks.get_reach(self)
 	var parts: Array[GeometryInstance3D] = _levels.get_barks()
 	for foliage: LeafNodes in _levels.get_foliage() + [_foliage]:
 		parts.append_array(foliage.nodes)
 	for part: GeometryInstance3D in parts:
-		part.custom_aabb = mesh.custom_aabb
+		part.custom_aabb = rest
+		part.extra_cull_margin = reach
+	_update_margin()
+
+
+# The property is the user's, who may want more.
+func _update_margin() -> void:
+	RenderingServer.instance_set_extra_visibility_margin(
+		get_instance(), maxf(extra_cull_margin, Looks.get_reach(self))
+	)
 
 
 # All levels share one box.

@@ -5,6 +5,17 @@ extends RefCounted
 const Kinds := preload("leaf_kinds.gd")
 const OwnMaterials := preload("own_materials.gd")
 
+# How far the wind moves a tree beyond its box, over its height.
+const _SWAY: float = 0.15
+
+
+## How far the wind moves [param tree] beyond its box, in metres of its own space. What is drawn of
+## it is culled that much later, by a margin: its box is that of the tree at rest.
+static func get_reach(tree: TreeInstance3D) -> float:
+	if not tree.wind or tree.mesh == null:
+		return 0.0
+	return _SWAY * maxf(tree.mesh.get_aabb().end.y, 0.1)
+
 
 ## [param material], or, without one, that of the tree's leaf preset for its bark.
 static func bark_of(of: TreeReconstruction, material: Material) -> Material:

@@ -88,6 +88,25 @@ func open_garden(path: String, of: TreeReconstruction) -> TreeInstance3D:
 	return await take_up(EditorInterface.get_edited_scene_root().get_node(^"Tree"))
 
 
+## Puts the sample into the project, makes a scene with its tree as [method open_garden] does, cuts
+## a large branch off, which makes the tree the user's own, and saves. Returns the node, or null.
+func open_edited(scan: String, scene: String) -> TreeInstance3D:
+	await drop_file(sample, scan)
+	var made: TreeReconstruction = await imported(scan)
+	if made == null:
+		return null
+	var node: TreeInstance3D = await open_garden(scene, made)
+	if node == null:
+		return null
+	await user.click(node_on_screen(node, clear_nodes(node, large_branches(made))[0]))
+	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
+	await user.key("Delete")
+	if not await until(func() -> bool: return node.reconstruction != made, "it is the user's own"):
+		return null
+	await save_scene()
+	return node
+
+
 ## Waits until the editor has opened the scenes of its last run, and shows the one that was shown:
 ## until then it turns from whatever it is asked to open to the next of them.
 func reopened() -> bool:

@@ -19,7 +19,7 @@ static func option_titles(of: Object) -> Dictionary[String, String]:
 		"neighbours": of.tr("Neighbours"),
 		"outlier_deviations": of.tr("Stray beyond"),
 		"remove_fragments": of.tr("Remove fragments"),
-		"remove_ground": of.tr("Remove the ground"),
+		"remove_ground": of.tr("Remove ground and walls"),
 		"separate_trees": of.tr("One of several trees"),
 		"tree_number": of.tr("Tree number"),
 		"tree_position": of.tr("Tree at"),

@@ -34,10 +34,6 @@ const PRESET_VALUES: Array[Dictionary] = [
 	},
 	{"skeleton/spacing": 0.03, "cleaning/remove_outliers": false},
 ]
-const _UNITS: String = (
-	"Guess,Metres,Centimetres,Millimetres,Feet,Inches,Other Unit,"
-	+ "From the Tree's Height,From a Known Length,US Survey Feet"
-)
 const _METRES: Dictionary[Unit, float] = {
 	Unit.METRES: 1.0,
 	Unit.CENTIMETRES: 0.01,
@@ -91,15 +87,16 @@ const _LAS_FORMATS: PackedStringArray = ["las", "laz", "treescan"]
 const _TEXT_FORMATS: PackedStringArray = ["xyz", "pts", "asc", "treescan"]
 
 
-## The parameters of a preset, as [method EditorImportPlugin._get_import_options] returns them.
-static func list(preset: int) -> Array[Dictionary]:
+## The parameters of a preset, as [method EditorImportPlugin._get_import_options] returns them, with
+## their choices in the language of [param of].
+static func list(preset: int, of: Object) -> Array[Dictionary]:
 	var options: Dictionary[String, Dictionary] = {}
 	for option: Dictionary in TreeReconstructor.get_option_list():
 		options[option["name"]] = option
 	var parameters: Array[Dictionary] = []
 	for place: String in _PLACES:
 		if place == "scan/unit":
-			parameters.append(_parameter(place, Unit.GUESS, PROPERTY_HINT_ENUM, _UNITS))
+			parameters.append(_parameter(place, Unit.GUESS, PROPERTY_HINT_ENUM, _units(of)))
 		elif place == "scan/tree_in_file":
 			parameters.append(_parameter(place, 0, PROPERTY_HINT_RANGE, "0,100,1,or_greater"))
 		elif place == "scan/dialect":
@@ -123,6 +120,23 @@ static func list(preset: int) -> Array[Dictionary]:
 		if values.has(parameter["name"]):
 			parameter["default_value"] = values[parameter["name"]]
 	return parameters
+
+
+# In the order of Unit. The values are numbers, so that the words may be any.
+static func _units(of: Object) -> String:
+	var words: PackedStringArray = [
+		of.tr("Guess"),
+		of.tr("Metres"),
+		of.tr("Centimetres"),
+		of.tr("Millimetres"),
+		of.tr("Feet"),
+		of.tr("Inches"),
+		of.tr("Other Unit"),
+		of.tr("From the Tree's Height"),
+		of.tr("From a Known Length"),
+		of.tr("US Survey Feet"),
+	]
+	return ",".join(words)
 
 
 ## Whether the dock shows the parameter for this file.

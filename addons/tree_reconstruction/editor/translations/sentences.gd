@@ -111,12 +111,14 @@ const PATTERNS: PackedStringArray = [
 	(
 		"The cloud holds %s trees; number %s, the largest, was taken. It is %s high and stands at %s in"
 		+ " the scan. Another one can be chosen by its number or by a place near it. If they are one"
-		+ " tree's stems or roots, take all of the scan for one tree (--one-tree)."
+		+ " tree's stems or roots, take all of the scan for one tree (in the Import dock: switch"
+		+ " Separate Trees off)."
 	),
 	(
 		"The cloud holds %s trees; number %s was taken. It is %s high and stands at %s in the scan."
 		+ " Another one can be chosen by its number or by a place near it. If they are one tree's stems"
-		+ " or roots, take all of the scan for one tree (--one-tree)."
+		+ " or roots, take all of the scan for one tree (in the Import dock: switch Separate Trees"
+		+ " off)."
 	),
 	(
 		"The cloud is %s units high; they were taken for %s. Set the scale or one known length by hand"
@@ -180,6 +182,23 @@ const PATTERNS: PackedStringArray = [
 		+ " section of a scan."
 	),
 	"No tree was found in %s: nothing in it looks like wood.",
+	(
+		"%s holds %s trees; the largest, tree %s with %s, was taken. Ask for another one by its number"
+		+ " (in the Import dock: Tree in File)."
+	),
+	"%s holds no points of the classes that were asked for; clear Classes in the Import dock.",
+	(
+		"%s holds no points but noise (classes 7 and 18); 'all' for Classes in the Import dock reads"
+		+ " these too."
+	),
+	(
+		"The file names its coordinate system by its number alone, EPSG:%s; its units were taken for"
+		+ " metres. If they are feet, set the unit (in the Import dock: Unit)."
+	),
+	(
+		"The file names its coordinate system without its unit; its units were taken for metres. If they"
+		+ " are feet, set the unit (in the Import dock: Unit)."
+	),
 	# The library of twigs.
 	"Apple",
 	"Birch",
@@ -203,14 +222,26 @@ const PATTERNS: PackedStringArray = [
 	"Weeping willow: long whips",
 ]
 const _GAP: String = "%s"
+## How the library names options of its program, and where they are in the editor.
+## tests/tools/editor_strings.py checks that there are no others.
+const IN_EDITOR: Dictionary[String, String] = {
+	"(--one-tree)": "(in the Import dock: switch Separate Trees off)",
+	"(--tree)": "(in the Import dock: Tree in File)",
+	"leave out --classes.": "clear Classes in the Import dock.",
+	"--classes all reads these too.": "'all' for Classes in the Import dock reads these too.",
+	"(--unit us-ft or --unit ft; in the Import dock: Unit)": "(in the Import dock: Unit)",
+}
 
 
 ## A sentence of the library in the language of [param domain]; several that follow each other, too.
 static func translate(sentence: String, domain: StringName) -> String:
 	var words: TranslationDomain = TranslationServer.get_or_add_domain(domain)
+	var told: String = sentence
+	for option: String in IN_EDITOR:
+		told = told.replace(option, IN_EDITOR[option])
 	if words.get_translations().is_empty():
-		return sentence
-	return _translate(sentence, words)
+		return told
+	return _translate(told, words)
 
 
 ## A list of words with commas between.

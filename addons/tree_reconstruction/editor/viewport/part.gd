@@ -8,6 +8,7 @@ const Gizmo: GDScript = preload("skeleton_gizmo.gd")
 const SkeletonView: GDScript = preload("skeleton_view.gd")
 const PointView: GDScript = preload("point_view.gd")
 const VoxelView: GDScript = preload("voxel_view.gd")
+const Legend: GDScript = preload("legend.gd")
 const AxesGrid: GDScript = preload("axes_grid.gd")
 const Visibility: GDScript = preload("visibility.gd")
 const WindRest: GDScript = preload("wind_rest.gd")
@@ -29,6 +30,7 @@ var _gizmo: Gizmo
 var _skeleton: SkeletonView
 var _points: PointView
 var _voxels: VoxelView
+var _legend: Legend
 var _axes: AxesGrid
 var _visibility: Visibility
 var _wind_rest: WindRest
@@ -111,6 +113,7 @@ func draw_over(overlay: Control) -> void:
 		return
 	_surfaces[camera.get_viewport()] = overlay
 	_axes.draw(overlay, camera, _picker)
+	_legend.draw(overlay)
 	if not _session.view.editing or _actions.turntable.is_turning():
 		return
 	var taken: Rect2 = Rect2()
@@ -130,6 +133,7 @@ func _make_views() -> void:
 	_points = PointView.new(_session)
 	_voxels = VoxelView.new(_session)
 	_voxels.built.connect(_redraw)
+	_legend = Legend.new(_session, _points)
 	_axes = AxesGrid.new(_session)
 	_visibility = Visibility.new(_session)
 	_wind_rest = WindRest.new()
@@ -242,6 +246,7 @@ func _on_tree_changed() -> void:
 	_axes.update()
 	_points.update()
 	_voxels.update()
+	_legend.update()
 	_on_selection_changed()
 
 
@@ -289,6 +294,7 @@ func _on_scan_changed() -> void:
 	_points.rebuild()
 	_points.update()
 	_voxels.update()
+	_legend.update()
 	_strip.update_view()
 	_redraw()
 

@@ -1,13 +1,11 @@
 @tool
-extends RefCounted
+extends "scan_layer.gd"
 ## The voxels that hold points of the edited tree's scan (papers/002, 8.1.4) as a layer of the
 ## gizmo: what the voxel flood goes through.
 
 ## The voxels are there.
 signal built
 
-const Session: GDScript = preload("../session.gd")
-const Gizmo: GDScript = preload("skeleton_gizmo.gd")
 const Jobs: GDScript = preload("../jobs.gd")
 const _VOXELS: Shader = preload("voxels.gdshader")
 # Of the scan's largest extent, where the tree wasn't made by voxels of a stated size.
@@ -20,15 +18,11 @@ const _SIDES: Array[Vector3i] = [
 	Vector3i.RIGHT, Vector3i.LEFT, Vector3i.UP, Vector3i.DOWN, Vector3i.BACK, Vector3i.FORWARD
 ]
 
-var layer: Gizmo.Layer = Gizmo.Layer.new()
 ## Edge of the voxels that are shown, in metres; 0 where none are.
 var edge: float = 0.0
 ## How many there are.
 var count: int = 0
 
-var _session: Session
-# The tree whose scan was asked for.
-var _asked_of: TreeReconstruction
 var _job: Jobs.Job
 # What the mesh that is there, or is being made, was made of.
 var _built_of: PackedVector3Array
@@ -36,26 +30,16 @@ var _built_edge: float = 0.0
 
 
 func _init(session: Session) -> void:
-	set_translation_domain(session.get_translation_domain())
-	_session = session
+	super(session)
 	var material: ShaderMaterial = ShaderMaterial.new()
 	material.shader = _VOXELS
 	layer.material = material
-	layer.shown = false
 
 
 ## What is shown, or the scan, may have changed. Asks for the scan where it isn't there yet, and
 ## builds the voxels on a thread.
 func update() -> void:
-	var wanted: bool = _session.tree != null and _session.view.voxels
-	if not wanted:
-		_asked_of = null
-	elif _session.scan.points.is_empty() and _asked_of != _session.tree:
-		# Once: what can't be read is not tried again after every edit.
-		_asked_of = _session.tree
-		_session.scan.request()
-	layer.shown = wanted and not _session.scan.points.is_empty()
-	if not layer.shown:
+	if not _show_if(_session.view.voxels):
 		return
 	var asked: float = _asked_edge()
 	# The same array: it is not copied, so that comparing it costs nothing.

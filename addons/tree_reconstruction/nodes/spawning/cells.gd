@@ -19,6 +19,8 @@ class Turn:
 	var end: float = 0.0
 	var begin_margin: float = 0.0
 	var end_margin: float = 0.0
+	## How far the wind moves what stands there beyond its box, in metres at its usual size.
+	var reach: float = 0.0
 	## Over the size of what stands there.
 	var scale: float = 1.0
 	var shadow: bool = true
@@ -291,6 +293,7 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	)
 	multimesh.custom_aabb = box
 	part.custom_aabb = box
+	part.extra_cull_margin = turn.reach * stand.largest
 	# The engine measures to the middle of the box.
 	var off: float = 0.0
 	if turn.by_tree:

@@ -323,6 +323,7 @@ func _turns(index: int) -> Array[Cells.Turn]:
 		turn.end = one.turns[level].z
 		turn.end_margin = one.turns[level].w
 		turn.by_tree = _by_tree
+		turn.reach = one.reach
 		if level < one.meshes.size():
 			turn.mesh = one.meshes[level]
 		else:
@@ -341,7 +342,9 @@ func _make_card(index: int) -> ArrayMesh:
 	}
 	values.merge(one.looks[0].season)
 	_cards[index] = Materials.for_trees(impostor.material, values)
-	return impostor.make_mesh(_cards[index])
+	var card: ArrayMesh = impostor.make_mesh(_cards[index])
+	card.custom_aabb = impostor.box
+	return card
 
 
 func _plans(from: Array[TreeReconstruction]) -> Array[Individual]:

@@ -77,7 +77,10 @@ var triangles: PackedInt32Array = []
 ## A sentence where a budget could not be kept.
 var warning: String = ""
 var capsules: Array[Dictionary] = []
+## At rest.
 var box: AABB
+## How far the wind moves it beyond its box, in metres.
+var reach: float = 0.0
 var height: float = 0.1
 var bytes: int = 0
 
@@ -255,5 +258,5 @@ func _finish() -> void:
 		if surface.level == 0:
 			for place: Vector3 in surface.arrays[Mesh.ARRAY_VERTEX] as PackedVector3Array:
 				box = box.expand(place)
-	box = box.grow(_SWAY * height)
+	reach = _SWAY * height
 	_tree = null

@@ -1,7 +1,7 @@
 @tool
 extends "../../test_plugin/garden.gd"
-## What is shown of a tree: the keys P S T L E X G, the turntable, pictures of the viewport. Nothing
-## of it is saved or left over.
+## What is shown of a tree: the keys P V S T L E X G, the turntable, pictures of the viewport.
+## Nothing of it is saved or left over.
 
 var _node: TreeInstance3D
 
@@ -24,20 +24,8 @@ func run() -> void:
 	check_equal(is_unsaved(), false, "whether the scene has changes")
 	check(_node.leaves and _node.wind and _node.visible, "A property of the node was changed.")
 
-	await step("the scan's points come from its file")
-	await _press_and_see(view_state, "p", &"points")
-	var scan: RefCounted = session().get(&"scan")
-	await until(func() -> bool: return not scan.get(&"points").is_empty(), "the points are there")
-	var before: int = drawn_objects()
-	view_state.set(&"point_colors", 2)
-	await until(func() -> bool: return scan.get(&"fidelity") != null, "the fidelity is measured")
-	await user.frames(3)
-	await picture("points-by-fidelity")
-	view_state.set(&"point_colors", 1)
-	await _press_and_see(view_state, "p", &"points")
-	await user.frames(3)
-	check(drawn_objects() < before, "The points are still drawn.")
-
+	await _show_scan(view_state)
+	await _show_voxels(view_state)
 	await _turn()
 	await _take_pictures()
 
@@ -58,6 +46,42 @@ func _press_and_see(view_state: RefCounted, key: String, property: StringName) -
 		func() -> bool: return view_state.get(property) != before,
 		"'%s' changes %s" % [key, property]
 	)
+
+
+func _show_scan(view_state: RefCounted) -> void:
+	await step("the scan's points come from its file, and a legend says what their colors mean")
+	await _press_and_see(view_state, "p", &"points")
+	var scan: RefCounted = session().get(&"scan")
+	await until(func() -> bool: return not scan.get(&"points").is_empty(), "the points are there")
+	var before: int = drawn_objects()
+	view_state.set(&"point_colors", 2)
+	await until(func() -> bool: return scan.get(&"fidelity") != null, "the fidelity is measured")
+	await user.frames(3)
+	await fine_picture("points-by-fidelity")
+	view_state.set(&"point_colors", 1)
+	view_state.set(&"channel", TreeWind.Channel.LEVEL)
+	await user.frames(3)
+	await picture("points-by-height")
+	view_state.set(&"channel", 0)
+	await _press_and_see(view_state, "p", &"points")
+	await user.frames(3)
+	check(drawn_objects() < before, "The points are still drawn.")
+
+
+func _show_voxels(view_state: RefCounted) -> void:
+	await step("V shows the voxels of the scan, and hides them again")
+	var before: int = drawn_objects()
+	await _press_and_see(view_state, "v", &"voxels")
+	await until(func() -> bool: return drawn_objects() > before, "the voxels are drawn")
+	await _press_and_see(view_state, "t", &"mesh")
+	await _press_and_see(view_state, "l", &"leaves")
+	await fine_picture("voxels")
+	await _press_and_see(view_state, "t", &"mesh")
+	await _press_and_see(view_state, "l", &"leaves")
+	await _press_and_see(view_state, "v", &"voxels")
+	await user.frames(3)
+	check_equal(drawn_objects(), before, "objects drawn without the voxels")
+	check_equal(is_unsaved(), false, "whether the scene has changes")
 
 
 func _turn() -> void:

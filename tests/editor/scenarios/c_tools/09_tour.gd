@@ -54,7 +54,7 @@ func _look_at_it() -> void:
 
 func _work_on_it() -> void:
 	await step("a branch is selected and deleted")
-	var branch: int = clear_nodes(_node, _branches_of(100))[0]
+	var branch: int = clear_nodes(_node, _branches_of(30))[0]
 	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
 	await until(func() -> bool: return session().selection.size() > 5, "a branch is selected")
 	await fine_picture("tour-branch")
@@ -72,7 +72,7 @@ func _work_on_it() -> void:
 	await until(func() -> bool: return session().scion.length() > 40, "a branch is picked")
 	if not await take_tool(&"graft", "j"):
 		return
-	var host: int = clear_nodes(_node, _of.select_nodes("order:..1&radius:0.025..&height:1..7"))[0]
+	var host: int = clear_nodes(_node, _of.select_nodes("order:..2&radius:0.01..&height:1..8"))[0]
 	var children: int = _of.get_node_children(host).size()
 	await user.move(node_on_screen(_node, host))
 	await until(func() -> bool: return not session().tool.get_ghosts().is_empty(), "it is shown")
@@ -84,6 +84,8 @@ func _work_on_it() -> void:
 	await user.key("l")
 
 	await step("the leaves become those of a maple in autumn")
+	# All of them: what was grafted is selected, and would get them alone.
+	session().call(&"clear_selection")
 	if not await take_tool(&"leaf_rule", "F2"):
 		return
 	await press(_with_tooltip("OptionButton", "The kind of leaves"))

@@ -11,20 +11,9 @@ const SCENE: String = "res://moved/moved.tscn"
 
 func run() -> void:
 	await step("a scan that is renamed in the FileSystem dock takes its edited tree along")
-	await drop_file(sample, FIRST)
-	var made: TreeReconstruction = await imported(FIRST)
-	if made == null:
-		return
-	var node: TreeInstance3D = await open_garden(SCENE, made)
+	var node: TreeInstance3D = await open_edited(FIRST, SCENE)
 	if node == null:
 		return
-	await user.click(node_on_screen(node, clear_nodes(node, large_branches(made))[0]))
-	await until(func() -> bool: return session().get(&"selection").size() == 1, "it is selected")
-	await user.key("Delete")
-	if not await until(func() -> bool: return node.reconstruction != made, "it is the user's own"):
-		return
-	await save_scene()
-	made = null
 	var local: TreeReconstruction = node.reconstruction
 	var edited: PackedByteArray = bytes(local)
 	var uid: int = ResourceLoader.get_resource_uid(LOCAL)
