@@ -1,6 +1,8 @@
 // How a long job tells where it is, and hears that it should stop.
 #pragma once
 
+#include <cstddef>
+
 #include "error.h"
 
 namespace treerec {
@@ -12,6 +14,9 @@ class Progress {
 
     // fraction: 0..1 of the whole job, never falling. stage: a short name such as "Skeleton".
     virtual void update([[maybe_unused]] double fraction, [[maybe_unused]] const char* stage) {}
+
+    // How many of a stage's things are done, such as photos; after the update() that names the stage.
+    virtual void count([[maybe_unused]] size_t done, [[maybe_unused]] size_t all) {}
 
     // True once the user asked to stop.
     virtual bool cancelled() const { return false; }
@@ -30,6 +35,9 @@ class SubProgress final : public Progress {
 
     void update(double fraction, const char* stage) override {
         if (whole_) whole_->update(begin_ + (end_ - begin_) * fraction, stage);
+    }
+    void count(size_t done, size_t all) override {
+        if (whole_) whole_->count(done, all);
     }
     bool cancelled() const override { return whole_ && whole_->cancelled(); }
 

@@ -37,6 +37,9 @@ void require_own(const std::string& path, std::string_view mark, const std::stri
 const Command& reconstruct_command();
 void run_reconstruct(const std::vector<std::string>& words);
 
+const Command& photos_command();
+void run_photos(const std::vector<std::string>& words);
+
 const Command& info_command();
 void run_info(const std::vector<std::string>& words);
 

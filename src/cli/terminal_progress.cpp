@@ -14,6 +14,9 @@ namespace treerec {
 
 namespace {
 
+// Of lines where there is no terminal.
+constexpr std::chrono::seconds kBetweenCounts{10};
+
 volatile std::sig_atomic_t interrupted = 0;
 
 extern "C" void on_interrupt(int signal) {
@@ -51,7 +54,11 @@ void TerminalProgress::update(double fraction, const char* stage) {
     const std::lock_guard lock(mutex_);
     fraction_ = std::max(fraction_, std::clamp(fraction, 0.0, 1.0));
     const bool new_stage = stage_ != stage;
-    if (new_stage) stage_ = stage;
+    if (new_stage) {
+        stage_ = stage;
+        counted_.clear();
+        last_count_ = std::chrono::steady_clock::now();
+    }
     if (!terminal_) {
         if (new_stage) std::fprintf(stderr, "%s\n", stage);
         return;
@@ -62,11 +69,22 @@ void TerminalProgress::update(double fraction, const char* stage) {
     draw();
 }
 
+void TerminalProgress::count(size_t done, size_t all) {
+    if (quiet_) return;
+    const std::lock_guard lock(mutex_);
+    counted_ = " " + std::to_string(done) + " of " + std::to_string(all);
+    if (terminal_) return draw();
+    const auto now = std::chrono::steady_clock::now();
+    if (done < all && now - last_count_ < kBetweenCounts) return;
+    last_count_ = now;
+    std::fprintf(stderr, "%s%s\n", stage_.c_str(), counted_.c_str());
+}
+
 void TerminalProgress::draw() {
     constexpr size_t kWidth = 30;
     const size_t full = static_cast<size_t>(fraction_ * kWidth);
     std::string line = "[" + std::string(full, '#') + std::string(kWidth - full, ' ') + "] " +
-                       std::to_string(static_cast<int>(100.0 * fraction_)) + " % " + stage_;
+                       std::to_string(static_cast<int>(100.0 * fraction_)) + " % " + stage_ + counted_;
     const size_t length = line.size();
     if (length < drawn_) line.append(drawn_ - length, ' ');
     drawn_ = length;

@@ -9,7 +9,8 @@
 
 namespace treerec {
 
-// On a terminal a bar that is drawn over itself; elsewhere one line per stage. Not copied.
+// On a terminal a bar that is drawn over itself; elsewhere one line per stage, and now and then one that
+// counts. Not copied.
 class TerminalProgress final : public Progress {
   public:
     // quiet: shows nothing; Ctrl-C is heard all the same.
@@ -19,6 +20,7 @@ class TerminalProgress final : public Progress {
     TerminalProgress& operator=(const TerminalProgress&) = delete;
 
     void update(double fraction, const char* stage) override;
+    void count(size_t done, size_t all) override;
     bool cancelled() const override;
 
     // Wipes the bar, so that something else can be printed.
@@ -32,8 +34,9 @@ class TerminalProgress final : public Progress {
     bool terminal_;
     double fraction_ = 0.0;
     std::string stage_;
-    size_t drawn_ = 0;  // characters of the bar on the screen
-    std::chrono::steady_clock::time_point last_;
+    std::string counted_;  // " 12 of 71", of the stage
+    size_t drawn_ = 0;     // characters of the bar on the screen
+    std::chrono::steady_clock::time_point last_, last_count_;
 };
 
 // Lets the first Ctrl-C (or a polite kill) cancel the job; a second one ends the program at once.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "file_bytes.h"
+#include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 
 namespace treerec {
@@ -169,6 +170,28 @@ std::optional<DVec3> subject_of(const PhotoModel& model) {
     });
     if (static_cast<double>(in_front) < kInFront * static_cast<double>(poses.size())) return std::nullopt;
     return subject;
+}
+
+std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points) {
+    const std::optional<DVec3> subject = subject_of(model);
+    const std::optional<DVec3> sky = sky_of(model, points);
+    if (!subject || !sky) return std::nullopt;
+    const DVec3 east = any_perpendicular(*sky), north = glm::cross(*sky, east);
+    std::vector<std::pair<double, const Photo*>> around;
+    for (const Photo& photo : model.photos) {
+        const DVec3 from_it = pose_of(photo).centre - *subject;
+        const double angle = portable::atan2(glm::dot(from_it, north), glm::dot(from_it, east));
+        if (std::isfinite(angle)) around.emplace_back(glm::degrees(angle), &photo);
+    }
+    if (around.size() < 2) return std::nullopt;
+    std::sort(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    CircleGap widest;
+    for (size_t i = 0; i < around.size(); i++) {
+        const size_t next = (i + 1) % around.size();
+        const double gap = around[next].first - around[i].first + (next == 0 ? 360.0 : 0.0);
+        if (gap > widest.degrees) widest = {gap, around[i].second->name, around[next].second->name};
+    }
+    return widest;
 }
 
 std::vector<std::string> photo_models_beside(const std::string& cloud_path) {

@@ -21,6 +21,16 @@ std::optional<DVec3> sky_of(const PhotoModel& model, std::span<const DVec3> poin
 // where these are nearly parallel, or where it is not before most cameras, as from the middle of a room.
 std::optional<DVec3> subject_of(const PhotoModel& model);
 
+// Where the photos' circle around what they were taken of is widest open.
+struct CircleGap {
+    double degrees = 0.0;  // between two neighbours
+    std::string from;      // the photos on both sides
+    std::string to;
+};
+
+// Nothing where subject_of() or sky_of() knows nothing. points: as there.
+std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points);
+
 // The folders in which COLMAP, and what follows its habits, leaves the model of a cloud: the cloud's own,
 // sparse/ and sparse/0/ in it and beside it. Those of them with both files of cameras, the nearest first.
 std::vector<std::string> photo_models_beside(const std::string& cloud_path);

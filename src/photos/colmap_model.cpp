@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <sstream>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/portable_math.h"
+#include "photos/binary_reader.h"
 
 namespace treerec {
 
@@ -37,47 +37,6 @@ constexpr int64_t kLargestPicture = 1 << 16;  // pixels of a side
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
     throw Error("The COLMAP model '" + path + "' " + what);
 }
-
-// Little-endian values one after the other.
-class Reader {
-  public:
-    Reader(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
-
-    template <typename T>
-    T value() {
-        if (bytes_.size() - at_ < sizeof(T)) fail(path_, "is cut off; copy it again.");
-        unsigned char raw[sizeof(T)];
-        std::memcpy(raw, bytes_.data() + at_, sizeof(T));
-        at_ += sizeof(T);
-        uint64_t bits = 0;
-        for (size_t i = sizeof(T); i-- > 0;)
-            bits = bits << 8 | raw[i];
-        T result;
-        if constexpr (sizeof(T) == 8) {
-            std::memcpy(&result, &bits, 8);
-        } else {
-            const auto low = static_cast<uint32_t>(bits);
-            std::memcpy(&result, &low, sizeof(T));
-        }
-        return result;
-    }
-    std::string text() {
-        const size_t end = bytes_.find('\0', at_);
-        if (end == std::string_view::npos) fail(path_, "is cut off; copy it again.");
-        std::string result(bytes_.substr(at_, end - at_));
-        at_ = end + 1;
-        return result;
-    }
-    void skip(uint64_t count, size_t size) {
-        if (count > (bytes_.size() - at_) / size) fail(path_, "is cut off; copy it again.");
-        at_ += static_cast<size_t>(count) * size;
-    }
-
-  private:
-    const std::string& path_;
-    std::string_view bytes_;
-    size_t at_ = 0;
-};
 
 const Lens& lens_of(const std::string& path, const std::string& name, int64_t number) {
     for (const Lens& lens : kLenses)
@@ -133,7 +92,7 @@ struct Source {
 
 void read_binary(const Source& camera_source, const Source& image_source, Cameras& into) {
     const std::string &cameras = camera_source.path, &images = image_source.path;
-    Reader in(cameras, camera_source.bytes);
+    BinaryReader in(cameras, camera_source.bytes);
     const auto count = in.value<uint64_t>();
     for (uint64_t i = 0; i < count; i++) {
         const auto id = in.value<uint32_t>();
@@ -149,7 +108,7 @@ void read_binary(const Source& camera_source, const Source& image_source, Camera
         camera.height = static_cast<int>(height);
         into.add(cameras, id, camera);
     }
-    Reader image_in(images, image_source.bytes);
+    BinaryReader image_in(images, image_source.bytes);
     const auto photos = image_in.value<uint64_t>();
     for (uint64_t i = 0; i < photos; i++) {
         Photo photo;

@@ -10,6 +10,7 @@
 #include "geometry/quantile.h"
 #include "photos/cameras_tell.h"
 #include "photos/colmap_model.h"
+#include "photos/quiet_progress.h"
 #include "scan/read_cloud.h"
 #include "scan/robust.h"
 
@@ -36,7 +37,7 @@ std::string points_of(const std::string& folder) {
 bool shares_places(const PointCloud& cloud, const std::string& model_points, Progress& progress) {
     const std::array<Range, 3> box = robust_ranges(cloud.positions, &progress);
     const double diagonal = glm::length(DVec3(box[0].size(), box[1].size(), box[2].size()));
-    SubProgress reading(&progress, 0.0, 0.0);
+    QuietProgress reading(&progress);
     const PointCloud model = read_cloud(model_points, {}, nullptr, &reading);
     std::vector<Vec3> shared;
     for (const Vec3& p : some_of(model.positions, kAsked, &progress)) {
@@ -58,6 +59,7 @@ bool shares_places(const PointCloud& cloud, const std::string& model_points, Pro
 
 PhotosTell ask_photos(const std::string& path, const PointCloud& cloud, Progress& progress) {
     PhotosTell told;
+    QuietProgress reading(&progress);
     for (const std::string& folder : photo_models_beside(path)) {
         progress.check();
         try {
@@ -66,7 +68,7 @@ PhotosTell ask_photos(const std::string& path, const PointCloud& cloud, Progress
             const bool own =
                 !points.empty() && std::filesystem::equivalent(path_of(points), path_of(path), failure);
             if (!own && (points.empty() || !shares_places(cloud, points, progress))) continue;
-            const PhotoModel model = read_photo_model(folder, &progress);
+            const PhotoModel model = read_photo_model(folder, &reading);
             std::vector<DVec3> seen;
             for (const Vec3& p : some_of(cloud.positions, kAsked, &progress))
                 seen.push_back(cloud.frame.to_scan(DVec3(p)));

@@ -182,8 +182,9 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
     return result;
 }
 
-Reconstruction reconstruct_tree(const std::string& path, const ReconstructOptions& asked, Progress* progress,
+Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOptions& asked, Progress* progress,
                                 ReconstructCache* cache) {
+    const std::string path = cloud_file_of(scan);
     Reconstruction result;
     ReconstructOptions options = asked;
     StageClock clock(result.stages);
@@ -327,8 +328,9 @@ void score_reconstruction(Reconstruction& result, const ReconstructOptions& opti
     clock.stop("Score", result.cloud.size());
 }
 
-PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
+PointCloud load_scan(const std::string& scan, const ReconstructOptions& options, const ScanFrame& frame,
                      size_t most, Progress* progress, ReconstructCache* cache) {
+    const std::string path = cloud_file_of(scan);
     constexpr double kScanRead = 0.4, kScanOriented = 0.5, kScanCleaned = 0.9;
     bool kept = false;
     ReadCloudReport report;

@@ -95,23 +95,8 @@ Trunk trunk_of(const std::vector<Vec3>& points, bool flutes, const Progress* pro
     return trunk;
 }
 
-}  // namespace
-
-bool is_lone_trunk(const std::vector<Vec3>& points, const Progress& progress) {
-    const Trunk trunk = trunk_of(points, false, &progress);
-    return static_cast<double>(trunk.on_bark) > kNearlyAll * static_cast<double>(points.size()) ||
-           !stump_rings(points, &progress).empty();
-}
-
-std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progress* progress) {
-    Trunk trunk = trunk_of(points, true, progress);
-    if (trunk.rings.size() < kFewestRings || trunk.height >= kStumpHeight * 2.0 * trunk.radius ||
-        static_cast<double>(trunk.on_bark + trunk.on_faces) <=
-            kStumpShare * static_cast<double>(points.size()))
-        return {};
-    for (const TrunkRing& ring : trunk.rings)
-        if (ring.radius < kStumpNarrows * trunk.radius) return {};
-    // On to both ends, as the last two sections lead. What is left of the ground lies lower than the foot.
+// On to both ends, as the last two sections lead. What is left of the ground lies lower than the foot.
+std::vector<TrunkRing> to_both_ends(Trunk& trunk, const std::vector<Vec3>& points) {
     std::vector<double> heights;
     heights.reserve(points.size());
     for (const Vec3& p : points)
@@ -132,6 +117,31 @@ std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progre
     rings.insert(rings.begin(), foot);
     rings.push_back(top);
     return rings;
+}
+
+}  // namespace
+
+bool is_lone_trunk(const std::vector<Vec3>& points, const Progress& progress) {
+    const Trunk trunk = trunk_of(points, false, &progress);
+    return static_cast<double>(trunk.on_bark) > kNearlyAll * static_cast<double>(points.size()) ||
+           !stump_rings(points, &progress).empty();
+}
+
+std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progress* progress) {
+    Trunk trunk = trunk_of(points, true, progress);
+    if (trunk.rings.size() < kFewestRings || trunk.height >= kStumpHeight * 2.0 * trunk.radius ||
+        static_cast<double>(trunk.on_bark + trunk.on_faces) <=
+            kStumpShare * static_cast<double>(points.size()))
+        return {};
+    for (const TrunkRing& ring : trunk.rings)
+        if (ring.radius < kStumpNarrows * trunk.radius) return {};
+    return to_both_ends(trunk, points);
+}
+
+std::vector<TrunkRing> trunk_rings(const std::vector<Vec3>& points, const Progress* progress) {
+    Trunk trunk = trunk_of(points, true, progress);
+    if (trunk.rings.size() < kFewestRings) return {};
+    return to_both_ends(trunk, points);
 }
 
 }  // namespace treerec

@@ -23,4 +23,8 @@ struct TrunkRing {
 // wide: one piece of wood, on which nothing grows. Nothing for any other cloud.
 std::vector<TrunkRing> stump_rings(const std::vector<Vec3>& points, const Progress* progress = nullptr);
 
+// The same of what is known to be nothing but a trunk, however high, and whatever else lies around. Nothing
+// where no half of it is round.
+std::vector<TrunkRing> trunk_rings(const std::vector<Vec3>& points, const Progress* progress = nullptr);
+
 }  // namespace treerec

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <new>
 
 #include "error.h"
@@ -350,8 +351,25 @@ std::optional<std::vector<uint8_t>> parse_classes(std::string_view text) {
     return classes;
 }
 
-PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options, ReadCloudReport* report,
+std::string cloud_file_of(const std::string& path) {
+    namespace fs = std::filesystem;
+    const fs::path folder = path_of(path);
+    std::error_code failure;
+    if (!fs::is_directory(folder, failure)) return path;
+    for (const fs::path& model : {folder, folder / "sparse", folder / "sparse" / "0", folder / "0"})
+        for (const char* points : {"points3D.bin", "points3D.txt"}) {
+            if (!fs::is_regular_file(model / points, failure)) continue;
+            for (const char* dense : {"fused.ply", "cloud.ply"})
+                if (model != folder && fs::is_regular_file(folder / dense, failure))
+                    return utf8_of(folder / dense);
+            return utf8_of(model / points);
+        }
+    return path;
+}
+
+PointCloud read_cloud(const std::string& asked, const ReadCloudOptions& options, ReadCloudReport* report,
                       Progress* progress) {
+    const std::string path = cloud_file_of(asked);
     ReadCloudReport own_report;
     ReadCloudReport& the_report = report ? *report : own_report;
     the_report = {};

@@ -37,14 +37,19 @@ struct ReadCloudReport {
     std::vector<std::string> warnings;
 };
 
-// Reads the cloud at `path` (UTF-8). The format is sniffed from the contents first, the extension second. The
-// frame's origin is the median of each axis, rounded to whole units, and independent of the points' order;
-// scale 1, axes as in the file. Left out and counted in a warning: points without finite coordinates, LAS
-// points flagged as withheld or of classes that are not read, splats with an opacity below 10 %. The cloud's
-// unit is what a LAS file says; its labels are what a column called foliage, leaf, wood, classification,
-// label or the like says of leaves. A file that is cut off is an Error wherever
-// that can be known. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no finite
-// point, coordinates in degrees or rounded to steps too coarse for a tree, …).
+// The file to read for `path`. Of a folder of COLMAP's: the dense cloud that lies beside the model
+// (fused.ply, or cloud.ply of 'treerec photos'), or else the points of the model in it, in sparse/ or in
+// sparse/0/. Else the path itself.
+std::string cloud_file_of(const std::string& path);
+
+// Reads the cloud at `path` (UTF-8), or in this folder. The format is sniffed from the contents first, the
+// extension second. The frame's origin is the median of each axis, rounded to whole units, and independent of
+// the points' order; scale 1, axes as in the file. Left out and counted in a warning: points without finite
+// coordinates, LAS points flagged as withheld or of classes that are not read, splats with an opacity below
+// 10 %. The cloud's unit is what a LAS file says; its labels are what a column called foliage, leaf, wood,
+// classification, label or the like says of leaves. A file that is cut off is an Error wherever that can be
+// known. Throws Error with a sentence (missing, empty, truncated, not a point cloud, no finite point,
+// coordinates in degrees or rounded to steps too coarse for a tree, …).
 PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options = {},
                       ReadCloudReport* report = nullptr, Progress* progress = nullptr);
 

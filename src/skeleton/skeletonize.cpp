@@ -136,7 +136,9 @@ SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions&
             "All points lie on a plane or on a line, and a tree needs depth: this looks like a photo or a "
             "section of a scan.");
     clock.stop("Thinning", points.size());
-    if (const std::vector<TrunkRing> rings = stump_rings(cloud.positions, &progress); !rings.empty()) {
+    const std::vector<TrunkRing> rings = options.trunk_alone ? trunk_rings(cloud.positions, &progress)
+                                                             : stump_rings(cloud.positions, &progress);
+    if (!rings.empty()) {
         result.tree = stump_tree(rings, options);
         if (floods) result.voxel = options.voxel > 0.0 ? options.voxel : kVoxelSpacings * result.spacing;
         mark_trunk(result.tree);

@@ -1,0 +1,145 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/reconstruct_options.h"
+#include "cli/terminal_progress.h"
+#include "file_bytes.h"
+#include "geometry/parallel.h"
+#include "pipeline/export.h"
+#include "pipeline/html_report.h"
+#include "pipeline/photos.h"
+#include "pipeline/report.h"
+
+namespace treerec {
+
+namespace {
+
+// The options of 'reconstruct' that suit a cloud that is made here.
+constexpr const char* kShared[] = {"--seed",
+                                   "--up",
+                                   "--scale",
+                                   "--height",
+                                   "--leaves",
+                                   "--levels",
+                                   "--pictures-beside",
+                                   "--threads",
+                                   "--skeleton",
+                                   "--flood",
+                                   "--voxel",
+                                   "--radii",
+                                   "--complete",
+                                   "--prune",
+                                   "--spacing",
+                                   "--no-clean",
+                                   "--no-clean-colors",
+                                   "--no-clean-outliers",
+                                   "--no-clean-fragments",
+                                   "--no-clean-ground",
+                                   "--tree",
+                                   "--tree-at",
+                                   "--one-tree",
+                                   "--all-wood",
+                                   "--quiet"};
+
+std::vector<Option> all_options() {
+    std::vector<Option> options = {
+        {"-o", "OUT", "the folder to write to: tree.glb tree.txt report.json cloud.ply photos.log"},
+        {"--order", "ORDER",
+         "which photos are compared: exhaustive (all), sequence (neighbours by name, the last with\n"
+         "the first) or auto, the default: exhaustive for up to 80"},
+        {"--time", "TIME", "how much to find in each photo: quick, normal or best (default normal)"},
+        {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
+        {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
+        {"--known-length", "LIST",
+         "a length in cloud.ply that sets the scale: x,y,z,x,y,z,metres (photos have none)"}};
+    for (const Option& option : reconstruct_command().options)
+        for (const char* name : kShared)
+            if (option.name == name) options.push_back(option);
+    return options;
+}
+
+void print_photos(const PhotosResult& result) {
+    std::printf("%zu of %zu photos placed", result.photos.registered, result.photos.photos);
+    if (result.photos.widest_gap)
+        std::printf(", the widest gap between them %ld degrees",
+                    std::lround(result.photos.widest_gap->degrees));
+    if (result.made.pairs > 0)
+        std::printf("; %zu points, of %zu pairs of photos\n", result.made.points, result.made.pairs);
+    else
+        std::printf("; %zu points\n", result.made.points);
+}
+
+}  // namespace
+
+const Command& photos_command() {
+    static const Command command{
+        "photos", "photos FOLDER -o OUT [options]", "Turns photos of a tree into a tree, with COLMAP.",
+        all_options(),
+        "FOLDER: photos (.jpg .png .tif .bmp) from all around the tree, 8 or more; they are only read.\n"
+        "What was done already with the same photos and options is taken from OUT, also after a kill."};
+    return command;
+}
+
+void run_photos(const std::vector<std::string>& words) {
+    const Arguments arguments(photos_command(), words);
+    const std::vector<std::string>& positional = arguments.positional();
+    if (positional.empty()) throw UsageError("Which photos? Name their folder.");
+    if (positional.size() > 1)
+        throw UsageError("'" + positional[1] + "' is too much: one folder of photos at a time.");
+    if (!arguments.has("-o")) throw UsageError("Where to? Name a folder with -o.");
+    const std::string folder = positional[0], out = arguments.text("-o", "");
+    PhotosOptions options;
+    options.colmap.program = arguments.text("--colmap", "");
+    options.colmap.order = as_usage([&] { return parse_photo_order(arguments.text("--order", "auto")); });
+    options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
+    options.cloud.dense = !arguments.has("--sparse");
+    options.cloud.densify = densify_options_of(options.colmap.effort);
+    options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
+    options.reconstruct = reconstruct_options_from(arguments);
+    options.reconstruct.score_points = ReconstructOptions{}.score_points;
+    ReportDetails details{
+        "", options.reconstruct, arguments.text("--leaves", "auto"), options.reconstruct.skeleton.seed, 0, 0};
+    as_usage([&] { return leaf_preset(details.leaves == "auto" ? "generic" : details.leaves); });
+    ExportOptions exports;
+    exports.seed = options.reconstruct.skeleton.seed;
+    exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
+    set_thread_count(options.colmap.threads);
+
+    const auto start = std::chrono::steady_clock::now();
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet);
+    SubProgress making(&progress, 0.0, 0.95);
+    PhotosResult result = reconstruct_photos(folder, out, options, &making);
+    Reconstruction& tree = result.tree;
+    details.scan_path = result.cloud;
+    details.leaves = chosen_leaves(details.leaves, tree);
+    exports.leaves = suited_leaves(details.leaves, tree);
+    exports.textures = details.leaves;
+    exports.foliage = tree.foliage;
+    TreeExporter exporter(tree.tree, exports, &progress);
+    progress.update(0.95, "Writing");
+    std::vector<std::string> outs;
+    for (const char* name : {"tree.glb", "tree.txt"})
+        outs.push_back(utf8_of(path_of(out) / name));
+    exporter.prepare(outs);
+    for (const std::string& path : outs)
+        exporter.write(path);
+    details.triangles = exporter.triangles();
+    details.leaf_count = exporter.leaves();
+    outs.push_back(utf8_of(path_of(out) / "report.json"));
+    write_file(outs.back(), report_json(tree, details));
+    outs.push_back(result.cloud);
+    progress.clear();
+    for (const std::string& warning : tree.warnings)
+        std::fprintf(stderr, "Warning: %s\n", warning.c_str());
+    if (quiet) return;
+    print_photos(result);
+    print_summary(tree, outs,
+                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace treerec

@@ -1,0 +1,341 @@
+#include "photos/densify.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <set>
+
+#include "error.h"
+#include "file_bytes.h"
+#include "geometry/parallel.h"
+#include "geometry/quantile.h"
+#include "photos/cameras_tell.h"
+#include "photos/photo_picture.h"
+#include "photos/rectify.h"
+#include "photos/semi_global.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLeastAngle = 1.5;  // degrees between two photos' ways to what they show
+constexpr double kBestAngle = 7.0;   // nearer, and depth is unsure; farther, and bark looks otherwise
+constexpr double kLargestAngle = 25.0;
+constexpr double kTurned = 0.82;     // cosine of 35 degrees between two photos' views
+constexpr size_t kLeastSeen = 8;     // sparse points that tell how far a photo looks
+constexpr double kNear = 0.7;        // of the nearest sparse points' distance
+constexpr double kFar = 1.5;         // of the farthest ones'
+constexpr double kOutermost = 0.01;  // share of the sparse points that is not asked
+constexpr double kCellPixels = 2.0;
+constexpr double kReach = 0.85;         // of the cameras' distance from the subject
+constexpr double kCellReach = 1 << 20;  // cells to each side that have a number
+
+// How far what a photo shows is in front of it, in the model's unit.
+struct Depths {
+    double least = 0.0, median = 0.0, most = 0.0;
+};
+
+struct Pair {
+    size_t one, other;
+};
+
+// What one pair sees within one cell.
+struct Sight {
+    uint64_t cell = 0;
+    uint32_t pair = 0;
+    float weight = 0.0F;
+    Vec3 place{0.0F};  // weighted sum, from the cell's corner in cells
+    Vec3 colour{0.0F};
+};
+
+class Cells {
+  public:
+    Cells(const DVec3& middle, double size) : middle_(middle), size_(size) {}
+    bool has(const DVec3& p) const {
+        const DVec3 at = glm::abs(p - middle_) / size_;
+        return at.x < kCellReach && at.y < kCellReach && at.z < kCellReach;
+    }
+    uint64_t of(const DVec3& p) const {
+        const DVec3 at = glm::floor((p - middle_) / size_) + kCellReach;
+        return static_cast<uint64_t>(at.x) << 42 | static_cast<uint64_t>(at.y) << 21 |
+               static_cast<uint64_t>(at.z);
+    }
+    DVec3 corner(uint64_t cell) const {
+        const DVec3 at(static_cast<double>(cell >> 42), static_cast<double>(cell >> 21 & 0x1FFFFF),
+                       static_cast<double>(cell & 0x1FFFFF));
+        return middle_ + size_ * (at - kCellReach);
+    }
+
+  private:
+    DVec3 middle_;
+    double size_;
+};
+
+// What is kept: all, or what is nearer to an upright line than most cameras.
+struct Region {
+    bool everything = true;
+    DVec3 subject{0.0}, sky{0.0};
+    double reach = 0.0;
+
+    double away(const DVec3& p) const {
+        const DVec3 way = p - subject;
+        return glm::length(way - glm::dot(way, sky) * sky);
+    }
+    bool has(const DVec3& p) const { return everything || away(p) < reach; }
+};
+
+Region region_of(const PhotoModel& model, std::span<const DVec3> sparse) {
+    Region region;
+    const auto subject = subject_of(model);
+    const auto sky = sky_of(model, sparse);
+    if (!subject || !sky) return region;
+    region.everything = false;
+    region.subject = *subject;
+    region.sky = *sky;
+    std::vector<double> away;
+    for (const Photo& photo : model.photos)
+        away.push_back(region.away(centre_of(photo)));
+    region.reach = kReach * quantile(away, 0.25);
+    return region;
+}
+
+Depths depths_of(const LoadedPhoto& photo, std::span<const DVec3> sparse) {
+    std::vector<double> depths;
+    for (const DVec3& p : sparse) {
+        const DVec3 seen = photo.photo->to_camera(p);
+        const auto pixel = photo.camera->project(seen);
+        if (pixel && pixel->x >= 0 && pixel->y >= 0 && pixel->x < photo.camera->width &&
+            pixel->y < photo.camera->height)
+            depths.push_back(seen.z);
+    }
+    if (depths.size() < kLeastSeen) return {};
+    Depths found;
+    found.median = quantile(depths, 0.5);
+    found.least = kNear * quantile(depths, kOutermost);
+    found.most = kFar * quantile(depths, 1.0 - kOutermost);
+    return found;
+}
+
+double degrees_between(const DVec3& a, const DVec3& b) {
+    const double cosine = glm::dot(a, b) / (glm::length(a) * glm::length(b));
+    return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / kPi;
+}
+
+// The pairs that tell most: for each photo its neighbours at the best angle.
+std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std::vector<Depths>& depths,
+                               int neighbours) {
+    std::set<std::pair<size_t, size_t>> chosen;
+    for (size_t i = 0; i < photos.size(); i++) {
+        if (!(depths[i].median > 0.0)) continue;
+        const DVec3 here = centre_of(*photos[i].photo), ahead = ahead_of(*photos[i].photo);
+        const DVec3 shown = here + depths[i].median * ahead;
+        std::vector<std::pair<double, size_t>> others;
+        for (size_t j = 0; j < photos.size(); j++) {
+            if (j == i || !(depths[j].median > 0.0)) continue;
+            const double angle = degrees_between(here - shown, centre_of(*photos[j].photo) - shown);
+            if (!(angle >= kLeastAngle && angle <= kLargestAngle)) continue;
+            if (glm::dot(ahead, ahead_of(*photos[j].photo)) < kTurned) continue;
+            others.emplace_back(std::abs(std::log(angle / kBestAngle)), j);
+        }
+        std::sort(others.begin(), others.end());
+        for (size_t k = 0; k < std::min(others.size(), static_cast<size_t>(neighbours)); k++)
+            chosen.insert(std::minmax(i, others[k].second));
+    }
+    std::vector<Pair> pairs;
+    for (const auto& [one, other] : chosen)
+        pairs.push_back({one, other});
+    return pairs;
+}
+
+// What a pair sees, a sum for each cell, by cell.
+std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const Depths& depths,
+                        const Region& region, const Cells& cells, double cell, uint32_t number) {
+    const auto pair = rectify(one, other);
+    if (!pair) return {};
+    const double lengths = pair->focal * pair->baseline;
+    const int least = std::max(1, static_cast<int>(std::floor(lengths / depths.most)));
+    const int most =
+        std::min(static_cast<int>(std::ceil(lengths / depths.least)), least + kMostDisparities - 1);
+    if (most - least < 4) return {};
+    const std::vector<float> disparities = match_rectified(*pair, least, most);
+    std::vector<Sight> sights;
+    for (int y = 0; y < pair->height; y++)
+        for (int x = 0; x < pair->width; x++) {
+            const size_t at =
+                static_cast<size_t>(y) * static_cast<size_t>(pair->width) + static_cast<size_t>(x);
+            const float disparity = disparities[at];
+            if (std::isnan(disparity)) continue;
+            const DVec3 p = pair->point_at(x, y, disparity);
+            if (!region.has(p) || !cells.has(p)) continue;
+            // Half a pixel of disparity, as a length.
+            const double unsure =
+                0.5 * lengths / (static_cast<double>(disparity) * static_cast<double>(disparity));
+            const auto weight = static_cast<float>(cell * cell / (cell * cell + unsure * unsure));
+            Sight sight;
+            sight.cell = cells.of(p);
+            sight.pair = number;
+            sight.weight = weight;
+            sight.place = weight * Vec3((p - cells.corner(sight.cell)) / cell);
+            const auto& colour = pair->left.colours[at];
+            sight.colour = weight * Vec3(colour[0], colour[1], colour[2]);
+            sights.push_back(sight);
+        }
+    std::stable_sort(sights.begin(), sights.end(),
+                     [](const Sight& a, const Sight& b) { return a.cell < b.cell; });
+    size_t kept = 0;
+    for (size_t i = 0; i < sights.size(); i++) {
+        if (kept > 0 && sights[kept - 1].cell == sights[i].cell) {
+            Sight& sum = sights[kept - 1];
+            sum.weight += sights[i].weight;
+            sum.place += sights[i].place;
+            sum.colour += sights[i].colour;
+        } else {
+            sights[kept++] = sights[i];
+        }
+    }
+    sights.resize(kept);
+    return sights;
+}
+
+// The cells that enough pairs see, themselves or right beside; a point for each.
+PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double cell, int agreeing,
+                  const DVec3& origin) {
+    PointCloud cloud;
+    cloud.frame.origin = origin;
+    std::vector<size_t> starts;
+    for (size_t i = 0; i < sights.size(); i++)
+        if (i == 0 || sights[i].cell != sights[i - 1].cell) starts.push_back(i);
+    starts.push_back(sights.size());
+    const size_t count = starts.size() - 1;
+    const auto find = [&](uint64_t wanted) {
+        const auto found =
+            std::lower_bound(starts.begin(), starts.end() - 1, wanted,
+                             [&](size_t at, uint64_t value) { return sights[at].cell < value; });
+        return found != starts.end() - 1 && sights[*found].cell == wanted
+                   ? static_cast<size_t>(found - starts.begin())
+                   : count;
+    };
+    std::vector<uint8_t> keep(count, 0);
+    parallel_for(count, 4096, [&](size_t begin, size_t end) {
+        std::vector<uint32_t> seen;
+        for (size_t i = begin; i < end; i++) {
+            const uint64_t here = sights[starts[i]].cell;
+            seen.clear();
+            for (int64_t dx = -1; dx <= 1; dx++)
+                for (int64_t dy = -1; dy <= 1; dy++)
+                    for (int64_t dz = -1; dz <= 1; dz++) {
+                        const auto step =
+                            static_cast<uint64_t>(dx * (int64_t{1} << 42) + dy * (int64_t{1} << 21) + dz);
+                        const size_t beside = find(here + step);
+                        if (beside == count) continue;
+                        for (size_t k = starts[beside]; k < starts[beside + 1]; k++)
+                            seen.push_back(sights[k].pair);
+                    }
+            std::sort(seen.begin(), seen.end());
+            keep[i] = std::unique(seen.begin(), seen.end()) - seen.begin() >= agreeing;
+        }
+    });
+    for (size_t i = 0; i < count; i++) {
+        if (!keep[i]) continue;
+        Vec3 place{0.0F}, colour{0.0F};
+        float weight = 0.0F;
+        for (size_t k = starts[i]; k < starts[i + 1]; k++) {
+            place += sights[k].place;
+            colour += sights[k].colour;
+            weight += sights[k].weight;
+        }
+        const DVec3 p = cells.corner(sights[starts[i]].cell) + cell * DVec3(place / weight);
+        cloud.positions.emplace_back(p - origin);
+        const Vec3 mean = glm::clamp(colour / weight + 0.5F, 0.0F, 255.0F);
+        cloud.colors.push_back(
+            {static_cast<uint8_t>(mean.x), static_cast<uint8_t>(mean.y), static_cast<uint8_t>(mean.z)});
+    }
+    return cloud;
+}
+
+std::vector<LoadedPhoto> load_photos(const PhotoModel& model, const std::string& folder, double megapixels,
+                                     Densified& result, Progress* progress) {
+    std::vector<LoadedPhoto> photos;
+    for (size_t i = 0; i < model.photos.size(); i++) {
+        if (progress) {
+            progress->check();
+            progress->update(static_cast<double>(i) / static_cast<double>(model.photos.size()), "Photos");
+        }
+        const Photo& photo = model.photos[i];
+        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+        try {
+            const std::string path = utf8_of(path_of(folder) / path_of(photo.name));
+            const PhotoPicture picture = read_photo(path);
+            if (picture.width != camera.width || picture.height != camera.height)
+                throw Error("'" + path + "' is not as large as the model says; it was left out.");
+            const double pixels = static_cast<double>(picture.width) * picture.height;
+            const int times =
+                std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / (1e6 * megapixels)))));
+            photos.push_back({&photo, &camera, reduced(picture, times), 1.0 / times});
+        } catch (const Error& error) {
+            result.warnings.emplace_back(error.what());
+        }
+    }
+    result.photos = photos.size();
+    return photos;
+}
+
+// Two of the pictures' pixels, where what was photographed is.
+double usual_cell(const std::vector<LoadedPhoto>& photos, const std::vector<Depths>& depths,
+                  const Region& region) {
+    std::vector<double> cells;
+    for (size_t i = 0; i < photos.size(); i++) {
+        if (!(depths[i].median > 0.0)) continue;
+        const double away = region.everything ? depths[i].median
+                                              : glm::dot(region.subject - centre_of(*photos[i].photo),
+                                                         ahead_of(*photos[i].photo));
+        const auto here = photos[i].camera->project({0.0, 0.0, 1.0});
+        const auto beside = photos[i].camera->project({1e-4, 0.0, 1.0});
+        if (!here || !beside || !(away > 0.0)) continue;
+        cells.push_back(kCellPixels * away / (std::abs(beside->x - here->x) / 1e-4 * photos[i].scale));
+    }
+    return cells.empty() ? 0.0 : quantile(cells, 0.5);
+}
+
+}  // namespace
+
+Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const std::string& folder,
+                  const DensifyOptions& options, Progress* progress) {
+    Densified result;
+    SubProgress loading(progress, 0.0, 0.1), matching(progress, 0.1, 0.95);
+    const std::vector<LoadedPhoto> photos = load_photos(model, folder, options.megapixels, result, &loading);
+    const Region region = region_of(model, sparse);
+    std::vector<Depths> depths;
+    for (const LoadedPhoto& photo : photos)
+        depths.push_back(depths_of(photo, sparse));
+    const std::vector<Pair> pairs = choose_pairs(photos, depths, options.neighbours);
+    result.cell = options.cell > 0.0 ? options.cell : usual_cell(photos, depths, region);
+    if (pairs.empty() || !(result.cell > 0.0))
+        throw Error("No two photos look at the same thing from nearby: take more of them, a step apart.");
+    const DVec3 middle = region.everything ? sparse[sparse.size() / 2] : region.subject;
+    const Cells cells(middle, result.cell);
+    std::vector<std::vector<Sight>> seen(pairs.size());
+    std::atomic<size_t> done{0};
+    parallel_for(pairs.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            matching.check();
+            const auto [one, other] = pairs[i];
+            seen[i] = look(photos[one], photos[other], depths[one], region, cells, result.cell,
+                           static_cast<uint32_t>(i));
+            matching.update(static_cast<double>(++done) / static_cast<double>(pairs.size()), "Dense points");
+        }
+    });
+    std::vector<Sight> sights;
+    for (std::vector<Sight>& some : seen) {
+        result.pairs += !some.empty();
+        sights.insert(sights.end(), some.begin(), some.end());
+        some = {};
+    }
+    std::stable_sort(sights.begin(), sights.end(),
+                     [](const Sight& a, const Sight& b) { return a.cell < b.cell; });
+    result.cloud = agreed(sights, cells, result.cell, options.agreeing, middle);
+    if (result.cloud.empty()) throw Error("The photos agree on no point: are they sharp, and of one thing?");
+    return result;
+}
+
+}  // namespace treerec

@@ -1,0 +1,134 @@
+#include "photos/photo_folder.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "error.h"
+#include "file_bytes.h"
+
+namespace treerec {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPhotos[] = {"jpg", "jpeg", "png", "tif", "tiff", "bmp"};
+constexpr std::string_view kApples[] = {"heic", "heif", "avif"};
+constexpr std::string_view kFilms[] = {"mp4", "mov", "m4v", "avi", "mkv", "webm"};
+
+template <size_t kCount>
+bool is_one_of(const std::string& ending, const std::string_view (&endings)[kCount]) {
+    return std::find(std::begin(endings), std::end(endings), ending) != std::end(endings);
+}
+
+int big_endian(const unsigned char* bytes, int count) {
+    int value = 0;
+    for (int i = 0; i < count; i++)
+        value = value << 8 | bytes[i];
+    return value;
+}
+
+// Width and height as a JPEG's frame header says; 0 where there is none.
+std::pair<int, int> jpeg_size(std::ifstream& in) {
+    in.seekg(2);
+    unsigned char head[9];
+    while (in.read(reinterpret_cast<char*>(head), 4)) {
+        if (head[0] != 0xFF) break;
+        const int marker = head[1], size = big_endian(head + 2, 2);
+        // A frame header: all of this row but tables of Huffman codes, an extension, and arithmetic ones.
+        if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
+            if (!in.read(reinterpret_cast<char*>(head), 5)) break;
+            return {big_endian(head + 3, 2), big_endian(head + 1, 2)};
+        }
+        if (marker == 0xFF) {  // filling
+            in.seekg(-3, std::ios::cur);
+            continue;
+        }
+        if (marker == 0xDA || size < 2) break;
+        in.seekg(size - 2, std::ios::cur);
+    }
+    return {0, 0};
+}
+
+std::pair<int, int> size_of_picture(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    std::array<unsigned char, 24> head{};
+    if (!in.read(reinterpret_cast<char*>(head.data()), head.size())) return {0, 0};
+    if (head[0] == 0xFF && head[1] == 0xD8) return jpeg_size(in);
+    if (std::string_view(reinterpret_cast<const char*>(head.data()), 8) == "\x89PNG\r\n\x1a\n")
+        return {big_endian(&head[16], 4), big_endian(&head[20], 4)};
+    return {0, 0};
+}
+
+// What COLMAP's list of pictures, a text of lines, can't hold.
+bool fits_a_line(const std::string& name) {
+    return name.find_first_of("\r\n") == std::string::npos && name.front() != ' ' && name.front() != '\t';
+}
+
+std::string how_to_convert(size_t apples, const std::string& folder) {
+    return std::to_string(apples) + (apples == 1 ? " picture in '" : " pictures in '") + folder + "' " +
+           (apples == 1 ? "is" : "are") +
+           " HEIC, as phones save them, which COLMAP does not read. Convert them to JPEG ('heif-convert' of "
+           "libheif on Linux, 'sips -s format jpeg' on macOS, the Photos app on Windows), or set the camera "
+           "to 'most compatible'.";
+}
+
+}  // namespace
+
+bool PhotoFolder::one_size() const {
+    return !photos.empty() && std::all_of(photos.begin(), photos.end(), [&](const PhotoFile& photo) {
+        return photo.width > 0 && photo.width == photos[0].width && photo.height == photos[0].height;
+    });
+}
+
+PhotoFolder list_photos(const std::string& folder) {
+    std::error_code failure;
+    if (!fs::is_directory(path_of(folder), failure))
+        throw Error("'" + folder + "' is no folder; name the one with the photos in it.");
+    PhotoFolder found;
+    found.path = utf8_of(fs::canonical(path_of(folder), failure));
+    if (failure) throw Error("The folder '" + folder + "' cannot be reached.");
+    size_t apples = 0, films = 0;
+    fs::directory_iterator at(path_of(found.path), failure);
+    for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
+        std::error_code ignored;
+        const std::string name = utf8_of(at->path().filename());
+        // macOS's notes beside each file on foreign disks are called "._IMG_1.jpg".
+        if (name.starts_with(".") || !at->is_regular_file(ignored)) continue;
+        const std::string ending = extension_of(name);
+        apples += is_one_of(ending, kApples);
+        films += is_one_of(ending, kFilms);
+        if (!is_one_of(ending, kPhotos)) continue;
+        if (!fits_a_line(name))
+            throw Error(
+                "The photo " + quote_word(name) +
+                " has a name that COLMAP can't be told: rename it so that it begins with no blank and "
+                "has no line break in it.");
+        PhotoFile photo;
+        photo.name = name;
+        photo.bytes = at->file_size(ignored);
+        photo.written = at->last_write_time(ignored).time_since_epoch().count();
+        std::tie(photo.width, photo.height) = size_of_picture(at->path());
+        found.photos.push_back(std::move(photo));
+    }
+    if (failure) throw Error("The folder '" + folder + "' cannot be read.");
+    std::sort(found.photos.begin(), found.photos.end(),
+              [](const PhotoFile& a, const PhotoFile& b) { return a.name < b.name; });
+    if (found.photos.empty()) {
+        if (apples > 0) throw Error(how_to_convert(apples, folder));
+        if (films > 0)
+            throw Error("There are no photos in '" + folder +
+                        "', but a film. Take two pictures a second out of it first: ffmpeg -i FILM -vf fps=2 "
+                        "-q:v 2 FOLDER/%04d.jpg");
+        throw Error("There are no photos in '" + folder + "' (.jpg .png .tif .bmp).");
+    }
+    if (apples > 0) found.warnings.push_back(how_to_convert(apples, folder));
+    return found;
+}
+
+}  // namespace treerec

@@ -1,0 +1,53 @@
+// From a folder of photos to the places that they were taken from, with COLMAP as its own process
+// (papers/000, 3.2.1; papers/002, chapter 3).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "photos/cameras_tell.h"
+#include "progress.h"
+
+namespace treerec {
+
+// Which photos are compared.
+enum class PhotoOrder {
+    kAuto,        // exhaustive for up to 80 photos, else in sequence
+    kSequence,    // neighbours by name, and the last ones with the first
+    kExhaustive,  // each with each
+};
+
+// How long it may take.
+enum class PhotoEffort { kQuick, kNormal, kBest };
+
+// "auto", "sequence", "exhaustive"; "quick", "normal", "best". Throw Error for another word.
+PhotoOrder parse_photo_order(const std::string& word);
+PhotoEffort parse_photo_effort(const std::string& word);
+
+struct ColmapOptions {
+    std::string program;  // or its folder; "": $COLMAP, PATH, the usual folders
+    PhotoOrder order = PhotoOrder::kAuto;
+    PhotoEffort effort = PhotoEffort::kNormal;
+    int threads = 0;  // 0: one per core
+};
+
+struct ColmapRun {
+    std::string model;                    // the folder of cameras.bin, images.bin and points3D.bin
+    std::string version;                  // COLMAP's
+    size_t photos = 0;                    // in the folder
+    size_t registered = 0;                // whose places are known
+    std::vector<std::string> missing;     // the names of the others
+    std::optional<CircleGap> widest_gap;  // in the circle around what was photographed
+    std::vector<std::string> warnings;    // what could be done better, as sentences
+};
+
+// Runs COLMAP's stages in out/colmap and leaves the model in out/sparse/0, everything that COLMAP says in
+// out/photos.log, and nothing outside of `out`; the photos are only read. Stages that ended with the same
+// photos and options are not done again, one that was killed goes on. Counts photos in `progress`. Throws
+// Error with a sentence that says what to do (no COLMAP, fewer than 8 photos, none of them placed, …), or
+// Cancelled.
+ColmapRun run_colmap(const std::string& folder, const std::string& out, const ColmapOptions& options,
+                     Progress* progress = nullptr);
+
+}  // namespace treerec

@@ -1,0 +1,103 @@
+#include "pipeline/photos.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "file_bytes.h"
+#include "photos/photo_folder.h"
+#include "photos/run_stage.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kColmapEnd = 0.6;
+constexpr double kCloudEnd = 0.95;
+
+using json = nlohmann::json;
+
+// Everything that the cloud depends on.
+std::string basis_of(const std::string& folder, const std::string& model, const MakeCloudOptions& options) {
+    json basis = {photos_as_text(list_photos(folder)),
+                  options.least_track,
+                  options.most_error,
+                  options.dense,
+                  options.densify.megapixels,
+                  options.densify.neighbours,
+                  options.densify.agreeing,
+                  options.densify.cell};
+    for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
+        std::error_code failure;
+        const std::filesystem::path file = path_of(model) / name;
+        basis.push_back(std::filesystem::file_size(file, failure));
+        basis.push_back(std::filesystem::last_write_time(file, failure).time_since_epoch().count());
+    }
+    return basis.dump();
+}
+
+// The cloud that is there from the same, or a new one.
+MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, const PhotosResult& result,
+                             const MakeCloudOptions& options, Progress* progress) {
+    RunStage stage(utf8_of(path_of(out) / "colmap" / "cloud.json"),
+                   basis_of(folder, result.photos.model, options));
+    std::error_code failure;
+    if (stage.done() && std::filesystem::is_regular_file(path_of(result.cloud), failure)) {
+        const json note = json::parse(stage.note(), nullptr, false);
+        if (note.is_object()) {
+            MadeCloud made;
+            made.points = note.value("points", size_t{0});
+            made.left_out = note.value("left_out", size_t{0});
+            made.pairs = note.value("pairs", size_t{0});
+            made.stem_alone = note.value("stem_alone", false);
+            made.warnings = note.value("warnings", std::vector<std::string>());
+            return made;
+        }
+    }
+    stage.begin();
+    MadeCloud made = make_cloud(result.photos.model, folder, result.cloud, options, progress);
+    const json note = {{"points", made.points},
+                       {"left_out", made.left_out},
+                       {"pairs", made.pairs},
+                       {"stem_alone", made.stem_alone},
+                       {"warnings", made.warnings}};
+    stage.finish(note.dump(-1, ' ', false, json::error_handler_t::replace));
+    return made;
+}
+
+}  // namespace
+
+DensifyOptions densify_options_of(PhotoEffort effort) {
+    switch (effort) {
+        case PhotoEffort::kQuick:
+            return {.megapixels = 0.15, .neighbours = 2};
+        case PhotoEffort::kBest:
+            return {.megapixels = 0.6, .neighbours = 6};
+        case PhotoEffort::kNormal:
+            break;
+    }
+    return {};
+}
+
+PhotosResult reconstruct_photos(const std::string& folder, const std::string& out,
+                                const PhotosOptions& options, Progress* progress) {
+    PhotosResult result;
+    SubProgress placing(progress, 0.0, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
+        growing(progress, kCloudEnd, 1.0);
+    result.photos = run_colmap(folder, out, options.colmap, &placing);
+    making.update(0.0, "Cloud");
+    result.cloud = utf8_of(path_of(out) / "cloud.ply");
+    result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
+    making.check();
+    ReconstructOptions reconstructing = options.reconstruct;
+    if (result.made.stem_alone) {
+        reconstructing.tell_leaves = false;
+        reconstructing.skeleton.trunk_alone = true;
+    }
+    result.tree = reconstruct_file(result.cloud, reconstructing, &growing);
+    std::vector<std::string> before = result.photos.warnings;
+    before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
+    result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());
+    return result;
+}
+
+}  // namespace treerec

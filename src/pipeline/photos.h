@@ -1,0 +1,35 @@
+// The whole way from a folder of photos to a tree: what the program and the editor both run.
+#pragma once
+
+#include <string>
+
+#include "photos/make_cloud.h"
+#include "photos/run_colmap.h"
+#include "pipeline/reconstruct.h"
+#include "progress.h"
+
+namespace treerec {
+
+struct PhotosOptions {
+    ColmapOptions colmap;
+    MakeCloudOptions cloud;
+    ReconstructOptions reconstruct;  // a known length is one in the cloud's coordinates
+};
+
+// How finely photos are matched.
+DensifyOptions densify_options_of(PhotoEffort effort);
+
+struct PhotosResult {
+    Reconstruction tree;  // with the warnings of all that was before it, the first ones first
+    ColmapRun photos;
+    MadeCloud made;
+    std::string cloud;  // the file that the tree was made of, in `out`
+};
+
+// Places the cameras (photos/run_colmap.h), makes out/cloud.ply, with COLMAP's model beside it in
+// out/sparse/0, and a tree of that. What is there already from the same photos and options is taken: the tree
+// alone may be made again with a known length or height. Throws Error with a sentence, or Cancelled.
+PhotosResult reconstruct_photos(const std::string& folder, const std::string& out,
+                                const PhotosOptions& options, Progress* progress = nullptr);
+
+}  // namespace treerec
