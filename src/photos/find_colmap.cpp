@@ -163,7 +163,7 @@ void add_libraries(const fs::path& program, ChildCommand& command) {
 // "  --Mapper.min_num_matches arg (=15)" has one, at its beginning.
 std::string option_in(const std::string& line) {
     const size_t begin = line.find_first_not_of(' ');
-    // "-h [ --help ]" is of no interest.
+    // -h is told with --help in brackets: of no interest.
     if (begin == std::string::npos || line.compare(begin, 2, "--") != 0) return "";
     return line.substr(begin, line.find_first_of(" =[", begin) - begin);
 }

@@ -134,6 +134,9 @@ def of_the_program():
         source = re.sub(r'"\s*\n\s*"', "", path.read_text(encoding="utf-8"))
         for literal in re.findall(r'"((?:[^"\\\n]|\\.)*)"', source):
             text = unescape(literal)
+            # A word by itself is for another program, not for a user.
+            if re.fullmatch(r"--\S+", text):
+                continue
             for said, _ in in_editor():
                 text = text.replace(said, "")
             for option in re.findall(r"(?<![\w(-])\(?--[a-z][a-z-]+", text):
