@@ -19,10 +19,12 @@ constexpr double kAgreeing = 0.6;  // of the photos
 constexpr double kApart = 0.1;     // sine between two level lines that still give their plane
 constexpr double kTurned = 0.05;   // of the level lines' second direction: less, and they are one line
 constexpr int kPowers = 200;
-constexpr double kSignShare = 0.1;   // of the photos: so many that were stored upright tell the sign
-constexpr double kAround = 0.02;     // least determinant of the lines of sight, as a share of 1
-constexpr double kInFront = 0.8;     // of the cameras
-constexpr double kOutermost = 0.02;  // share of the points that says nothing of the scene's reach
+constexpr double kSignShare = 0.1;     // of the photos: so many that were stored upright tell the sign
+constexpr double kAround = 0.02;       // least determinant of the lines of sight, as a share of 1
+constexpr double kInFront = 0.8;       // of the cameras
+constexpr double kNearCameras = 0.25;  // share of the cameras
+constexpr double kReach = 0.85;        // of their distance from the subject
+constexpr double kOutermost = 0.02;    // share of the points that says nothing of the scene's reach
 
 // A camera's axes in the model's coordinates: right, down and ahead in the picture as it is stored.
 struct Pose {
@@ -192,6 +194,15 @@ std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const 
         if (gap > widest.degrees) widest = {gap, around[i].second->name, around[next].second->name};
     }
     return widest;
+}
+
+double subject_reach(const PhotoModel& model, const DVec3& subject, const DVec3& sky) {
+    std::vector<double> away;
+    for (const Pose& pose : poses_of(model)) {
+        const DVec3 way = pose.centre - subject;
+        away.push_back(glm::length(way - glm::dot(way, sky) * sky));
+    }
+    return away.empty() ? 0.0 : kReach * quantile(away, kNearCameras);
 }
 
 std::vector<std::string> photo_models_beside(const std::string& cloud_path) {

@@ -31,6 +31,10 @@ struct CircleGap {
 // Nothing where subject_of() or sky_of() knows nothing. points: as there.
 std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points);
 
+// How far from the upright line through the subject a point may be that belongs to it, in the model's unit:
+// nearer than nearly all cameras are. sky: a unit vector.
+double subject_reach(const PhotoModel& model, const DVec3& subject, const DVec3& sky);
+
 // The folders in which COLMAP, and what follows its habits, leaves the model of a cloud: the cloud's own,
 // sparse/ and sparse/0/ in it and beside it. Those of them with both files of cameras, the nearest first.
 std::vector<std::string> photo_models_beside(const std::string& cloud_path);

@@ -27,7 +27,6 @@ constexpr double kNear = 0.7;        // of the nearest sparse points' distance
 constexpr double kFar = 1.5;         // of the farthest ones'
 constexpr double kOutermost = 0.01;  // share of the sparse points that is not asked
 constexpr double kCellPixels = 2.0;
-constexpr double kReach = 0.85;         // of the cameras' distance from the subject
 constexpr double kCellReach = 1 << 20;  // cells to each side that have a number
 
 // How far what a photo shows is in front of it, in the model's unit.
@@ -92,10 +91,7 @@ Region region_of(const PhotoModel& model, std::span<const DVec3> sparse) {
     region.everything = false;
     region.subject = *subject;
     region.sky = *sky;
-    std::vector<double> away;
-    for (const Photo& photo : model.photos)
-        away.push_back(region.away(centre_of(photo)));
-    region.reach = kReach * quantile(away, 0.25);
+    region.reach = subject_reach(model, *subject, *sky);
     return region;
 }
 

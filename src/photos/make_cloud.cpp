@@ -1,17 +1,13 @@
 #include "photos/make_cloud.h"
 
 #include "error.h"
-#include "photos/cameras_tell.h"
 #include "photos/quiet_progress.h"
 #include "photos/sparse_points.h"
-#include "photos/subject_stem.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
 
 namespace {
-
-constexpr double kBesideStem = 0.3;  // of its radius: bark is rough, and feet are wider
 
 // The model's points that are sure.
 PointCloud sure_points(const std::vector<SparsePoint>& points, const MakeCloudOptions& options,
@@ -40,26 +36,6 @@ std::vector<DVec3> places_of(const PointCloud& cloud) {
     return places;
 }
 
-// Of photos of a trunk, the trunk.
-void keep_subject_stem(PointCloud& cloud, const PhotoModel& model, std::span<const DVec3> sparse,
-                       MadeCloud& made, Progress* progress) {
-    const auto subject = subject_of(model);
-    const auto sky = sky_of(model, sparse);
-    if (!subject || !sky) return;
-    const std::vector<DVec3> places = places_of(cloud);
-    const auto stem = find_subject_stem(places, *subject, *sky, progress);
-    if (!stem) return;
-    std::vector<uint8_t> keep(places.size());
-    for (size_t i = 0; i < places.size(); i++)
-        keep[i] = stem->has(places[i], kBesideStem);
-    cloud.keep_only(keep);
-    made.stem_alone = true;
-    made.warnings.emplace_back(
-        "The photos show a stem whose crown lies above their upper edges; it was left out with what stands "
-        "around the "
-        "stem.");
-}
-
 }  // namespace
 
 MadeCloud make_cloud(const std::string& model_folder, const std::string& photos, const std::string& out,
@@ -75,7 +51,6 @@ MadeCloud make_cloud(const std::string& model_folder, const std::string& photos,
             made.pairs = dense.pairs;
             made.warnings.insert(made.warnings.end(), dense.warnings.begin(), dense.warnings.end());
             cloud = std::move(dense.cloud);
-            keep_subject_stem(cloud, model, sparse, made, &quiet);
         } catch (const Cancelled&) {
             throw;
         } catch (const Error& error) {

@@ -20,7 +20,6 @@ struct MadeCloud {
     size_t points = 0;
     size_t left_out = 0;  // of the model's, that too few photos saw, or that fit these badly
     size_t pairs = 0;  // of photos that were matched pixel by pixel; 0: the cloud has the model's own points
-    bool stem_alone = false;  // the photos show a stem and no crown; what stood around it was left out
     std::vector<std::string> warnings;
 };
 

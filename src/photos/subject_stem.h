@@ -21,8 +21,9 @@ struct SubjectStem {
     DVec3 subject{0.0}, sky{0.0};
     DVec3 side{0.0}, other{0.0};     // the axes of that plane
     std::vector<SubjectRing> rings;  // from below
+    double low = 0.0, high = 0.0;    // heights between which it was looked for
 
-    // Whether a point lies in the stem or on it, or up to `slack` of its radius beside.
+    // Whether a point lies in the stem or on it, or up to `slack` of its radius beside or beyond its ends.
     bool has(const DVec3& p, double slack) const;
 };
 

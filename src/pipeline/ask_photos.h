@@ -5,15 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "photos/subject_stem.h"
 #include "progress.h"
 #include "scan/point_cloud.h"
 
 namespace treerec {
 
 struct PhotosTell {
-    size_t photos = 0;             // whose cameras were asked; 0: there are none, or they do not agree
-    DVec3 sky{0.0};                // the way up in scan coordinates, where `photos` is not 0
-    std::optional<DVec3> subject;  // the place that they were taken of, in scan coordinates
+    size_t photos = 0;                // whose cameras were asked; 0: there are none, or they do not agree
+    DVec3 sky{0.0};                   // the way up in scan coordinates, where `photos` is not 0
+    std::optional<DVec3> subject;     // the place that they were taken of, in scan coordinates
+    std::optional<SubjectStem> stem;  // what they show there, where that is a stem without a crown
     std::vector<std::string> warnings;
 };
 

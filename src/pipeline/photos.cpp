@@ -48,7 +48,6 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
             made.points = note.value("points", size_t{0});
             made.left_out = note.value("left_out", size_t{0});
             made.pairs = note.value("pairs", size_t{0});
-            made.stem_alone = note.value("stem_alone", false);
             made.warnings = note.value("warnings", std::vector<std::string>());
             return made;
         }
@@ -58,7 +57,6 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
     const json note = {{"points", made.points},
                        {"left_out", made.left_out},
                        {"pairs", made.pairs},
-                       {"stem_alone", made.stem_alone},
                        {"warnings", made.warnings}};
     stage.finish(note.dump(-1, ' ', false, json::error_handler_t::replace));
     return made;
@@ -88,12 +86,7 @@ PhotosResult reconstruct_photos(const std::string& folder, const std::string& ou
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
     making.check();
-    ReconstructOptions reconstructing = options.reconstruct;
-    if (result.made.stem_alone) {
-        reconstructing.tell_leaves = false;
-        reconstructing.skeleton.trunk_alone = true;
-    }
-    result.tree = reconstruct_file(result.cloud, reconstructing, &growing);
+    result.tree = reconstruct_file(result.cloud, options.reconstruct, &growing);
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
     result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());

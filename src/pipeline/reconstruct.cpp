@@ -35,6 +35,8 @@ constexpr double kLeastMeasured = 0.01;
 // Degrees: what photos tell is out by one or two, and a scene so near to an axis was levelled before.
 constexpr double kSameAxis = 2.0;
 
+constexpr double kBesideStem = 0.3;  // of its radius: bark is rough, and feet are wider
+
 constexpr double kFrondShare = 0.96;  // of how far fronds reach, slack and all: they arch
 
 // With fewer points of wood the tree is made from the leaves' too.
@@ -66,8 +68,23 @@ PointCloud read_or_take(const std::string& path, const ReadCloudOptions& options
     return cloud;
 }
 
+// Of photos that show a trunk and no crown, the trunk.
+void keep_stem(PointCloud& cloud, const SubjectStem& stem, ReconstructOptions& options,
+               std::vector<std::string>& warnings) {
+    std::vector<uint8_t> keep(cloud.size());
+    for (size_t i = 0; i < cloud.size(); i++)
+        keep[i] = stem.has(cloud.frame.to_scan(DVec3(cloud.positions[i])), kBesideStem);
+    cloud.keep_only(keep);
+    options.tell_leaves = false;
+    options.skeleton.trunk_alone = true;
+    warnings.emplace_back(
+        "The photos show a stem, and its crown is above their upper edges; what stands around the stem was "
+        "left "
+        "out.");
+}
+
 // What the user left open, and the photos beside the scan tell.
-void let_photos_tell(const std::string& path, const PointCloud& cloud, ReconstructOptions& options,
+void let_photos_tell(const std::string& path, PointCloud& cloud, ReconstructOptions& options,
                      std::vector<std::string>& warnings, Progress& progress) {
     if (options.orient.up) return;
     const PhotosTell told = ask_photos(path, cloud, progress);
@@ -78,6 +95,7 @@ void let_photos_tell(const std::string& path, const PointCloud& cloud, Reconstru
         options.orient.up = frame.up;
         if (frame.tilt_degrees() > kSameAxis) options.orient.tilt = frame.tilt;
         options.orient.photos = told.photos;
+        if (told.stem) keep_stem(cloud, *told.stem, options, warnings);
     }
     if (options.clean.pick.enabled && options.clean.pick.number == 1 && !options.clean.pick.position)
         options.clean.pick.position = told.subject;

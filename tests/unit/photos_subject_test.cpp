@@ -48,7 +48,8 @@ TEST(SubjectStem, IsFoundWhateverStandsAroundIt) {
         }
         EXPECT_TRUE(stem->has({0.3, 1.0, 0.2}, 0.1));
         EXPECT_FALSE(stem->has({0.9, 0.5, 0.0}, 0.3));
-        EXPECT_TRUE(stem->has({0.24, 2.8, 0.2}, 0.1));  // on above the highest ring
+        EXPECT_TRUE(stem->has({0.24, 2.41, 0.2}, 0.1));  // on above the highest ring
+        EXPECT_FALSE(stem->has({0.24, 3.4, 0.2}, 0.3));
     }
 }
 

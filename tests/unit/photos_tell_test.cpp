@@ -131,6 +131,25 @@ TEST(PhotosTell, TheSkyOfRealPhotos) {
     EXPECT_FALSE(sky_of(read_photo_model(folder + "../colmap_sparse/fern_20"), {}));
 }
 
+// The 71 photos of a trunk in a round bench: it alone is the tree, where its limbs were the bench's and the
+// ground's. Its radius by circles through the points at three heights.
+TEST(PhotosTell, OfATrunkTheTrunk) {
+    const std::string folder = scan_test::scans_folder();
+    if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
+    const Reconstruction made =
+        reconstruct_file(folder + "../colmap_sparse/treehill_71/points3D.bin", ReconstructOptions());
+    EXPECT_EQ(made.tree.nodes_of_kind(NodeKind::kLeaf).size(), 1U);
+    EXPECT_FALSE(made.palm);
+    EXPECT_EQ(made.leaf_points, 0U);
+    EXPECT_NEAR(made.measured.dbh, 0.81, 0.05);  // of the model's unit
+    EXPECT_GT(made.measured.height, 1.7);
+    EXPECT_LT(made.measured.height, 2.4);
+    size_t told = 0;
+    for (const std::string& warning : made.warnings)
+        told += warning.find("show a stem") != std::string::npos;
+    EXPECT_EQ(told, 1U);
+}
+
 // A virtual scan as photogrammetry leaves it: in its own place, turned, with a model of its photos beside.
 class PhotosBeside : public ::testing::Test {
   protected:

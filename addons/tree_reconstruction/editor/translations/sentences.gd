@@ -93,6 +93,10 @@ const PATTERNS: PackedStringArray = [
 		+ " file of its own."
 	),
 	(
+		"The photos show a stem, and its crown is above their upper edges; what stands around the stem"
+		+ " was left out."
+	),
+	(
 		"%s points lie on a wall, %s m long and %s m high, and were left out. If they are part of the"
 		+ " tree, leave out the cleaning of the ground."
 	),
