@@ -21,6 +21,9 @@ constexpr double kMostWider = 1.8;      // than the stem usually is: feet widen
 constexpr double kMostAside = 0.6;      // of the radius, from the axis of the others
 constexpr double kFromSubject = 2.0;    // radii that the axis may pass beside what the cameras aim at
 constexpr double kLeastSections = 0.6;  // of the slices
+constexpr double kUpperPart = 0.4;      // of the height: benches and fences stand lower
+constexpr double kBeside = 0.3;         // of the radius
+constexpr double kMostBeside = 0.2;     // of the points there
 constexpr size_t kTop = 3;              // slices at the top, one of which shows the stem still
 constexpr double kTopWide = 0.4;        // of the usual radius: a top is thinner
 
@@ -82,6 +85,14 @@ std::optional<SubjectStem> find_within(std::span<const DVec3> points, const DVec
     }
     if (!at_top || static_cast<double>(stem.rings.size()) < kLeastSections * static_cast<double>(kSlices))
         return {};
+    // What hangs in the air around its upper part are its own limbs.
+    size_t above = 0, beside = 0;
+    for (size_t i = 0; i < points.size(); i++) {
+        if (heights[i] < high - kUpperPart * (high - low)) continue;
+        above++;
+        beside += !stem.has(points[i], kBeside);
+    }
+    if (static_cast<double>(beside) > kMostBeside * static_cast<double>(above)) return {};
     return stem;
 }
 

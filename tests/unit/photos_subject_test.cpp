@@ -61,6 +61,21 @@ TEST(SubjectStem, IsNoneWhereACrownShows) {
     EXPECT_FALSE(find_subject_stem(points, {0.0, 1.5, 0.0}, kUp));
 }
 
+// A spruce's stem shows up to its top, and is no trunk alone.
+TEST(SubjectStem, IsNoneWhereItBearsLimbs) {
+    Random random(5);
+    std::vector<DVec3> points = trunk_in_a_bench(random, 2.4);
+    for (int limb = 0; limb < 12; limb++) {
+        const double angle = limb * 2.4, y = 1.0 + 0.11 * limb;
+        for (int i = 0; i < 300; i++) {
+            const double away = 0.4 + 1.1 * random.uniform();
+            points.push_back(DVec3(away * std::sin(angle), y - 0.1 * away, away * std::cos(angle)) +
+                             0.03 * random.direction());
+        }
+    }
+    EXPECT_FALSE(find_subject_stem(points, {0.1, 1.2, 0.0}, kUp));
+}
+
 TEST(SubjectStem, IsNoneWhereNothingIsRound) {
     Random random(3);
     std::vector<DVec3> points;
