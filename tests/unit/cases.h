@@ -1,6 +1,8 @@
 // How many cases the longest tests try.
 #pragma once
 
+#include <cstdlib>
+
 namespace treerec::test {
 
 #ifdef __SANITIZE_ADDRESS__
@@ -13,6 +15,11 @@ inline constexpr bool kSanitized = false;
 // there, what it looks for is how memory is used, and the plain program tries them all.
 constexpr int cases(int all) {
     return kSanitized ? (all + 3) / 4 : all;
+}
+
+// './dev test --long': what takes longest, too.
+inline bool is_long_run() {
+    return std::getenv("TREEREC_LONG") != nullptr;
 }
 
 }  // namespace treerec::test

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <thread>
 
+#include "cases.h"
 #include "photos_standin.h"
 
 namespace treerec {
@@ -143,7 +144,7 @@ TEST_F(PhotosCli, ASecondRunInTheSameFolderIsKeptOut) {
 // COLMAP itself, where it is installed.
 TEST_F(PhotosCli, RealPhotosWithColmapItself) {
     const char* scans = std::getenv("TREEREC_SCANS");
-    if (!std::getenv("TREEREC_LONG")) GTEST_SKIP() << "It takes a minute: './dev test --long unit' has it.";
+    if (!test::is_long_run()) GTEST_SKIP() << "It takes a minute: './dev test --long unit' has it.";
     if (!scans) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of real scans.";
     if (std::system("colmap -h >/dev/null 2>&1") != 0) GTEST_SKIP() << "COLMAP is not installed.";
     ::unsetenv("COLMAP");
