@@ -69,18 +69,11 @@ PointCloud read_or_take(const std::string& path, const ReadCloudOptions& options
 }
 
 // Of photos that show a trunk and no crown, the trunk.
-void keep_stem(PointCloud& cloud, const SubjectStem& stem, ReconstructOptions& options,
-               std::vector<std::string>& warnings) {
+void keep_stem(PointCloud& cloud, const SubjectStem& stem) {
     std::vector<uint8_t> keep(cloud.size());
     for (size_t i = 0; i < cloud.size(); i++)
         keep[i] = stem.has(cloud.frame.to_scan(DVec3(cloud.positions[i])), kBesideStem);
     cloud.keep_only(keep);
-    options.tell_leaves = false;
-    options.skeleton.trunk_alone = true;
-    warnings.emplace_back(
-        "The photos show a stem, and its crown is above their upper edges; what stands around the stem was "
-        "left "
-        "out.");
 }
 
 // What the user left open, and the photos beside the scan tell.
@@ -95,7 +88,15 @@ void let_photos_tell(const std::string& path, PointCloud& cloud, ReconstructOpti
         options.orient.up = frame.up;
         if (frame.tilt_degrees() > kSameAxis) options.orient.tilt = frame.tilt;
         options.orient.photos = told.photos;
-        if (told.stem) keep_stem(cloud, *told.stem, options, warnings);
+        if (told.stem && options.clean.remove_ground) {
+            keep_stem(cloud, *told.stem);
+            options.tell_leaves = false;
+            options.skeleton.trunk_alone = true;
+            warnings.emplace_back(
+                "The photos show a stem, and its crown is above their upper edges; what stands around the "
+                "stem was "
+                "left out. If it is part of the tree, leave out the cleaning of the ground.");
+        }
     }
     if (options.clean.pick.enabled && options.clean.pick.number == 1 && !options.clean.pick.position)
         options.clean.pick.position = told.subject;
@@ -356,6 +357,8 @@ PointCloud load_scan(const std::string& scan, const ReconstructOptions& options,
     reading.update(0.0, "Reading");
     PointCloud cloud = read_or_take(path, options.read, report, &reading, cache, kept);
     reading.check();
+    if (options.clean.remove_ground)
+        if (const PhotosTell told = ask_photos(path, cloud, reading); told.stem) keep_stem(cloud, *told.stem);
     // The tree knows where it stands, which way is up and how long a metre is.
     CleanOptions clean = options.clean;
     clean.pick.position = frame.origin;

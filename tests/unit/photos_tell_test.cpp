@@ -136,8 +136,8 @@ TEST(PhotosTell, TheSkyOfRealPhotos) {
 TEST(PhotosTell, OfATrunkTheTrunk) {
     const std::string folder = scan_test::scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
-    const Reconstruction made =
-        reconstruct_file(folder + "../colmap_sparse/treehill_71/points3D.bin", ReconstructOptions());
+    const std::string path = folder + "../colmap_sparse/treehill_71/points3D.bin";
+    const Reconstruction made = reconstruct_file(path, ReconstructOptions());
     EXPECT_EQ(made.tree.nodes_of_kind(NodeKind::kLeaf).size(), 1U);
     EXPECT_FALSE(made.palm);
     EXPECT_EQ(made.leaf_points, 0U);
@@ -148,6 +148,17 @@ TEST(PhotosTell, OfATrunkTheTrunk) {
     for (const std::string& warning : made.warnings)
         told += warning.find("show a stem") != std::string::npos;
     EXPECT_EQ(told, 1U);
+    // The scan that is laid over the tree is that of the stem, too, unless the user keeps the ground.
+    const auto widest = [&](const ReconstructOptions& options) {
+        double away = 0.0;
+        for (const Vec3& p : load_scan(path, options, made.tree.frame(), 100000).positions)
+            away = std::max(away, std::hypot(static_cast<double>(p.x), static_cast<double>(p.z)));
+        return away;
+    };
+    ReconstructOptions whole;
+    EXPECT_LT(widest(whole), 1.2);
+    whole.clean.remove_ground = false;
+    EXPECT_GT(widest(whole), 5.0);
 }
 
 // A virtual scan as photogrammetry leaves it: in its own place, turned, with a model of its photos beside.

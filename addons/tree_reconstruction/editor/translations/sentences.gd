@@ -94,7 +94,7 @@ const PATTERNS: PackedStringArray = [
 	),
 	(
 		"The photos show a stem, and its crown is above their upper edges; what stands around the stem"
-		+ " was left out."
+		+ " was left out. If it is part of the tree, leave out the cleaning of the ground."
 	),
 	(
 		"%s points lie on a wall, %s m long and %s m high, and were left out. If they are part of the"
