@@ -1,6 +1,10 @@
 @tool
 extends Logger
-## Keeps what the engine reports, until it is taken. The editor's tests use it, too.
+## Keeps the errors that the engine reports, or the warnings, until they are taken. The editor's
+## tests use it, too.
+
+## Warnings instead of errors, by their sentences alone.
+var of_warnings: bool = false
 
 var _mutex: Mutex = Mutex.new()
 var _errors: PackedStringArray = []
@@ -16,11 +20,11 @@ func _log_error(
 	error_type: int,
 	_backtraces: Array[ScriptBacktrace]
 ) -> void:
-	if error_type == ERROR_TYPE_WARNING:
+	if (error_type == ERROR_TYPE_WARNING) != of_warnings:
 		return
 	_mutex.lock()
 	var text: String = rationale if not rationale.is_empty() else code
-	_errors.append("%s (%s, %s:%d)" % [text, function, file, line])
+	_errors.append(text if of_warnings else "%s (%s, %s:%d)" % [text, function, file, line])
 	_mutex.unlock()
 
 

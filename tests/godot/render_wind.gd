@@ -58,13 +58,7 @@ func test_what_is_bent_over_the_border_is_drawn() -> void:
 	_camera.projection = Camera3D.PROJECTION_ORTHOGONAL
 	_camera.size = made.get_aabb().size.y * 1.2
 	_wind.strength = 1.25
-	var baker: TreeBaker = TreeBaker.new()
-	baker.levels = 1
-	baker.global_wind = true
-	baker.collision = false
-	baker.bark_material = _plain("bark")
-	baker.leaf_material = _plain("leaf")
-	var baked: Node3D = baker.bake(made).instantiate()
+	var baked: Node3D = _baked(made, true)
 	_viewport.add_child(baked)
 	for shown: Node3D in [_instance, baked]:
 		_instance.visible = shown == _instance
@@ -225,6 +219,17 @@ func _plain(shader: String) -> ShaderMaterial:
 	return material
 
 
+func _baked(made: TreeReconstruction, global_wind: bool) -> Node3D:
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 1
+	baker.global_wind = global_wind
+	baker.collision = false
+	# Without their pictures, which take long to pack.
+	baker.bark_material = _plain("bark")
+	baker.leaf_material = _plain("leaf")
+	return baker.bake(made).instantiate()
+
+
 func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 	var made: TreeReconstruction = grown_tree(2)
 	await _stage(made)
@@ -233,14 +238,7 @@ func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 	var rest: WindRest = WindRest.new()
 	rest.update(false)
 	for global: bool in [false, true]:
-		var baker: TreeBaker = TreeBaker.new()
-		baker.levels = 1
-		baker.global_wind = global
-		baker.collision = false
-		# Without their pictures, which take long to pack.
-		baker.bark_material = _plain("bark")
-		baker.leaf_material = _plain("leaf")
-		var baked: Node3D = baker.bake(made).instantiate()
+		var baked: Node3D = _baked(made, global)
 		_viewport.add_child(baked)
 		var first: Image = await _picture()
 		if global:

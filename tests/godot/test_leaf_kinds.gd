@@ -2,28 +2,10 @@ extends "./tools_suite.gd"
 ## Trees that bear several kinds of leaves: by the command `leaves`, through all that shows, saves,
 ## varies, bakes and fells them.
 
+const ErrorCollector := preload("./error_collector.gd")
 const Kinds := preload("res://addons/tree_reconstruction/nodes/leaf_kinds.gd")
 const LIMIT_FRAMES: int = 2000
 const FLOATS_PER_LEAF: int = 20
-
-
-## The sentences of warnings.
-class Warnings:
-	extends Logger
-	var said: PackedStringArray = []
-
-	func _log_error(
-		_function: String,
-		_file: String,
-		_line: int,
-		code: String,
-		rationale: String,
-		_editor_notify: bool,
-		error_type: int,
-		_backtraces: Array[ScriptBacktrace]
-	) -> void:
-		if error_type == ERROR_TYPE_WARNING:
-			said.append(code if rationale.is_empty() else rationale)
 
 
 # A maple with a limb of pine and a bare one.
@@ -381,7 +363,8 @@ func test_a_click_gives_them_to_a_branch() -> void:
 
 # As in a game that was exported without the pictures of all kinds.
 func test_kinds_that_the_game_lacks_are_warned_of_once() -> void:
-	var warnings: Warnings = Warnings.new()
+	var warnings: ErrorCollector = ErrorCollector.new()
+	warnings.of_warnings = true
 	OS.add_logger(warnings)
 	var exported: Callable = func(path: String) -> bool: return not "/palm_" in path
 	for part: String in ["leaf", "blade", "bark", "leaf"]:
@@ -391,7 +374,8 @@ func test_kinds_that_the_game_lacks_are_warned_of_once() -> void:
 		check(Kinds.find_preset("oak", part, exported).ends_with("/oak_%s.tres" % part), "An oak.")
 		Kinds.find_preset("no kind", part, exported)
 	OS.remove_logger(warnings)
-	check_equal(warnings.said.size(), 1, "the warnings: %s" % warnings.said)
+	var said: PackedStringArray = warnings.take()
+	check_equal(said.size(), 1, "the warnings: %s" % said)
 	for word: String in ["'palm'", "tree_reconstruction/export/more_kinds"]:
-		check(word in " ".join(warnings.said), "%s is not in %s." % [word, warnings.said])
-	check_sentence(" ".join(warnings.said), "the warning")
+		check(word in " ".join(said), "%s is not in %s." % [word, said])
+	check_sentence(" ".join(said), "the warning")
