@@ -8,25 +8,7 @@
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
-
-#define STBI_NO_STDIO
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_ONLY_BMP
-#define STBI_ONLY_TGA
-#define STBI_MAX_DIMENSIONS 65536
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wsign-compare"
-#endif
-#include <stb/stb_image.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "photos/photo_picture.h"
 
 namespace treerec {
 
@@ -57,20 +39,12 @@ std::string mask_path(const std::string& folder, const std::string& photo) {
 }
 
 Image read_mask(const std::string& path) {
-    const FileBytes bytes = read_file(path);
-    int width = 0, height = 0, channels = 0;
-    constexpr size_t kLargest = size_t{1} << 30;
-    stbi_uc* pixels =
-        bytes.size > kLargest
-            ? nullptr
-            : stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data.get()),
-                                    static_cast<int>(bytes.size), &width, &height, &channels, 1);
-    if (!pixels)
+    std::optional<Image> picture = decode_picture(read_file(path).view(), 1);
+    if (!picture)
         throw Error("The mask '" + path + "' is no picture that can be read (PNG, JPEG, BMP or TGA).");
-    Image mask(width, height, 1);
-    for (size_t i = 0; i < mask.pixels.size(); i++)
-        mask.pixels[i] = pixels[i] >= kBright ? 255 : 0;
-    stbi_image_free(pixels);
+    Image mask = std::move(*picture);
+    for (uint8_t& pixel : mask.pixels)
+        pixel = pixel >= kBright ? 255 : 0;
     return mask;
 }
 

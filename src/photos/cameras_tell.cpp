@@ -42,9 +42,8 @@ struct Seen {
 };
 
 Pose pose_of(const Photo& photo) {
-    const auto seen = [&](const DVec3& direction) { return photo.to_camera(direction) - photo.translation; };
-    const DMat3 back = glm::transpose(DMat3(seen({1, 0, 0}), seen({0, 1, 0}), seen({0, 0, 1})));
-    return {back[0], back[1], back[2], -(back * photo.translation)};
+    const DMat3 back = glm::transpose(photo.turn());
+    return {back[0], back[1], back[2], photo.centre()};
 }
 
 std::vector<Pose> poses_of(const PhotoModel& model) {
@@ -196,11 +195,15 @@ std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const 
     return widest;
 }
 
+double away_from_line(const DVec3& p, const DVec3& on_line, const DVec3& direction) {
+    const DVec3 way = p - on_line;
+    return glm::length(way - glm::dot(way, direction) * direction);
+}
+
 double subject_reach(const PhotoModel& model, const DVec3& subject, const DVec3& sky) {
     std::vector<double> away;
     for (const Pose& pose : poses_of(model)) {
-        const DVec3 way = pose.centre - subject;
-        away.push_back(glm::length(way - glm::dot(way, sky) * sky));
+        away.push_back(away_from_line(pose.centre, subject, sky));
     }
     return away.empty() ? 0.0 : kReach * quantile(away, kNearCameras);
 }

@@ -31,6 +31,9 @@ struct CircleGap {
 // Nothing where subject_of() or sky_of() knows nothing. points: as there.
 std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points);
 
+// How far a point is from a line. direction: a unit vector.
+double away_from_line(const DVec3& p, const DVec3& on_line, const DVec3& direction);
+
 // How far from the upright line through the subject a point may be that belongs to it, in the model's unit:
 // nearer than nearly all cameras are. sky: a unit vector.
 double subject_reach(const PhotoModel& model, const DVec3& subject, const DVec3& sky);

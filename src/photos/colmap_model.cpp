@@ -252,6 +252,25 @@ DVec3 Photo::to_camera(const DVec3& world) const {
     return world + rotation[0] * t + glm::cross(u, t) + translation;
 }
 
+DMat3 Photo::turn() const {
+    const auto seen = [&](const DVec3& direction) { return to_camera(direction) - translation; };
+    return DMat3(seen({1, 0, 0}), seen({0, 1, 0}), seen({0, 0, 1}));
+}
+
+DVec3 Photo::centre() const {
+    return -(glm::transpose(turn()) * translation);
+}
+
+DVec3 Photo::ahead() const {
+    return glm::transpose(turn()) * DVec3(0, 0, 1);
+}
+
+double Camera::focal_length() const {
+    constexpr double kStep = 1e-4;
+    const auto middle = project({0.0, 0.0, 1.0}), beside = project({kStep, 0.0, 1.0});
+    return middle && beside ? std::abs(beside->x - middle->x) / kStep : 0.0;
+}
+
 PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, bool text,
                              const std::string& folder) {
     Cameras into;

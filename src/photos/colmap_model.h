@@ -35,6 +35,9 @@ struct Camera {
     // left corner; nothing for one that is not in front of the camera, or so far to the side that the lens's
     // formula turns back.
     std::optional<DVec2> project(const DVec3& p) const;
+    // Pixels of the picture's middle for a step of 1 to the side at the distance 1; 0 where the lens's
+    // formula gives none.
+    double focal_length() const;
 };
 
 struct Photo {
@@ -44,6 +47,11 @@ struct Photo {
     DVec3 translation{0.0};
 
     DVec3 to_camera(const DVec3& world) const;
+    // Turns directions of the world into the camera's: its rows are the camera's axes.
+    DMat3 turn() const;
+    // Where the camera stood, and which way it looked (a unit vector), in the world.
+    DVec3 centre() const;
+    DVec3 ahead() const;
 };
 
 struct PhotoModel {

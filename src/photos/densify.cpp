@@ -76,11 +76,7 @@ struct Region {
     DVec3 subject{0.0}, sky{0.0};
     double reach = 0.0;
 
-    double away(const DVec3& p) const {
-        const DVec3 way = p - subject;
-        return glm::length(way - glm::dot(way, sky) * sky);
-    }
-    bool has(const DVec3& p) const { return everything || away(p) < reach; }
+    bool has(const DVec3& p) const { return everything || away_from_line(p, subject, sky) < reach; }
 };
 
 Region region_of(const PhotoModel& model, std::span<const DVec3> sparse) {
@@ -123,14 +119,14 @@ std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std
     std::set<std::pair<size_t, size_t>> chosen;
     for (size_t i = 0; i < photos.size(); i++) {
         if (!(depths[i].median > 0.0)) continue;
-        const DVec3 here = centre_of(*photos[i].photo), ahead = ahead_of(*photos[i].photo);
+        const DVec3 here = photos[i].photo->centre(), ahead = photos[i].photo->ahead();
         const DVec3 shown = here + depths[i].median * ahead;
         std::vector<std::pair<double, size_t>> others;
         for (size_t j = 0; j < photos.size(); j++) {
             if (j == i || !(depths[j].median > 0.0)) continue;
-            const double angle = degrees_between(here - shown, centre_of(*photos[j].photo) - shown);
+            const double angle = degrees_between(here - shown, photos[j].photo->centre() - shown);
             if (!(angle >= kLeastAngle && angle <= kLargestAngle)) continue;
-            if (glm::dot(ahead, ahead_of(*photos[j].photo)) < kTurned) continue;
+            if (glm::dot(ahead, photos[j].photo->ahead()) < kTurned) continue;
             others.emplace_back(std::abs(std::log(angle / kBestAngle)), j);
         }
         std::sort(others.begin(), others.end());
@@ -261,7 +257,7 @@ std::vector<LoadedPhoto> load_photos(const PhotoModel& model, const std::string&
         const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
         try {
             const std::string path = utf8_of(path_of(folder) / path_of(photo.name));
-            const PhotoPicture picture = read_photo(path);
+            const Image picture = read_photo(path);
             if (picture.width != camera.width || picture.height != camera.height)
                 throw Error("'" + path + "' is not as large as the model says; it was left out.");
             const double pixels = static_cast<double>(picture.width) * picture.height;
@@ -283,12 +279,10 @@ double usual_cell(const std::vector<LoadedPhoto>& photos, const std::vector<Dept
     for (size_t i = 0; i < photos.size(); i++) {
         if (!(depths[i].median > 0.0)) continue;
         const double away = region.everything ? depths[i].median
-                                              : glm::dot(region.subject - centre_of(*photos[i].photo),
-                                                         ahead_of(*photos[i].photo));
-        const auto here = photos[i].camera->project({0.0, 0.0, 1.0});
-        const auto beside = photos[i].camera->project({1e-4, 0.0, 1.0});
-        if (!here || !beside || !(away > 0.0)) continue;
-        cells.push_back(kCellPixels * away / (std::abs(beside->x - here->x) / 1e-4 * photos[i].scale));
+                                              : glm::dot(region.subject - photos[i].photo->centre(),
+                                                         photos[i].photo->ahead());
+        const double focal = photos[i].camera->focal_length() * photos[i].scale;
+        if (focal > 0.0 && away > 0.0) cells.push_back(kCellPixels * away / focal);
     }
     return cells.empty() ? 0.0 : quantile(cells, 0.5);
 }

@@ -1,7 +1,8 @@
 #include "photos/photo_picture.h"
 
-#include <climits>
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -27,41 +28,39 @@
 
 namespace treerec {
 
-PhotoPicture read_photo(const std::string& path) {
-    const FileBytes bytes = read_file(path);
-    if (bytes.size > INT_MAX) throw Error("'" + path + "' is too large for a photo.");
-    int width = 0, height = 0, channels = 0;
+std::optional<Image> decode_picture(std::string_view bytes, int channels) {
+    constexpr size_t kLargest = size_t{1} << 30;
+    if (bytes.size() > kLargest) return {};
+    int width = 0, height = 0, stored = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> data(
-        stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data.get()),
-                              static_cast<int>(bytes.size), &width, &height, &channels, 3),
+        stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()),
+                              &width, &height, &stored, channels),
         stbi_image_free);
-    if (!data)
-        throw Error("'" + path + "' is no photo that can be read here (" + stbi_failure_reason() +
-                    "); save it as JPEG or PNG.");
-    PhotoPicture picture{width, height, {}};
-    picture.pixels.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
-    for (size_t i = 0; i < picture.pixels.size(); i++)
-        picture.pixels[i] = {data.get()[3 * i], data.get()[3 * i + 1], data.get()[3 * i + 2]};
+    if (!data) return {};
+    Image picture(width, height, channels);
+    std::copy(data.get(), data.get() + picture.pixels.size(), picture.pixels.begin());
     return picture;
 }
 
-PhotoPicture reduced(const PhotoPicture& picture, int times) {
+Image read_photo(const std::string& path) {
+    std::optional<Image> picture = decode_picture(read_file(path).view(), 3);
+    if (!picture) throw Error("'" + path + "' is no photo that can be read here; save it as JPEG or PNG.");
+    return std::move(*picture);
+}
+
+Image reduced(const Image& picture, int times) {
     if (times <= 1) return picture;
-    PhotoPicture small{picture.width / times, picture.height / times, {}};
-    small.pixels.resize(static_cast<size_t>(small.width) * static_cast<size_t>(small.height));
+    Image small(picture.width / times, picture.height / times, picture.channels);
     const int count = times * times;
     for (int y = 0; y < small.height; y++)
-        for (int x = 0; x < small.width; x++) {
-            std::array<int, 3> sum{};
-            for (int v = 0; v < times; v++)
-                for (int u = 0; u < times; u++)
-                    for (size_t k = 0; k < 3; k++)
-                        sum[k] += picture.at(x * times + u, y * times + v)[k];
-            auto& mean = small.pixels[static_cast<size_t>(y) * static_cast<size_t>(small.width) +
-                                      static_cast<size_t>(x)];
-            for (size_t k = 0; k < 3; k++)
-                mean[k] = static_cast<uint8_t>((sum[k] + count / 2) / count);
-        }
+        for (int x = 0; x < small.width; x++)
+            for (int k = 0; k < small.channels; k++) {
+                int sum = 0;
+                for (int v = 0; v < times; v++)
+                    for (int u = 0; u < times; u++)
+                        sum += picture.at(x * times + u, y * times + v)[k];
+                small.at(x, y)[k] = static_cast<uint8_t>((sum + count / 2) / count);
+            }
     return small;
 }
 

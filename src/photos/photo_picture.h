@@ -1,28 +1,22 @@
-// The pixels of a photo.
+// The pixels of photos, and of pictures that belong to them.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
+
+#include "mesh/image.h"
 
 namespace treerec {
 
-struct PhotoPicture {
-    int width = 0;
-    int height = 0;
-    std::vector<std::array<uint8_t, 3>> pixels;  // rows from the top; sRGB
+// A JPEG, PNG, BMP or TGA from its bytes, as grey (1 channel) or as red, green and blue (3), as it is stored:
+// a turn that its EXIF data ask for is left alone, as COLMAP does. Nothing for what is none, or is damaged.
+std::optional<Image> decode_picture(std::string_view bytes, int channels);
 
-    const std::array<uint8_t, 3>& at(int x, int y) const {
-        return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-    }
-};
-
-// Reads a JPEG, PNG, BMP or TGA as it is stored: a turn that its EXIF data ask for is left alone, as COLMAP
-// does. Throws Error with a sentence for what is none, or is damaged.
-PhotoPicture read_photo(const std::string& path);
+// A photo with 3 channels. Throws Error with a sentence for a file that is none.
+Image read_photo(const std::string& path);
 
 // Each pixel the mean of times x times ones; what is left over at the right and below goes. times: 1 or more.
-PhotoPicture reduced(const PhotoPicture& picture, int times);
+Image reduced(const Image& picture, int times);
 
 }  // namespace treerec

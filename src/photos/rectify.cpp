@@ -15,19 +15,12 @@ constexpr int kBorderSteps = 16;    // on each side of a photo, whose places tel
 constexpr double kForwards = 0.2;   // cosine: a ray farther to the side has no place in the common picture
 constexpr int kUndistortions = 20;  // steps that find the ray of a pixel
 
-DMat3 axes_of(const Photo& photo) {
-    const auto seen = [&](const DVec3& direction) { return photo.to_camera(direction) - photo.translation; };
-    return DMat3(seen({1, 0, 0}), seen({0, 1, 0}), seen({0, 0, 1}));
-}
-
 // The direction in the camera's axes that falls on a pixel (z is 1), by turning the projection around.
 std::optional<DVec3> ray_of(const Camera& camera, const DVec2& pixel) {
-    const DVec2 middle(0.5 * camera.width, 0.5 * camera.height);
     const auto at = [&](const DVec2& p) { return camera.project(DVec3(p.x, p.y, 1.0)); };
-    const auto here = at({0.0, 0.0}), right = at({1e-4, 0.0});
-    if (!here || !right) return {};
-    const double focal = std::abs(right->x - here->x) / 1e-4;
-    if (!(focal > 0.0)) return {};
+    const auto here = at({0.0, 0.0});
+    const double focal = camera.focal_length();
+    if (!here || !(focal > 0.0)) return {};
     DVec2 p = (pixel - *here) / focal;
     for (int i = 0; i < kUndistortions; i++) {
         const auto falls = at(p);
@@ -39,11 +32,6 @@ std::optional<DVec3> ray_of(const Camera& camera, const DVec2& pixel) {
     return DVec3(p.x, p.y, 1.0);
 }
 
-double focal_of(const Camera& camera) {
-    const auto here = camera.project({0.0, 0.0, 1.0}), right = camera.project({1e-4, 0.0, 1.0});
-    return here && right ? std::abs(right->x - here->x) / 1e-4 : 0.0;
-}
-
 struct Range {
     DVec2 low{INFINITY, INFINITY};
     DVec2 high{-INFINITY, -INFINITY};
@@ -53,7 +41,7 @@ struct Range {
 // Where the border of a photo falls at the distance 1 of the common camera.
 Range seen_by(const LoadedPhoto& photo, const DMat3& common) {
     Range range;
-    const DMat3 turn = common * glm::transpose(axes_of(*photo.photo));
+    const DMat3 turn = common * glm::transpose(photo.photo->turn());
     const double width = photo.camera->width, height = photo.camera->height;
     for (int side = 0; side < 4; side++)
         for (int i = 0; i <= kBorderSteps; i++) {
@@ -79,8 +67,8 @@ RectifiedView view_of(const LoadedPhoto& photo, const RectifiedPair& pair) {
     view.grey.assign(count, 0);
     view.inside.assign(count, 0);
     view.colours.assign(count, {});
-    const PhotoPicture& picture = photo.picture;
-    const DMat3 turn = axes_of(*photo.photo) * pair.to_world;
+    const Image& picture = photo.picture;
+    const DMat3 turn = photo.photo->turn() * pair.to_world;
     for (int y = 0; y < pair.height; y++)
         for (int x = 0; x < pair.width; x++) {
             const DVec3 ray((x + 0.5 - pair.centre.x) / pair.focal, (y + 0.5 - pair.centre.y) / pair.focal,
@@ -109,14 +97,6 @@ RectifiedView view_of(const LoadedPhoto& photo, const RectifiedPair& pair) {
 
 }  // namespace
 
-DVec3 centre_of(const Photo& photo) {
-    return -(glm::transpose(axes_of(photo)) * photo.translation);
-}
-
-DVec3 ahead_of(const Photo& photo) {
-    return glm::transpose(axes_of(photo)) * DVec3(0, 0, 1);
-}
-
 DVec3 RectifiedPair::point_at(double x, double y, double disparity) const {
     const double depth = focal * baseline / disparity;
     const DVec3 ray((x + 0.5 - centre.x) / focal, (y + 0.5 - centre.y) / focal, 1.0);
@@ -124,9 +104,9 @@ DVec3 RectifiedPair::point_at(double x, double y, double disparity) const {
 }
 
 std::optional<RectifiedPair> rectify(const LoadedPhoto& one, const LoadedPhoto& other) {
-    DVec3 way = centre_of(*other.photo) - centre_of(*one.photo);
+    DVec3 way = other.photo->centre() - one.photo->centre();
     const double baseline = glm::length(way);
-    const DVec3 ahead = ahead_of(*one.photo) + ahead_of(*other.photo);
+    const DVec3 ahead = one.photo->ahead() + other.photo->ahead();
     if (!(baseline > 0.0) || !(glm::length(ahead) > kSideways)) return {};
     way /= baseline;
     DVec3 z = ahead - glm::dot(ahead, way) * way;
@@ -134,7 +114,7 @@ std::optional<RectifiedPair> rectify(const LoadedPhoto& one, const LoadedPhoto& 
     z = glm::normalize(z);
     RectifiedPair pair;
     pair.baseline = baseline;
-    pair.origin = centre_of(*one.photo);
+    pair.origin = one.photo->centre();
     // The way from left to right is x.
     pair.to_world = DMat3(way, glm::cross(z, way), z);
     const DMat3 common = glm::transpose(pair.to_world);
@@ -144,8 +124,8 @@ std::optional<RectifiedPair> rectify(const LoadedPhoto& one, const LoadedPhoto& 
     both.low = {std::min(first.low.x, second.low.x), std::max(first.low.y, second.low.y)};
     both.high = {std::max(first.high.x, second.high.x), std::min(first.high.y, second.high.y)};
     if (!both.any()) return {};
-    pair.focal = 0.5 * (focal_of(*one.camera) * one.scale + focal_of(*other.camera) * other.scale);
-    const double most = kLargest * static_cast<double>(one.picture.pixels.size());
+    pair.focal = 0.5 * (one.camera->focal_length() * one.scale + other.camera->focal_length() * other.scale);
+    const double most = kLargest * static_cast<double>(one.picture.width) * one.picture.height;
     const double area = (both.high.x - both.low.x) * (both.high.y - both.low.y) * pair.focal * pair.focal;
     if (!(area > 0.0)) return {};
     if (area > most) pair.focal *= std::sqrt(most / area);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "mesh/image.h"
 #include "photos/colmap_model.h"
-#include "photos/photo_picture.h"
 
 namespace treerec {
 
@@ -41,14 +41,9 @@ struct RectifiedPair {
 struct LoadedPhoto {
     const Photo* photo = nullptr;
     const Camera* camera = nullptr;
-    PhotoPicture picture;
+    Image picture;       // 3 channels
     double scale = 1.0;  // the picture's pixels in one of the camera's
 };
-
-// The place of a photo's camera in the model.
-DVec3 centre_of(const Photo& photo);
-// Which way it looks: a unit vector.
-DVec3 ahead_of(const Photo& photo);
 
 // Pictures without the lens's distortion, with about as many pixels as the photos have. Nothing for two that
 // see nothing in common, stand in one place, or one before the other.

@@ -81,8 +81,8 @@ PhotosTell ask_photos(const std::string& path, const PointCloud& cloud, Progress
                 const double reach = subject_reach(model, *told.subject, *sky);
                 std::vector<DVec3> places;
                 for (const Vec3& p : some_of(cloud.positions, kSearched, &progress)) {
-                    const DVec3 place = cloud.frame.to_scan(DVec3(p)), way = place - *told.subject;
-                    if (glm::length(way - glm::dot(way, *sky) * *sky) < reach) places.push_back(place);
+                    const DVec3 place = cloud.frame.to_scan(DVec3(p));
+                    if (away_from_line(place, *told.subject, *sky) < reach) places.push_back(place);
                 }
                 told.stem = find_subject_stem(places, *told.subject, *sky, &progress);
             }

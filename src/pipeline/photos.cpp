@@ -35,23 +35,29 @@ std::string basis_of(const std::string& folder, const std::string& model, const 
     return basis.dump();
 }
 
+// What the note of a cloud tells; nothing for a damaged one.
+std::optional<MadeCloud> read_note(const std::string& text) {
+    try {
+        const json note = json::parse(text);
+        MadeCloud made;
+        made.points = note.at("points").get<size_t>();
+        made.left_out = note.at("left_out").get<size_t>();
+        made.pairs = note.at("pairs").get<size_t>();
+        made.warnings = note.at("warnings").get<std::vector<std::string>>();
+        return made;
+    } catch (const json::exception&) {
+        return {};
+    }
+}
+
 // The cloud that is there from the same, or a new one.
 MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, const PhotosResult& result,
                              const MakeCloudOptions& options, Progress* progress) {
     RunStage stage(utf8_of(path_of(out) / "colmap" / "cloud.json"),
                    basis_of(folder, result.photos.model, options));
     std::error_code failure;
-    if (stage.done() && std::filesystem::is_regular_file(path_of(result.cloud), failure)) {
-        const json note = json::parse(stage.note(), nullptr, false);
-        if (note.is_object()) {
-            MadeCloud made;
-            made.points = note.value("points", size_t{0});
-            made.left_out = note.value("left_out", size_t{0});
-            made.pairs = note.value("pairs", size_t{0});
-            made.warnings = note.value("warnings", std::vector<std::string>());
-            return made;
-        }
-    }
+    if (stage.done() && std::filesystem::is_regular_file(path_of(result.cloud), failure))
+        if (const std::optional<MadeCloud> made = read_note(stage.note())) return *made;
     stage.begin();
     MadeCloud made = make_cloud(result.photos.model, folder, result.cloud, options, progress);
     const json note = {{"points", made.points},

@@ -12,7 +12,6 @@
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "photos/densify.h"
-#include "photos/photo_picture.h"
 #include "photos/rectify.h"
 #include "photos/semi_global.h"
 
@@ -90,12 +89,9 @@ Camera usual_camera() {
     return camera;
 }
 
-PhotoPicture take(const Photo& photo, const Camera& camera) {
-    PhotoPicture picture{camera.width, camera.height, {}};
-    picture.pixels.resize(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height));
-    const DVec3 centre = centre_of(photo);
-    const auto seen = [&](const DVec3& direction) { return photo.to_camera(direction) - photo.translation; };
-    const DMat3 back = glm::transpose(DMat3(seen({1, 0, 0}), seen({0, 1, 0}), seen({0, 0, 1})));
+Image take(const Photo& photo, const Camera& camera) {
+    Image picture(camera.width, camera.height, 3);
+    const DMat3 back = glm::transpose(photo.turn());
     for (int y = 0; y < camera.height; y++)
         for (int x = 0; x < camera.width; x++) {
             double sum = 0.0;
@@ -103,11 +99,11 @@ PhotoPicture take(const Photo& photo, const Camera& camera) {
                 for (const double u : {0.25, 0.75}) {
                     const DVec3 ray((x + u - camera.parameters[2]) / camera.parameters[0],
                                     (y + v - camera.parameters[3]) / camera.parameters[1], 1.0);
-                    sum += seen_along(centre, glm::normalize(back * ray));
+                    sum += seen_along(photo.centre(), glm::normalize(back * ray));
                 }
             const auto grey = static_cast<uint8_t>(std::lround(sum / 4.0));
-            picture.pixels[static_cast<size_t>(y) * static_cast<size_t>(camera.width) +
-                           static_cast<size_t>(x)] = {grey, grey, static_cast<uint8_t>(grey / 2)};
+            const uint8_t pixel[] = {grey, grey, static_cast<uint8_t>(grey / 2)};
+            std::copy(pixel, pixel + 3, picture.at(x, y));
         }
     return picture;
 }
@@ -121,11 +117,7 @@ void fill(Scene& scene, int photos, const char* name) {
         const double angle = glm::radians(6.0 * i);
         Photo photo = photo_from({2.0 * std::sin(angle), 0.1 * (i % 3), 2.0 * std::cos(angle)}, {0, 0, 0});
         photo.name = std::to_string(i) + ".png";
-        const PhotoPicture picture = take(photo, scene.model.cameras.front());
-        Image image(picture.width, picture.height, 3);
-        for (size_t k = 0; k < picture.pixels.size(); k++)
-            std::copy(picture.pixels[k].begin(), picture.pixels[k].end(), &image.pixels[3 * k]);
-        const std::vector<uint8_t> bytes = encode_png(image);
+        const std::vector<uint8_t> bytes = encode_png(take(photo, scene.model.cameras.front()));
         write_file(scene.folder + "/" + photo.name,
                    std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
         scene.model.photos.push_back(photo);
@@ -221,8 +213,7 @@ TEST(Rectify, PutsWhatIsSeenIntoTheSameRows) {
             return photo_from(centre, 0.2 * random.direction());
         };
         const Photo first = stand(), second = stand();
-        PhotoPicture grey{camera.width, camera.height, {}};
-        grey.pixels.assign(static_cast<size_t>(camera.width * camera.height), {90, 90, 90});
+        const Image grey(camera.width, camera.height, 3);
         const LoadedPhoto one{&first, &camera, grey, 1.0}, other{&second, &camera, grey, 1.0};
         const auto pair = rectify(one, other);
         if (!pair) continue;
@@ -231,7 +222,7 @@ TEST(Rectify, PutsWhatIsSeenIntoTheSameRows) {
         for (int k = 0; k < 10; k++) {
             const DVec3 p = 0.4 * random.uniform() * random.direction();
             const DVec3 left = common * (p - pair->origin);
-            const DVec3 right = common * (p - centre_of(second));
+            const DVec3 right = common * (p - second.centre());
             ASSERT_NEAR(left.y / left.z, right.y / right.z, 1e-9);
             const double disparity = pair->focal * (left.x / left.z - right.x / right.z);
             ASSERT_GT(disparity, 0.0);
@@ -254,8 +245,7 @@ TEST(Rectify, PutsWhatIsSeenIntoTheSameRows) {
 
 TEST(Rectify, LeavesPairsAloneThatHaveNoRows) {
     const Camera camera = usual_camera();
-    PhotoPicture grey{camera.width, camera.height, {}};
-    grey.pixels.assign(static_cast<size_t>(camera.width * camera.height), {90, 90, 90});
+    const Image grey(camera.width, camera.height, 3);
     const auto pair_of = [&](const Photo& a, const Photo& b) {
         return rectify({&a, &camera, grey, 1.0}, {&b, &camera, grey, 1.0}).has_value();
     };
@@ -266,16 +256,23 @@ TEST(Rectify, LeavesPairsAloneThatHaveNoRows) {
     EXPECT_TRUE(pair_of(here, photo_from({0.2, 0, 2}, {0, 0, 0})));
 }
 
+// Two pictures without anything in them.
+RectifiedPair empty_pair(int width, int height) {
+    RectifiedPair pair;
+    pair.width = width;
+    pair.height = height;
+    for (RectifiedView* view : {&pair.left, &pair.right}) {
+        view->inside.assign(static_cast<size_t>(width * height), 1);
+        view->grey.assign(static_cast<size_t>(width * height), 77);
+    }
+    return pair;
+}
+
 // Noise that one picture shows farther left than the other, by parts of a pixel.
 TEST(SemiGlobal, FindsShiftsToAPartOfAPixel) {
     for (const double shift : {6.0, 9.25, 17.6}) {
-        RectifiedPair pair;
-        pair.width = 160;
-        pair.height = 60;
-        const size_t count = static_cast<size_t>(pair.width * pair.height);
+        RectifiedPair pair = empty_pair(160, 60);
         for (RectifiedView* view : {&pair.left, &pair.right}) {
-            view->inside.assign(count, 1);
-            view->grey.resize(count);
             const double off = view == &pair.right ? shift : 0.0;
             for (int y = 0; y < pair.height; y++)
                 for (int x = 0; x < pair.width; x++)
@@ -301,14 +298,7 @@ TEST(SemiGlobal, FindsShiftsToAPartOfAPixel) {
 
 // What has no texture, and what the other picture doesn't show, is not guessed.
 TEST(SemiGlobal, IsSilentWhereNothingIsSure) {
-    RectifiedPair pair;
-    pair.width = 120;
-    pair.height = 50;
-    const size_t count = static_cast<size_t>(pair.width * pair.height);
-    for (RectifiedView* view : {&pair.left, &pair.right}) {
-        view->inside.assign(count, 1);
-        view->grey.assign(count, 77);
-    }
+    RectifiedPair pair = empty_pair(120, 50);
     for (const float disparity : match_rectified(pair, 1, 20))
         EXPECT_TRUE(std::isnan(disparity));
     Random random(3);
@@ -318,7 +308,7 @@ TEST(SemiGlobal, IsSilentWhereNothingIsSure) {
     size_t sure = 0;
     for (const float disparity : match_rectified(pair, 1, 20))
         sure += !std::isnan(disparity);
-    EXPECT_LT(static_cast<double>(sure), 0.05 * static_cast<double>(count));
+    EXPECT_LT(static_cast<double>(sure), 0.05 * static_cast<double>(pair.left.grey.size()));
 }
 
 }  // namespace
