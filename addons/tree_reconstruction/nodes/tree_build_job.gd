@@ -17,7 +17,7 @@ var task: int = -1
 var stale: bool = false
 var with_bark: bool = true
 var revision: int
-## The bark, where [member with_bark] wants it.
+## The bark, where [member with_bark] wants it and [method draw] has made it.
 var bark: ArrayMesh
 ## The leaves, by kind, as [method draw_leaves] makes them; none without any.
 var foliage: Array[Dictionary] = []
@@ -31,6 +31,8 @@ var capsule_kind: int
 var capsules: Array[Dictionary] = []
 var bark_time: float
 var leaf_time: float
+# The arrays of the bark.
+var _wood: Array = []
 
 
 ## Takes what it needs of [param tree].
@@ -49,18 +51,15 @@ func run() -> void:
 	if capsules_wanted > 0:
 		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 	var started: int = Time.get_ticks_usec()
-	var wood: Array = []
 	if budget > 0:
 		for made: Dictionary in source.build_levels([lod], [budget]):
-			wood = made.bark
+			_wood = made.bark
 			warning = made.warning
 			if leaves:
 				leaf_box = made.box
-				foliage = draw_leaves(made.foliage)
+				foliage = made.foliage
 	elif with_bark:
-		wood = source.build_mesh_arrays(lod)
-	if with_bark:
-		bark = bark_mesh(wood)
+		_wood = source.build_mesh_arrays(lod)
 	var barked: int = Time.get_ticks_usec()
 	bark_time = (barked - started) / 1000.0
 	if budget == 0 and leaves:
@@ -68,14 +67,30 @@ func run() -> void:
 		for part: Dictionary in foliage:
 			var box: AABB = part.box
 			leaf_box = leaf_box.merge(box) if leaf_box.has_volume() else box
-		foliage = draw_leaves(foliage)
 	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
+	if may_workers_draw():
+		draw()
+
+
+## Makes what is drawn of what was built; nothing where [method run] has done so.
+func draw() -> void:
+	if with_bark and bark == null:
+		bark = bark_mesh(_wood)
+	foliage = draw_leaves(foliage)
+
+
+## Whether workers may make meshes. Without a window the engine's lists of them have no lock, so that
+## a worker's meshes would get into the places of the game's.
+static func may_workers_draw() -> bool:
+	return DisplayServer.get_name() != "headless"
 
 
 ## Makes the [code]multimesh[/code] of each kind of leaves in [param kinds] (see [method
-## TreeReconstruction.build_foliage]); [code]null[/code] where it has none.
+## TreeReconstruction.build_foliage]); [code]null[/code] where it has none. Those that are made stay.
 static func draw_leaves(kinds: Array[Dictionary]) -> Array[Dictionary]:
 	for kind: Dictionary in kinds:
+		if kind.has("multimesh"):
+			continue
 		kind.multimesh = leaf_multimesh(kind.leaves, kind.card)
 		kind.erase("leaves")
 		kind.erase("card")

@@ -405,6 +405,7 @@ func _drop_job() -> void:
 
 
 func _apply(job: BuildJob) -> void:
+	job.draw()
 	if job.with_bark:
 		_apply_bark(job)
 		_bark_time = job.bark_time

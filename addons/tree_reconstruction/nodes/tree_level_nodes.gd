@@ -313,6 +313,7 @@ func _apply_next() -> void:
 	var wanted: int = _tree.levels - 1
 	var level: int = wanted - _made.size()
 	var made: Dictionary = _made.pop_front()
+	LevelsJob.draw(made)
 	while _parts.size() > wanted:
 		var last: Part = _parts.pop_back()
 		last.free_nodes()
@@ -393,6 +394,12 @@ class LevelsJob:
 
 	func run() -> void:
 		made = source.build_levels(numbers, budgets)
-		for level: Dictionary in made:
+		if BuildJob.may_workers_draw():
+			for level: Dictionary in made:
+				draw(level)
+
+	## Makes what is drawn of a level, where [method run] has not done so.
+	static func draw(level: Dictionary) -> void:
+		if level.bark is Array:
 			level.bark = BuildJob.bark_mesh(level.bark)
-			level.foliage = BuildJob.draw_leaves(level.foliage)
+		level.foliage = BuildJob.draw_leaves(level.foliage)

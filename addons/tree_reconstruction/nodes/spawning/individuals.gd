@@ -3,6 +3,7 @@ extends RefCounted
 ## Builds the individuals of a forest, on worker threads or a slice per frame, and hands their
 ## meshes to the engine little by little.
 
+const BuildJob := preload("../tree_build_job.gd")
 const Individual := preload("individual.gd")
 const Leftovers := preload("leftovers.gd")
 # So much of meshes is handed over in one frame, or one surface.
@@ -171,7 +172,7 @@ func _upload() -> PackedInt32Array:
 		done.append(place)
 	if not _uploads.is_empty():
 		var next: Individual = _plans[_uploads[0]]
-		if threaded:
+		if threaded and BuildJob.may_workers_draw():
 			_upload_task = WorkerThreadPool.add_task(
 				_give.bind(next), true, "Hand over a tree of a forest"
 			)
