@@ -14,6 +14,7 @@
 #include "file_bytes.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
+#include "pipeline/photos.h"
 #include "pipeline/report.h"
 #include "reconstruct_options.h"
 
@@ -26,6 +27,7 @@ class TreeReconstructor::Listener : public treerec::Progress {
     void update(double p_fraction, const char* p_stage) override {
         owner_->_report_progress(p_fraction, p_stage);
     }
+    void count(size_t p_done, size_t p_all) override { owner_->_report_count(p_done, p_all); }
     bool cancelled() const override { return owner_->cancelled_; }
 
   private:
@@ -72,6 +74,7 @@ void TreeReconstructor::_report_progress(double p_fraction, const char* p_stage)
         fraction_ = p_fraction;
         if (new_stage) {
             stage_ = p_stage;
+            count_ = Vector2i();
         }
         if (!new_stage && now - last_signal_ms_ < kSignalEveryMs) {
             return;
@@ -81,87 +84,128 @@ void TreeReconstructor::_report_progress(double p_fraction, const char* p_stage)
     call_deferred("emit_signal", "progress_changed", p_fraction, String::utf8(p_stage));
 }
 
+void TreeReconstructor::_report_count(size_t p_done, size_t p_all) {
+    const std::lock_guard lock(mutex_);
+    count_ = Vector2i(int32_t(p_done), int32_t(p_all));
+}
+
 void TreeReconstructor::_fail(const std::string& p_sentence) {
     const std::lock_guard lock(mutex_);
     error_message_ = p_sentence;
 }
 
-static treerec::ReportDetails report_details(const treerec::Reconstruction& p_result,
-                                             const ParsedOptions& p_options, const std::string& p_path,
-                                             const treerec::Progress& p_progress) {
-    treerec::ReportDetails details;
-    details.scan_path = p_path;
-    details.options = p_options.pipeline;
-    details.leaves = treerec::chosen_leaves(to_std(p_options.leaves), p_result);
-    details.seed = p_options.pipeline.skeleton.seed;
+// What to reconstruct, and how.
+struct TreeReconstructor::Task {
+    ParsedOptions options;
+    Dictionary provenance;  // its source is the scan
+    std::function<treerec::Reconstruction(treerec::Progress*, treerec::ReportDetails&)> run;
+};
+
+static void fill_details(treerec::ReportDetails& r_details, const treerec::Reconstruction& p_result,
+                         const ParsedOptions& p_options, const treerec::Progress& p_progress) {
+    r_details.options = p_options.pipeline;
+    r_details.leaves = treerec::chosen_leaves(to_std(p_options.leaves), p_result);
+    r_details.seed = p_options.pipeline.skeleton.seed;
     treerec::ExportOptions look;
-    look.leaves = treerec::suited_leaves(details.leaves, p_result);
-    look.seed = details.seed;
+    look.leaves = treerec::suited_leaves(r_details.leaves, p_result);
+    look.seed = r_details.seed;
     look.foliage = p_result.foliage;
     treerec::TreeExporter counter(p_result.tree, look, &p_progress);
-    details.triangles = counter.triangles();
-    details.leaf_count = counter.leaves();
-    return details;
+    r_details.triangles = counter.triangles();
+    r_details.leaf_count = counter.leaves();
 }
 
-Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const String& p_path, const Dictionary& p_options,
-                                                        Listener& p_listener) {
+Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const std::function<Task(Listener&)>& p_begin) {
     constexpr double kReportBegins = 0.97;
-    {
-        const std::lock_guard lock(mutex_);
-        fraction_ = 0.0;
-        stage_.clear();
-        report_json_.clear();
-        result_ = std::make_shared<treerec::Reconstruction>();
-        cloud_ = std::make_shared<treerec::PointCloud>();
-        steps_.clear();
-    }
-    p_listener.check();
-    const ParsedOptions options = parse_reconstruct_options(p_options);
-    treerec::SubProgress reconstructing(&p_listener, 0.0, kReportBegins);
-    treerec::Reconstruction result =
-        treerec::reconstruct_file(file_path(p_path), options.pipeline, &reconstructing, &cache_);
-    p_listener.update(kReportBegins, "Reporting");
-    const treerec::ReportDetails details = report_details(result, options, to_std(p_path), p_listener);
-    const std::string report = treerec::report_json(result, details);
-
-    Ref<TreeReconstruction> made;
-    made.instantiate();
-    made->set_seed(int64_t(options.pipeline.skeleton.seed));
-    const std::string leaves = treerec::chosen_leaves(to_std(options.leaves), result);
-    made->set_leaf_preset(to_godot(leaves));
-    made->set("leaf_size", treerec::suited_leaves(leaves, result).leaf_size);
-    made->set_tree(result.tree);
-    made->set_leaf_density(result.foliage);
-    Dictionary provenance;
-    provenance["source"] = p_path;
-    provenance["options"] = p_options.duplicate();
-    provenance["report"] = JSON::parse_string(to_godot(report));
-    made->set_provenance(provenance);
-    p_listener.check();
-
-    const std::lock_guard lock(mutex_);
-    report_json_ = report;
-    steps_ = std::move(result.steps);
-    voxel_ = result.voxel;
-    result_ = std::make_shared<treerec::Reconstruction>(std::move(result));
-    cloud_ = std::shared_ptr<const treerec::PointCloud>(result_, &result_->cloud);
-    details_ = std::make_shared<treerec::ReportDetails>(details);
-    fraction_ = 1.0;
-    return made;
-}
-
-Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path,
-                                                            const Dictionary& p_options) {
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), Ref<TreeReconstruction>(), BUSY);
     try {
         Listener listener(this);
-        return _reconstruct(p_path, p_options, listener);
+        {
+            const std::lock_guard lock(mutex_);
+            fraction_ = 0.0;
+            stage_.clear();
+            report_json_.clear();
+            result_ = std::make_shared<treerec::Reconstruction>();
+            cloud_ = std::make_shared<treerec::PointCloud>();
+            steps_.clear();
+        }
+        listener.check();
+        Task task = p_begin(listener);
+        treerec::SubProgress reconstructing(&listener, 0.0, kReportBegins);
+        treerec::ReportDetails details;
+        treerec::Reconstruction result = task.run(&reconstructing, details);
+        listener.update(kReportBegins, "Reporting");
+        details.scan_path = to_std(String(task.provenance["source"]));
+        fill_details(details, result, task.options, listener);
+        const std::string report = treerec::report_json(result, details);
+
+        Ref<TreeReconstruction> made;
+        made.instantiate();
+        made->set_seed(int64_t(details.seed));
+        made->set_leaf_preset(to_godot(details.leaves));
+        made->set("leaf_size", treerec::suited_leaves(details.leaves, result).leaf_size);
+        made->set_tree(result.tree);
+        made->set_leaf_density(result.foliage);
+        task.provenance["report"] = JSON::parse_string(to_godot(report));
+        made->set_provenance(task.provenance);
+        listener.check();
+
+        const std::lock_guard lock(mutex_);
+        report_json_ = report;
+        steps_ = std::move(result.steps);
+        voxel_ = result.voxel;
+        result_ = std::make_shared<treerec::Reconstruction>(std::move(result));
+        cloud_ = std::shared_ptr<const treerec::PointCloud>(result_, &result_->cloud);
+        details_ = std::make_shared<treerec::ReportDetails>(details);
+        fraction_ = 1.0;
+        return made;
     } catch (const std::exception& error) {
         _fail(error.what());
         return Ref<TreeReconstruction>();
     }
+}
+
+Ref<TreeReconstruction> TreeReconstructor::reconstruct_file(const String& p_path,
+                                                            const Dictionary& p_options) {
+    return _reconstruct([&](Listener&) {
+        Task task;
+        task.options = parse_reconstruct_options(p_options);
+        task.provenance["source"] = p_path;
+        task.provenance["options"] = p_options.duplicate();
+        const std::string path = file_path(p_path);
+        task.run = [this, path, pipeline = task.options.pipeline](treerec::Progress* p_progress,
+                                                                  treerec::ReportDetails&) {
+            return treerec::reconstruct_file(path, pipeline, p_progress, &cache_);
+        };
+        return task;
+    });
+}
+
+Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_photos, const String& p_folder,
+                                                              const Dictionary& p_options) {
+    return _reconstruct([&](Listener&) {
+        Task task;
+        const ParsedPhotoOptions options = parse_photo_options(p_options);
+        task.options = options.tree;
+        task.provenance["source"] = p_folder.path_join("cloud.ply");
+        task.provenance["options"] = options.of_tree;
+        task.provenance["photos"] = p_photos;
+        task.provenance["photo_options"] = options.of_photos;
+        if (p_photos.is_empty() || p_folder.is_empty()) {
+            throw treerec::Error(
+                "reconstruct_photos() needs a folder of photos, and another one to work in.");
+        }
+        const std::string photos = file_path(p_photos), folder = file_path(p_folder);
+        task.run = [photos, folder, pipeline = options.pipeline](treerec::Progress* p_progress,
+                                                                 treerec::ReportDetails& r_details) {
+            treerec::PhotosResult made = treerec::reconstruct_photos(photos, folder, pipeline, p_progress);
+            r_details.photos = std::move(made.photos);
+            r_details.photo_pairs = made.made.pairs;
+            return std::move(made.tree);
+        };
+        return task;
+    });
 }
 
 bool TreeReconstructor::load_cloud(const Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points) {
@@ -288,6 +332,10 @@ TypedArray<Dictionary> TreeReconstructor::get_option_list() {
     return list_reconstruct_options();
 }
 
+TypedArray<Dictionary> TreeReconstructor::get_photo_option_list() {
+    return list_photo_options();
+}
+
 void TreeReconstructor::cancel() {
     cancelled_ = true;
 }
@@ -300,6 +348,11 @@ double TreeReconstructor::get_progress() const {
 String TreeReconstructor::get_stage() const {
     const std::lock_guard lock(mutex_);
     return to_godot(stage_);
+}
+
+Vector2i TreeReconstructor::get_stage_count() const {
+    const std::lock_guard lock(mutex_);
+    return count_;
 }
 
 String TreeReconstructor::get_error_message() const {
@@ -351,6 +404,8 @@ Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
 void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("reconstruct_file", "path", "options"),
                          &TreeReconstructor::reconstruct_file, DEFVAL(Dictionary()));
+    ClassDB::bind_method(D_METHOD("reconstruct_photos", "photos", "folder", "options"),
+                         &TreeReconstructor::reconstruct_photos, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("load_cloud", "tree", "maximum_points"), &TreeReconstructor::load_cloud,
                          DEFVAL(500000));
     ClassDB::bind_method(D_METHOD("clear_cache"), &TreeReconstructor::clear_cache);
@@ -363,9 +418,12 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_photo_option_list"),
+                                &TreeReconstructor::get_photo_option_list);
     ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);
     ClassDB::bind_method(D_METHOD("get_progress"), &TreeReconstructor::get_progress);
     ClassDB::bind_method(D_METHOD("get_stage"), &TreeReconstructor::get_stage);
+    ClassDB::bind_method(D_METHOD("get_stage_count"), &TreeReconstructor::get_stage_count);
     ClassDB::bind_method(D_METHOD("get_error_message"), &TreeReconstructor::get_error_message);
     ClassDB::bind_method(D_METHOD("get_report"), &TreeReconstructor::get_report);
     ClassDB::bind_method(D_METHOD("get_report_json"), &TreeReconstructor::get_report_json);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <godot_cpp/classes/ref_counted.hpp>
 #include <godot_cpp/core/class_db.hpp>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <godot_cpp/variant/typed_array.hpp>
+#include <godot_cpp/variant/vector2i.hpp>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,7 +17,7 @@
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
 
-// Turns scans into trees, in the editor. reconstruct_file(), load_cloud(), import_skeleton(), export_file()
+// Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(), import_skeleton(), export_file()
 // and save_html_report() may run on any thread, one at a time; the other methods may be called from any other
 // thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
@@ -24,6 +26,9 @@ class TreeReconstructor : public godot::RefCounted {
   public:
     godot::Ref<TreeReconstruction> reconstruct_file(const godot::String& p_path,
                                                     const godot::Dictionary& p_options);
+    godot::Ref<TreeReconstruction> reconstruct_photos(const godot::String& p_photos,
+                                                      const godot::String& p_folder,
+                                                      const godot::Dictionary& p_options);
     bool load_cloud(const godot::Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points);
     void clear_cache();
     int64_t get_cache_size() const;
@@ -34,10 +39,12 @@ class TreeReconstructor : public godot::RefCounted {
                              int p_levels = 1, bool p_pictures_beside = false);
     godot::Error save_html_report(const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_option_list();
+    static godot::TypedArray<godot::Dictionary> get_photo_option_list();
 
     void cancel();
     double get_progress() const;
     godot::String get_stage() const;
+    godot::Vector2i get_stage_count() const;
     godot::String get_error_message() const;
     godot::Dictionary get_report() const;
     godot::String get_report_json() const;
@@ -54,9 +61,10 @@ class TreeReconstructor : public godot::RefCounted {
     class Listener;
     class Job;
 
-    godot::Ref<TreeReconstruction> _reconstruct(const godot::String& p_path,
-                                                const godot::Dictionary& p_options, Listener& p_listener);
+    struct Task;
+    godot::Ref<TreeReconstruction> _reconstruct(const std::function<Task(Listener&)>& p_begin);
     void _report_progress(double p_fraction, const char* p_stage);
+    void _report_count(size_t p_done, size_t p_all);
     void _fail(const std::string& p_sentence);
 
     // What the last reconstruct_file() read and cleaned; the running job's alone.
@@ -70,9 +78,10 @@ class TreeReconstructor : public godot::RefCounted {
     mutable std::mutex mutex_;
     double fraction_ = 0.0;
     std::string stage_;
+    godot::Vector2i count_;  // of what the stage goes through, done and in all; 0 where it does not tell
     std::string error_message_;
     std::string report_json_;
-    // Of the last reconstruct_file() that made a tree; both never null.
+    // Of the last reconstruct_file() or reconstruct_photos() that made a tree; both never null.
     std::shared_ptr<const treerec::Reconstruction> result_ = std::make_shared<treerec::Reconstruction>();
     std::shared_ptr<const treerec::ReportDetails> details_ = std::make_shared<treerec::ReportDetails>();
     // Of the last reconstruct_file() or load_cloud(); never null.

@@ -14,6 +14,7 @@ const _EDITOR: String = "res://addons/tree_reconstruction/editor/"
 const _PARTS: PackedStringArray = [
 	"translations/part.gd",
 	"import/part.gd",
+	"photos/part.gd",
 	"sharing/part.gd",
 	"viewport/part.gd",
 	"dock/part.gd",

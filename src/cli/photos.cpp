@@ -116,6 +116,8 @@ void run_photos(const std::vector<std::string>& words) {
     PhotosResult result = reconstruct_photos(folder, out, options, &making);
     Reconstruction& tree = result.tree;
     details.scan_path = result.cloud;
+    details.photos = result.photos;
+    details.photo_pairs = result.made.pairs;
     details.leaves = chosen_leaves(details.leaves, tree);
     exports.leaves = suited_leaves(details.leaves, tree);
     exports.textures = details.leaves;

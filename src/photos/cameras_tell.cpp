@@ -173,24 +173,32 @@ std::optional<DVec3> subject_of(const PhotoModel& model) {
     return subject;
 }
 
-std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points) {
+std::vector<CameraAround> cameras_around(const PhotoModel& model, std::span<const DVec3> points) {
+    std::vector<CameraAround> around;
     const std::optional<DVec3> subject = subject_of(model);
     const std::optional<DVec3> sky = sky_of(model, points);
-    if (!subject || !sky) return std::nullopt;
+    if (!subject || !sky) return around;
     const DVec3 east = any_perpendicular(*sky), north = glm::cross(*sky, east);
-    std::vector<std::pair<double, const Photo*>> around;
     for (const Photo& photo : model.photos) {
-        const DVec3 from_it = pose_of(photo).centre - *subject;
-        const double angle = portable::atan2(glm::dot(from_it, north), glm::dot(from_it, east));
-        if (std::isfinite(angle)) around.emplace_back(glm::degrees(angle), &photo);
+        const DVec3 centre = pose_of(photo).centre, from_it = centre - *subject;
+        const double angle = glm::degrees(portable::atan2(glm::dot(from_it, north), glm::dot(from_it, east)));
+        if (std::isfinite(angle))
+            around.push_back(
+                {photo.name, angle < 0.0 ? angle + 360.0 : angle, away_from_line(centre, *subject, *sky)});
     }
-    if (around.size() < 2) return std::nullopt;
-    std::sort(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(around.begin(), around.end(), [](const CameraAround& a, const CameraAround& b) {
+        return a.degrees != b.degrees ? a.degrees < b.degrees : a.name < b.name;
+    });
+    return around;
+}
+
+std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras) {
+    if (cameras.size() < 2) return std::nullopt;
     CircleGap widest;
-    for (size_t i = 0; i < around.size(); i++) {
-        const size_t next = (i + 1) % around.size();
-        const double gap = around[next].first - around[i].first + (next == 0 ? 360.0 : 0.0);
-        if (gap > widest.degrees) widest = {gap, around[i].second->name, around[next].second->name};
+    for (size_t i = 0; i < cameras.size(); i++) {
+        const size_t next = (i + 1) % cameras.size();
+        const double gap = cameras[next].degrees - cameras[i].degrees + (next == 0 ? 360.0 : 0.0);
+        if (gap > widest.degrees) widest = {gap, cameras[i].name, cameras[next].name};
     }
     return widest;
 }

@@ -21,6 +21,17 @@ std::optional<DVec3> sky_of(const PhotoModel& model, std::span<const DVec3> poin
 // where these are nearly parallel, or where it is not before most cameras, as from the middle of a room.
 std::optional<DVec3> subject_of(const PhotoModel& model);
 
+// Where a photo was taken from, seen from above.
+struct CameraAround {
+    std::string name;      // of the photo
+    double degrees = 0.0;  // around what was photographed, 0 to 360, from a direction that means nothing
+    double away = 0.0;     // from the upright line through it, in the model's unit
+};
+
+// The cameras in their order around what was photographed. Empty where subject_of() or sky_of() knows
+// nothing. points: as there.
+std::vector<CameraAround> cameras_around(const PhotoModel& model, std::span<const DVec3> points);
+
 // Where the photos' circle around what they were taken of is widest open.
 struct CircleGap {
     double degrees = 0.0;  // between two neighbours
@@ -28,8 +39,8 @@ struct CircleGap {
     std::string to;
 };
 
-// Nothing where subject_of() or sky_of() knows nothing. points: as there.
-std::optional<CircleGap> widest_gap_of(const PhotoModel& model, std::span<const DVec3> points);
+// cameras: in their order around. Nothing for fewer than two.
+std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras);
 
 // How far a point is from a line. direction: a unit vector.
 double away_from_line(const DVec3& p, const DVec3& on_line, const DVec3& direction);

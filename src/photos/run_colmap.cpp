@@ -368,7 +368,8 @@ ColmapRun tell(Work& work) {
     std::vector<DVec3> points;
     for (const SparsePoint& point : read_sparse_points(run.model, progress))
         points.push_back(point.position);
-    run.widest_gap = widest_gap_of(model, points);
+    run.around = cameras_around(model, points);
+    run.widest_gap = widest_gap_of(run.around);
     // Of each further model, what no other one has.
     std::vector<size_t> sizes;
     std::set<std::string> seen;

@@ -38,7 +38,8 @@ struct ColmapRun {
     size_t photos = 0;                    // in the folder
     size_t registered = 0;                // whose places are known
     std::vector<std::string> missing;     // the names of the others
-    std::optional<CircleGap> widest_gap;  // in the circle around what was photographed
+    std::vector<CameraAround> around;     // those that are known, around what was photographed
+    std::optional<CircleGap> widest_gap;  // between them
     std::vector<std::string> warnings;    // what could be done better, as sentences
 };
 

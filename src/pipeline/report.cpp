@@ -98,6 +98,21 @@ Json fidelity_json(const Reconstruction& result) {
     return json;
 }
 
+Json photos_json(const ReportDetails& details) {
+    const ColmapRun& run = *details.photos;
+    Json cameras = Json::array();
+    for (const CameraAround& camera : run.around)
+        cameras.push_back({{"name", camera.name}, {"degrees", camera.degrees}, {"away", camera.away}});
+    Json gap;
+    if (run.widest_gap)
+        gap = {{"degrees", run.widest_gap->degrees},
+               {"from", run.widest_gap->from},
+               {"to", run.widest_gap->to}};
+    return {{"photos", run.photos},  {"placed", run.registered},     {"missing", run.missing},
+            {"colmap", run.version}, {"pairs", details.photo_pairs}, {"widest_gap", gap},
+            {"cameras", cameras}};
+}
+
 // Paths may hold bytes that are no UTF-8; they must not stop the report.
 std::string dump(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -197,6 +212,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
                    {"explained_2cm", result.fit.explained_2cm}};
     json["fidelity"] = fidelity_json(result);
     json["warnings"] = result.warnings;
+    if (details.photos) json["photos"] = photos_json(details);
     return dump(json);
 }
 

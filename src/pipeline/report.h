@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "exchange/tree_files.h"
+#include "photos/run_colmap.h"
 #include "pipeline/reconstruct.h"
 
 namespace treerec {
@@ -16,6 +18,8 @@ struct ReportDetails {
     uint64_t seed = 1;
     size_t triangles = 0;
     size_t leaf_count = 0;
+    std::optional<ColmapRun> photos = {};  // where the scan was made of some
+    size_t photo_pairs = 0;                // that were matched pixel by pixel
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
@@ -40,6 +44,9 @@ struct ReportDetails {
 //   fidelity {points, explained, median_mm, p95_mm, length_m, coverage, tolerance_m, R_s, R_s_strict,
 //   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
 //   warnings [sentence]
+//   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
+//   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
+//   what was photographed)}: of a scan that was made of photos alone
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].

@@ -17,7 +17,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addons/tree_reconstruction"
-OPTIONS = ROOT / "extension/reconstruct_options.cpp"
+# Tables of options, and what ends each.
+OPTIONS = {
+    ROOT / "extension/reconstruct_options.cpp": "#undef OPTION_MEMBER",
+    ROOT / "extension/photo_options.cpp": "    };",
+}
 SENTENCES = ADDON / "editor/translations/sentences.gd"
 FOLDER = ADDON / "editor/translations"
 POT = FOLDER / "tree_reconstruction.pot"
@@ -103,8 +107,9 @@ def find_words():
                 words.setdefault(word, []).append(path.relative_to(ADDON).as_posix())
     for word in sentences():
         words.setdefault(word, []).append(SENTENCES.relative_to(ADDON).as_posix())
-    for word in option_descriptions():
-        words.setdefault(word, []).append(OPTIONS.relative_to(ROOT).as_posix())
+    for path, end in OPTIONS.items():
+        for word in option_descriptions(path, end):
+            words.setdefault(word, []).append(path.relative_to(ROOT).as_posix())
     return words
 
 
@@ -164,10 +169,11 @@ def unsaid():
                 rest = rest[length:]
 
 
-def option_descriptions():
-    """The last text of each entry of kOptions, whose pieces follow each other."""
-    source = OPTIONS.read_text(encoding="utf-8")
-    table = source[source.index("const Option kOptions[]") : source.index("#undef OPTION_MEMBER")]
+def option_descriptions(path, end):
+    """The last text of each entry of a table of options, whose pieces follow each other."""
+    source = path.read_text(encoding="utf-8")
+    begin = re.search(r"const Option \w+\[\]", source).start()
+    table = source[begin : source.index(end, begin)]
     pieces = r'"((?:[^"\\\n]|\\.)*)"'
     for match in re.finditer(r'((?:%s\s*)+)\}' % pieces, table):
         yield "".join(unescape(piece) for piece in re.findall(pieces, match[1]))

@@ -79,14 +79,15 @@ func draw() -> void:
 	foliage = draw_leaves(foliage)
 
 
-## Whether workers may make meshes. Without a window the engine's lists of them have no lock, so that
-## a worker's meshes would get into the places of the game's.
+## Whether workers may make meshes. Without a window the engine's lists of them have no lock, so
+## that a worker's meshes would get into the places of the game's.
 static func may_workers_draw() -> bool:
 	return DisplayServer.get_name() != "headless"
 
 
 ## Makes the [code]multimesh[/code] of each kind of leaves in [param kinds] (see [method
-## TreeReconstruction.build_foliage]); [code]null[/code] where it has none. Those that are made stay.
+## TreeReconstruction.build_foliage]); [code]null[/code] where it has none. Those that are made
+## stay.
 static func draw_leaves(kinds: Array[Dictionary]) -> Array[Dictionary]:
 	for kind: Dictionary in kinds:
 		if kind.has("multimesh"):

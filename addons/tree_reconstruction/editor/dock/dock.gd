@@ -29,6 +29,7 @@ var sections: Dictionary[StringName, Section] = {}
 var _session: Session
 var _hint: Label
 var _no_tree: Label
+var _photos: Button
 var _welcome: ScrollContainer
 var _scroll: ScrollContainer
 var _timer: Timer = Timer.new()
@@ -70,6 +71,13 @@ func _init(session: Session) -> void:
 	hints.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 	hints.add_child(_hint)
 	hints.add_child(_no_tree)
+	_photos = Widgets.button(
+		"New Tree from Photos…",
+		"Opens a window that makes a tree of photos from all around it.",
+		&"Image"
+	)
+	_photos.pressed.connect(session.photos_wanted.emit)
+	hints.add_child(_photos)
 	_welcome.add_child(hints)
 	add_child(_welcome)
 	_scroll = ScrollContainer.new()

@@ -1,0 +1,154 @@
+extends RefCounted
+## Photos, and a program that stands in for COLMAP: it says what COLMAP 3.8 says and hands out a
+## model that was made beforehand. Without a shell there is none.
+
+const COUNT: int = 9
+
+const _PROGRAM: String = """#!/bin/sh
+here=$(dirname "$0")
+if [ "$1" = -h ]; then
+	echo "COLMAP 3.8 -- Structure-from-Motion and Multi-View Stereo"
+	echo "              (Commit Unknown on Unknown without CUDA)"
+	exit 0
+fi
+command=$1
+shift
+if [ "$1" = -h ]; then
+	for name in database_path image_path image_list_path output_path; do echo "  --$name arg"; done
+	exit 0
+fi
+database= output= list=
+while [ $# -gt 0 ]; do
+	case $1 in
+	--database_path) database=$2 ;;
+	--output_path) output=$2 ;;
+	--image_list_path) list=$2 ;;
+	esac
+	shift 2
+done
+while [ -e "$here/wait_in_$command" ]; do sleep 0.05; done
+case $command in
+feature_extractor)
+	count=$(wc -l <"$list") i=0
+	while IFS= read -r name; do
+		i=$((i + 1))
+		printf '%s\\n' "$name" >>"$database"
+		echo "Processed file [$i/$count]"
+		echo "  Name:            $name"
+		echo "  Features:        $((2000 + i))"
+	done <"$list" ;;
+*matcher | matches_importer) echo "Matching block [1/1, 1/1] in 0.1s" ;;
+mapper) cp -r "$here/models"/. "$output" ;;
+esac
+"""
+
+## The program.
+var colmap: String
+## The photos.
+var photos: String
+
+
+## Writes both into [param folder], with a model of all photos but the last.
+func _init(folder: String) -> void:
+	photos = folder.path_join("my photos")
+	DirAccess.make_dir_recursive_absolute(photos)
+	for i: int in COUNT:
+		var picture: Image = Image.create_empty(64, 48, false, Image.FORMAT_RGB8)
+		picture.fill(Color.from_hsv(float(i) / COUNT, 0.5, 0.6))
+		picture.save_jpg(photos.path_join(_name(i)))
+	colmap = folder.path_join("colmap")
+	write(colmap, _PROGRAM.to_utf8_buffer())
+	FileAccess.set_unix_permissions(colmap, 0x1C0)
+	_write_model(folder.path_join("models/0"))
+
+
+## Makes [param command] of the program wait until it is let go.
+func hold(command: String) -> void:
+	write(_gate(command), "wait".to_utf8_buffer())
+
+
+func let_go(command: String) -> void:
+	DirAccess.remove_absolute(_gate(command))
+
+
+## Writes a file, which is closed then.
+static func write(path: String, bytes: PackedByteArray) -> void:
+	var file: FileAccess = FileAccess.open(path, FileAccess.WRITE)
+	file.store_buffer(bytes)
+	file.close()
+
+
+func _gate(command: String) -> String:
+	return colmap.get_base_dir().path_join("wait_in_" + command)
+
+
+static func _name(i: int) -> String:
+	return "photo %d.jpg" % i
+
+
+# A tree of 3 boughs and 3 units; the photos are taken from around it, but for a quarter.
+func _write_model(folder: String) -> void:
+	DirAccess.make_dir_recursive_absolute(folder)
+	var cameras: StreamPeerBuffer = StreamPeerBuffer.new()
+	cameras.put_u64(1)
+	cameras.put_32(1)
+	cameras.put_32(2)
+	cameras.put_u64(64)
+	cameras.put_u64(48)
+	for value: float in [50.0, 32.0, 24.0, 0.0]:
+		cameras.put_double(value)
+	_save(folder, "cameras.bin", cameras)
+	var images: StreamPeerBuffer = StreamPeerBuffer.new()
+	images.put_u64(COUNT - 1)
+	for i: int in COUNT - 1:
+		var centre: Vector3 = Vector3(5.0, 0.0, 0.0).rotated(
+			Vector3.BACK, 1.5 * PI * i / (COUNT - 1)
+		)
+		# Rows are what is right, down and ahead.
+		var ahead: Vector3 = -centre.normalized()
+		var down: Vector3 = Vector3.BACK
+		var turn: Basis = Basis(down.cross(ahead), down, ahead).transposed()
+		var q: Quaternion = turn.get_rotation_quaternion()
+		var place: Vector3 = -(turn * centre)
+		images.put_32(i + 1)
+		for value: float in [q.w, q.x, q.y, q.z, place.x, place.y, place.z]:
+			images.put_double(value)
+		images.put_32(1)
+		images.put_data((_name(i)).to_utf8_buffer())
+		images.put_8(0)
+		images.put_u64(0)
+	_save(folder, "images.bin", images)
+	_save(folder, "points3D.bin", _points())
+
+
+static func _points() -> StreamPeerBuffer:
+	var random: RandomNumberGenerator = RandomNumberGenerator.new()
+	random.seed = 5
+	var count: int = 6000
+	var points: StreamPeerBuffer = StreamPeerBuffer.new()
+	points.put_u64(count)
+	for i: int in count:
+		var up: float = random.randf()
+		var round: Vector2 = Vector2.from_angle(random.randf() * TAU)
+		# z is down.
+		var at: Vector3 = Vector3(0.0, 0.0, 1.5 - 2.0 * up)
+		var radius: float = 0.15 - 0.08 * up
+		if i % 3 == 0:
+			radius = 0.03
+			@warning_ignore("integer_division")
+			var away: Vector2 = Vector2.from_angle(TAU / 3.0 * (i / 3)) * up
+			at = Vector3(away.x, away.y, -0.5 - up)
+		points.put_u64(i)
+		points.put_double(at.x + radius * round.x)
+		points.put_double(at.y + radius * round.y)
+		points.put_double(at.z)
+		points.put_data(PackedByteArray([96, 80, 64]))
+		points.put_double(0.6)
+		points.put_u64(4)
+		for k: int in 4:
+			points.put_u64(0)
+	return points
+
+
+static func _save(into: String, name: String, bytes: StreamPeerBuffer) -> void:
+	write(into.path_join(name), bytes.data_array)

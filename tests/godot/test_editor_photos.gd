@@ -1,0 +1,224 @@
+extends "./session_suite.gd"
+## The window 'New Tree from Photos', on a program that stands in for COLMAP.
+
+const PhotosPanel := preload("res://addons/tree_reconstruction/editor/photos/photos_panel.gd")
+const PhotoFolder := preload("res://addons/tree_reconstruction/editor/photos/photo_folder.gd")
+const PhotoLog := preload("res://addons/tree_reconstruction/editor/photos/photo_log.gd")
+const PhotoFiles := preload("./photo_files.gd")
+
+const TARGET: String = "res://photo_test_tree.res"
+
+var _files: PhotoFiles
+var _session: Session
+var _panel: PhotosPanel
+var _made: TreeReconstruction
+
+
+func _open() -> void:
+	_clean()
+	_files = PhotoFiles.new(folder)
+	_session = _session_with(grown_tree(2))
+	_panel = PhotosPanel.new(_session)
+	_panel.colmap = _files.colmap
+	_panel.made.connect(func(made: TreeReconstruction) -> void: _made = made)
+	tree.root.add_child(_panel)
+
+
+func _shut() -> void:
+	_panel.close()
+	_panel.free()
+	_end(_session)
+	# What it says to this suite holds the suite.
+	_session = null
+	_clean()
+
+
+func _clean() -> void:
+	for name: String in DirAccess.get_files_at("res://"):
+		if name.begins_with("photo_test_tree"):
+			DirAccess.remove_absolute("res://" + name)
+	for name: String in DirAccess.get_directories_at("res://"):
+		if name.begins_with("photo_test_tree"):
+			remove_folder("res://" + name)
+
+
+static func remove_folder(path: String) -> void:
+	var there: DirAccess = DirAccess.open(path)
+	there.include_hidden = true
+	for name: String in there.get_directories():
+		remove_folder(path.path_join(name))
+	for name: String in there.get_files():
+		there.remove(name)
+	DirAccess.remove_absolute(path)
+
+
+func _frame() -> void:
+	_session.update()
+	_panel.update()
+	await tree.process_frame
+
+
+func _begin() -> void:
+	_panel.show_folder(_files.photos)
+	_panel._target.text = TARGET
+	_panel._update_buttons()
+	check(not _panel.begin.disabled, "It can't be begun: %s" % _panel.begin.tooltip_text)
+	_panel.begin.pressed.emit()
+
+
+func _wait() -> void:
+	while not _session.jobs.get_running().is_empty():
+		await _frame()
+	_panel.update()
+
+
+func test_photos_become_a_tree() -> void:
+	_open()
+	_panel._height.value = 6.0
+	_begin()
+	check(_panel.end.visible and not _panel.begin.visible, "It can't be ended.")
+	await _wait()
+	if not _made is TreeReconstruction:
+		check(false, "No tree was made: " + _panel.message.text)
+		_shut()
+		return
+	check_equal(_made.resource_path, TARGET, "the tree's file")
+	var again: TreeReconstruction = (
+		ResourceLoader.load(TARGET, "", ResourceLoader.CACHE_MODE_IGNORE) as TreeReconstruction
+	)
+	check_equal(again.get_node_count(), _made.get_node_count(), "nodes in the file")
+	check_near(_made.measure()["height"], 6.0, 0.3, "the height")
+	var work: String = "res://photo_test_tree_photos"
+	check_equal(_made.provenance["source"], work + "/cloud.ply", "what the tree is made of")
+	check_equal(_made.provenance["photos"], _files.photos, "the photos")
+	check_equal(_made.provenance["options"], {"known_height": 6.0}, "options of the tree")
+	check(FileAccess.file_exists(work + "/.gdignore"), "The engine would import the work.")
+	var report: Dictionary = _made.provenance["report"]["photos"]
+	check_equal(int(report["placed"]), 8, "photos that were placed")
+	check_equal(report["missing"], ["photo 8.jpg"], "photos that were not")
+	check_equal(report["cameras"].size(), 8, "cameras in the circle")
+	check_near(report["widest_gap"]["degrees"], 123.75, 1.0, "the gap of the circle")
+	check(_panel.circle.visible, "The circle isn't shown.")
+	check("photo" in _panel.circle.tooltip_text, "It doesn't say where to add photos.")
+	check("2,003 features" in _panel.grid.get_item_tooltip(2), "Features of a photo aren't told.")
+	check("not found" in _panel.grid.get_item_tooltip(8), "A photo without a place isn't told.")
+	check(_panel.grid.get_item_icon(4) != null, "A photo has no picture.")
+	_panel.say_where(TARGET, false)
+	check("8 of 9 photos" in _panel.message.text, "It says: " + _panel.message.text)
+	check(_panel.begin.visible and _panel.begin.disabled, "It would write over the tree.")
+	# The scan is there to look at, and to make the tree of it again.
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	check(worker.load_cloud(_made), worker.get_error_message())
+	check(worker.reconstruct_file(_made.provenance["source"]) != null, worker.get_error_message())
+	_shut()
+
+
+func test_what_was_ended_goes_on() -> void:
+	_open()
+	_files.hold("exhaustive_matcher")
+	_begin()
+	while not "Comparing" in _panel.making.get_stage():
+		await _frame()
+	check(not _panel._browse.disabled == false, "Other photos can be chosen meanwhile.")
+	_panel.end.pressed.emit()
+	await _wait()
+	check(_made == null, "It went on to a tree.")
+	check(not FileAccess.file_exists(TARGET), "A tree was saved.")
+	check(_panel.message.text.begins_with("Ended."), "It says: " + _panel.message.text)
+	_files.let_go("exhaustive_matcher")
+	_panel.show_folder(_files.photos)
+	_panel._target.text = TARGET
+	check(PhotoFolder.is_begun(_files.photos, TARGET), "It begins anew.")
+	_panel.begin.pressed.emit()
+	await _wait()
+	check(_made != null, "No tree was made: " + _panel.message.text)
+	var log: String = FileAccess.get_file_as_string("res://photo_test_tree_photos/photos.log")
+	check_equal(log.count("Processed file [9/9]"), 1, "times that features were found")
+	# Another tree of the same photos doesn't touch what this one is made of.
+	check_equal(
+		PhotoFolder.work_folder(_files.photos, "res://photo_test_tree_2.res"),
+		"res://photo_test_tree_2_photos",
+		"the folder of another tree"
+	)
+	_shut()
+
+
+func test_what_goes_wrong_is_said() -> void:
+	_open()
+	_panel.show_folder(folder)
+	check(_panel.begin.disabled, "It begins without photos.")
+	check_sentence(_panel.message.text, "what it says of no photos")
+	DirAccess.remove_absolute(_files.photos.path_join("photo 1.jpg"))
+	DirAccess.remove_absolute(_files.photos.path_join("photo 2.jpg"))
+	_panel.show_folder(_files.photos)
+	check(_panel.begin.disabled, "It begins with too few photos.")
+	check("only 7" in _panel.message.text, "It says: " + _panel.message.text)
+	_files = PhotoFiles.new(folder.path_join("whole"))
+	_panel.colmap = folder.path_join("nowhere/colmap")
+	_begin()
+	await _wait()
+	check(_made == null, "It made a tree without COLMAP.")
+	check("COLMAP" in _panel.message.text, "It says: " + _panel.message.text)
+	check(_panel.begin.visible, "It can't be tried again.")
+	_panel._target.text = "user://tree.res"
+	_panel._update_buttons()
+	check(_panel.begin.disabled, "It would write outside of the project.")
+	_shut()
+
+
+func test_every_control_says_what_it_is() -> void:
+	_open()
+	for control: Node in _panel.find_children("*", "Control", true, false):
+		var asks: bool = (
+			control is BaseButton
+			or control is SpinBox
+			or control is ItemList
+			or control is TextEdit
+			or (control is LineEdit and not control.get_parent() is SpinBox)
+		)
+		if asks:
+			var tip: String = (control as Control).tooltip_text
+			check(tip.ends_with("."), "%s has no tooltip." % _panel.get_path_to(control))
+	_shut()
+
+
+# A log is read while it is written, in any pieces.
+func test_a_log_is_followed() -> void:
+	var path: String = folder.path_join("photos.log")
+	var whole: PackedByteArray = (
+		(
+			"Processed file [1/2]\n  Name:            größe.jpg\n  Features:        1200\n"
+			+ "Processed file [2/2]\n  Name:            b.jpg\n  Features:        7\nend\n"
+		)
+		. to_utf8_buffer()
+	)
+	var log: PhotoLog = PhotoLog.new(path)
+	check(not log.update(), "There is no log yet.")
+	for end: int in range(1, whole.size() + 1, 7):
+		PhotoFiles.write(path, whole.slice(0, end))
+		log.update()
+	PhotoFiles.write(path, whole)
+	log.update()
+	check_equal(log.lines.size(), 7, "lines")
+	check_equal(
+		log.features, {"größe.jpg": 1200, "b.jpg": 7} as Dictionary[String, int], "features"
+	)
+	PhotoFiles.write(path, "anew\n".to_utf8_buffer())
+	check(log.update(), "A log that was begun anew isn't read.")
+
+
+func test_options_are_checked() -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	for wrong: Dictionary in [
+		{"time": "never"},
+		{"order": 3},
+		{"dense": "yes"},
+		{"nonsense": 1},
+		{"colmap": 1.5},
+	]:
+		check(worker.reconstruct_photos(folder, folder, wrong) == null, "It took %s." % wrong)
+		check_sentence(worker.get_error_message(), str(wrong))
+	check(worker.reconstruct_photos("", "") == null, "It took nothing for photos.")
+	check_sentence(worker.get_error_message(), "nothing")
+	for option: Dictionary in TreeReconstructor.get_photo_option_list():
+		check_sentence(option.description, option.name)
