@@ -60,7 +60,7 @@ func _draw_gap(middle: Vector2, reach: float) -> void:
 	if is_nan(from):
 		return
 	var warning: Color = get_theme_color(&"warning_color", &"Editor")
-	warning.a = 0.3
+	warning.a = 0.5
 	var fan: PackedVector2Array = [middle]
 	for i: int in _ARC + 1:
 		fan.append(middle + _way(from + float(_gap["degrees"]) * i / _ARC) * reach)

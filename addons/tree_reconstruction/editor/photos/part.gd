@@ -36,7 +36,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	panel = PhotosPanel.new(session)
 	panel.folder_wanted.connect(_choose_folder)
 	panel.made.connect(_on_made)
-	panel.begin.pressed.connect(_on_begin)
+	panel.begins.connect(_on_begins)
 	window = AcceptDialog.new()
 	window.set_translation_domain(get_translation_domain())
 	window.title = tr("New Tree from Photos")
@@ -88,7 +88,7 @@ func _on_frame() -> void:
 	panel.update()
 
 
-func _on_begin() -> void:
+func _on_begins() -> void:
 	panel.colmap = EditorInterface.get_editor_settings().get_setting(SETTING)
 	_scene = weakref(EditorInterface.get_edited_scene_root())
 

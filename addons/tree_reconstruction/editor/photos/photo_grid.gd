@@ -27,6 +27,7 @@ func _init(jobs: Jobs) -> void:
 	fixed_icon_size = Vector2i.ONE * Widgets.px(_EDGE)
 	fixed_column_width = Widgets.px(_EDGE + 8.0)
 	max_columns = 0
+	max_text_lines = 2
 	same_column_width = true
 	auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	tooltip_text = tr("The photos. They are only read.")

@@ -6,6 +6,8 @@ extends VBoxContainer
 
 ## The user wants to choose the folder of photos.
 signal folder_wanted
+## The work is about to begin: what it needs to know besides is set now.
+signal begins
 ## A tree was made, and lies in a file.
 signal made(tree: TreeReconstruction)
 
@@ -151,7 +153,8 @@ func _add_options() -> void:
 
 func _add_option(title: String, tip: String, control: Control) -> void:
 	var label: Label = Widgets.words(title, tip)
-	label.size_flags_stretch_ratio = 0.4
+	label.clip_text = false
+	label.size_flags_horizontal = Control.SIZE_FILL
 	control.tooltip_text = tip
 	control.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 	_options.add_child(label)
@@ -212,6 +215,7 @@ func _add_log() -> void:
 
 
 func _on_begin() -> void:
+	begins.emit()
 	var options: Dictionary = {
 		"time": _time.get_selected_metadata(), "order": _order.get_selected_metadata()
 	}
