@@ -6,6 +6,7 @@
 #include <godot_cpp/classes/json.hpp>
 #include <godot_cpp/classes/project_settings.hpp>
 #include <godot_cpp/classes/time.hpp>
+#include <limits>
 #include <utility>
 
 #include "convert.h"
@@ -336,6 +337,42 @@ TypedArray<Dictionary> TreeReconstructor::get_photo_option_list() {
     return list_photo_options();
 }
 
+// The front of a surface is where the first points are; of those the one nearest to the line is meant.
+int64_t TreeReconstructor::find_point(const PackedVector3Array& p_points, const Vector3& p_from,
+                                      const Vector3& p_way, double p_width, double p_spread) {
+    ERR_FAIL_COND_V_MSG(!p_way.is_finite() || !p_from.is_finite() || p_way == Vector3(), -1,
+                        "The line of sight needs a place and a direction.");
+    const Vector3 way = p_way.normalized();
+    const int64_t count = p_points.size();
+    const Vector3* points = p_points.ptr();
+    // Each point's way along the line, and how far off it is, in what is allowed there.
+    const auto seen = [&](int64_t p_index, double& r_along) {
+        const Vector3 from_eye = points[p_index] - p_from;
+        r_along = from_eye.dot(way);
+        const double allowed = p_width + p_spread * r_along;
+        return r_along > 0.0 && allowed > 0.0 ? double((from_eye - way * float(r_along)).length()) / allowed
+                                              : 2.0;
+    };
+    double first = std::numeric_limits<double>::infinity(), along = 0.0;
+    for (int64_t i = 0; i < count; i++) {
+        if (seen(i, along) <= 1.0) {
+            first = std::min(first, along);
+        }
+    }
+    // As deep as the circle that is looked at is wide.
+    const double last = first + 2.0 * (p_width + p_spread * first);
+    int64_t found = -1;
+    double best = 1.0;
+    for (int64_t i = 0; std::isfinite(first) && i < count; i++) {
+        const double off = seen(i, along);
+        if (off <= best && along <= last) {
+            best = off;
+            found = i;
+        }
+    }
+    return found;
+}
+
 void TreeReconstructor::cancel() {
     cancelled_ = true;
 }
@@ -420,6 +457,9 @@ void TreeReconstructor::_bind_methods() {
                                 &TreeReconstructor::get_option_list);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_photo_option_list"),
                                 &TreeReconstructor::get_photo_option_list);
+    ClassDB::bind_static_method("TreeReconstructor",
+                                D_METHOD("find_point", "points", "from", "way", "width", "spread"),
+                                &TreeReconstructor::find_point, DEFVAL(0.0), DEFVAL(0.0));
     ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);
     ClassDB::bind_method(D_METHOD("get_progress"), &TreeReconstructor::get_progress);
     ClassDB::bind_method(D_METHOD("get_stage"), &TreeReconstructor::get_stage);

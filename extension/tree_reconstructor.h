@@ -17,9 +17,9 @@
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
 
-// Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(), import_skeleton(), export_file()
-// and save_html_report() may run on any thread, one at a time; the other methods may be called from any other
-// thread meanwhile.
+// Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
+// import_skeleton(), export_file() and save_html_report() may run on any thread, one at a time; the other
+// methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -40,6 +40,9 @@ class TreeReconstructor : public godot::RefCounted {
     godot::Error save_html_report(const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_option_list();
     static godot::TypedArray<godot::Dictionary> get_photo_option_list();
+
+    static int64_t find_point(const godot::PackedVector3Array& p_points, const godot::Vector3& p_from,
+                              const godot::Vector3& p_way, double p_width, double p_spread);
 
     void cancel();
     double get_progress() const;

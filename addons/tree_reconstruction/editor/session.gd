@@ -18,6 +18,8 @@ signal scan_changed
 signal string_picked(lstring: String, id: int)
 ## The viewport should show what is in [param box], in the tree's space.
 signal view_wanted(box: AABB)
+## The scan should be reconstructed again, with these options changed.
+signal reconstruction_wanted(changed: Dictionary)
 ## The user wants a tree of photos.
 signal photos_wanted
 ## A sentence for the user.

@@ -66,7 +66,23 @@ func run_from(stage: StringName) -> void:
 	rerun.start(options)
 
 
+# A tool asks for it; an option that is [code]null[/code] goes back to its default.
+func _on_wanted(changed: Dictionary) -> void:
+	if rerun.is_running() or session.tree == null:
+		return
+	var options: Dictionary = session.tree.provenance.get("options", {}).duplicate()
+	options.merge(changed, true)
+	for name: String in changed:
+		if changed[name] == null:
+			options.erase(name)
+	for stage: StringName in _FROM_SCAN:
+		rows[stage].set_running(true)
+	_sentence.visible = false
+	rerun.start(options)
+
+
 func close() -> void:
+	session.reconstruction_wanted.disconnect(_on_wanted)
 	rerun.ended.disconnect(_on_ended)
 	rerun.close()
 	_watch(null)
@@ -77,6 +93,7 @@ func _build() -> void:
 	tooltip_text = "How the scan became this tree. Unfold a stage to change its options."
 	rerun = Rerun.new(session)
 	rerun.ended.connect(_on_ended)
+	session.reconstruction_wanted.connect(_on_wanted)
 	_no_scan = Widgets.sentence(
 		"This tree wasn't made of a scan, so its first stages can't be done again."
 	)

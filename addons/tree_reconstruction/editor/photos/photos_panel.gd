@@ -154,6 +154,7 @@ func _add_options() -> void:
 func _add_option(title: String, tip: String, control: Control) -> void:
 	var label: Label = Widgets.words(title, tip)
 	label.clip_text = false
+	label.text_overrun_behavior = TextServer.OVERRUN_NO_TRIMMING
 	label.size_flags_horizontal = Control.SIZE_FILL
 	control.tooltip_text = tip
 	control.size_flags_horizontal = Control.SIZE_EXPAND_FILL

@@ -18,6 +18,7 @@ const _TOOLS: Array[GDScript] = [
 	preload("smooth.gd"),
 	preload("simplify.gd"),
 	preload("leaf_rule.gd"),
+	preload("length.gd"),
 	preload("complete.gd"),
 	preload("doubt.gd"),
 	preload("unfit.gd"),

@@ -104,6 +104,18 @@ func ray_plane(camera: Camera3D, position: Vector2, through: Vector3) -> Vector3
 	return frame.affine_inverse() * (from + way * distance)
 
 
+## The line of sight through [param position] in the tree's space: where it begins, and a way along
+## it that is one metre of the world.
+func get_ray(camera: Camera3D, position: Vector2) -> PackedVector3Array:
+	var in_viewport: Vector2 = position * camera.get_viewport().get_visible_rect().size
+	in_viewport /= get_size(camera)
+	var to_tree: Transform3D = _session.node.global_transform.affine_inverse()
+	return [
+		to_tree * camera.project_ray_origin(in_viewport),
+		to_tree.basis * camera.project_ray_normal(in_viewport),
+	]
+
+
 ## What leads from the tree's space to the camera's clip space.
 func get_to_screen(camera: Camera3D) -> Projection:
 	var to_camera: Transform3D = camera.get_camera_transform().affine_inverse()
