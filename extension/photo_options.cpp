@@ -28,6 +28,9 @@ TypedArray<Dictionary> list_options() {
          "Which photos are compared: sequence takes neighbours by name, exhaustive all with all; auto "
          "compares all "
          "of up to 80."},
+        {"matcher", "sift", PROPERTY_HINT_ENUM, "sift,pyrlk,both",
+         "How photos are compared: sift takes COLMAP's features, pyrlk tracks corners and is several times "
+         "faster where neighbours are near, both joins the two and gives more points."},
         {"dense", true, PROPERTY_HINT_NONE, "",
          "Matches the photos pixel by pixel; without it the cloud has the few points that placed the "
          "cameras."},
@@ -77,6 +80,7 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
     treerec::PhotosOptions& pipeline = options.pipeline;
     pipeline.colmap.program = to_std(String(values["colmap"]));
     pipeline.colmap.order = treerec::parse_photo_order(to_std(String(values["order"])));
+    pipeline.colmap.matcher = treerec::parse_photo_matcher(to_std(String(values["matcher"])));
     pipeline.colmap.effort = treerec::parse_photo_effort(to_std(String(values["time"])));
     pipeline.cloud.dense = bool(values["dense"]);
     pipeline.cloud.densify = treerec::densify_options_of(pipeline.colmap.effort);

@@ -8,6 +8,7 @@
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
+#include "photos/matches_picture.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
 #include "pipeline/photos.h"
@@ -50,6 +51,10 @@ std::vector<Option> all_options() {
         {"--order", "ORDER",
          "which photos are compared: exhaustive (all), sequence (neighbours by name, the last with\n"
          "the first) or auto, the default: exhaustive for up to 80"},
+        {"--matcher", "MATCHER",
+         "what photos share is found out by sift (COLMAP's features, the default), pyrlk (corners\n"
+         "tracked from photo to photo) or both"},
+        {"--show-matches", "A,B", "nothing but OUT/matches_A_B.png: what is tracked from photo A to photo B"},
         {"--time", "TIME", "how much to find in each photo: quick, normal or best (default normal)"},
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
@@ -94,6 +99,8 @@ void run_photos(const std::vector<std::string>& words) {
     PhotosOptions options;
     options.colmap.program = arguments.text("--colmap", "");
     options.colmap.order = as_usage([&] { return parse_photo_order(arguments.text("--order", "auto")); });
+    options.colmap.matcher =
+        as_usage([&] { return parse_photo_matcher(arguments.text("--matcher", "sift")); });
     options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
     options.cloud.dense = !arguments.has("--sparse");
     options.cloud.densify = densify_options_of(options.colmap.effort);
@@ -112,6 +119,14 @@ void run_photos(const std::vector<std::string>& words) {
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
+    if (arguments.has("--show-matches")) {
+        const ShownMatches shown =
+            show_matches(folder, out, arguments.text("--show-matches", ""), options.colmap.effort, &progress);
+        if (!quiet)
+            std::printf("%s: %zu matches of the plain method; of the improved one %zu, and %zu dropped\n",
+                        shown.path.c_str(), shown.plain, shown.improved, shown.dropped);
+        return;
+    }
     SubProgress making(&progress, 0.0, 0.95);
     PhotosResult result = reconstruct_photos(folder, out, options, &making);
     Reconstruction& tree = result.tree;

@@ -18,16 +18,26 @@ enum class PhotoOrder {
     kExhaustive,  // each with each
 };
 
+// How it is found out what the photos share.
+enum class PhotoMatcher {
+    kSift,   // COLMAP's own features
+    kPyrlk,  // corners tracked from photo to photo (photos/match_pair.h): no SIFT
+    kBoth,   // the tracks of both; no fewer photos are placed than with kSift
+};
+
 // How long it may take.
 enum class PhotoEffort { kQuick, kNormal, kBest };
 
-// "auto", "sequence", "exhaustive"; "quick", "normal", "best". Throw Error for another word.
+// "auto", "sequence", "exhaustive"; "sift", "pyrlk", "both"; "quick", "normal", "best". Throw Error for
+// another word.
 PhotoOrder parse_photo_order(const std::string& word);
+PhotoMatcher parse_photo_matcher(const std::string& word);
 PhotoEffort parse_photo_effort(const std::string& word);
 
 struct ColmapOptions {
     std::string program;  // or its folder; "": $COLMAP, PATH, the usual folders
     PhotoOrder order = PhotoOrder::kAuto;
+    PhotoMatcher matcher = PhotoMatcher::kSift;
     PhotoEffort effort = PhotoEffort::kNormal;
     int threads = 0;  // 0: one per core
 };

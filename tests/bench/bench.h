@@ -55,6 +55,17 @@ void bench_synth(const Settings& settings);
 bool guard_accuracy(const Settings& settings);
 void record_accuracy(const Settings& settings);
 
+// Each way to match the photos of a folder: matches, photos placed, points, error, time. settings.args:
+// further options of 'treerec photos'.
+void bench_photos(const std::vector<std::string>& folders, const Settings& settings);
+// The row of that table for what 'treerec photos' left in a folder.
+void tell_photos(const std::string& name, const std::string& matcher, const std::string& out, size_t photos,
+                 double seconds);
+// Plain and improved tracking of corners: on drawn pictures whose warp is known, and between photos, by what
+// their COLMAP model says, from 0 to 45 degrees around what they show.
+void bench_warps();
+void bench_pairs(const std::string& photos, const std::string& model);
+
 // Time to write and read L-strings of 10 MB, and to rewrite a grammar.
 void bench_strings(const Settings& settings);
 

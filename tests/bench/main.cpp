@@ -31,6 +31,11 @@ const char* const kUsage =
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --variants [SCAN…|SKELETON…] new individuals of a tree, with bark, in a second\n"
+    "       bench --photos FOLDER… [-- ARG…]   photos matched by sift, pyrlk and both; ARG: of 'treerec "
+    "photos'\n"
+    "       bench --tracks [FOLDER MODEL]      corners tracked plainly and better: on drawn warps, or "
+    "between\n"
+    "                                          photos, judged by their COLMAP model\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
@@ -66,7 +71,8 @@ CommandLine parse(const std::vector<std::string>& words) {
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
-            word == "--bytes" || word == "--edits" || word == "--variants" || word == "--help") {
+            word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
+            word == "--variants" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -137,6 +143,19 @@ int run(CommandLine line) {
         if (line.settings.record.empty()) throw Error("Name the recorded table with --table.");
         if (line.mode == "--guard") return guard_accuracy(line.settings) ? EXIT_SUCCESS : EXIT_FAILURE;
         record_accuracy(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--photos") {
+        bench_photos(line.scans, line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--tracks") {
+        if (line.scans.empty())
+            bench_warps();
+        else if (line.scans.size() == 2)
+            bench_pairs(line.scans[0], line.scans[1]);
+        else
+            throw Error("Name a folder of photos, and one with their COLMAP model.");
         return EXIT_SUCCESS;
     }
     if (line.mode == "--lighter") {

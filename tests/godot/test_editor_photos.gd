@@ -211,6 +211,7 @@ func test_options_are_checked() -> void:
 	var worker: TreeReconstructor = TreeReconstructor.new()
 	for wrong: Dictionary in [
 		{"time": "never"},
+		{"matcher": "eye"},
 		{"order": 3},
 		{"dense": "yes"},
 		{"nonsense": 1},

@@ -6,7 +6,10 @@
 #include <thread>
 
 #include "cases.h"
+#include "exchange/material_textures.h"
+#include "photos/photo_picture.h"
 #include "photos_standin.h"
+#include "photos_warps.h"
 
 namespace treerec {
 namespace {
@@ -74,10 +77,32 @@ TEST_F(PhotosCli, WrongWordsAreTold) {
     EXPECT_EQ(run("photos photos photos -o out").code, 2);
     EXPECT_EQ(run("photos photos -o out --order often").code, 2);
     EXPECT_EQ(run("photos photos -o out --time never").code, 2);
+    EXPECT_EQ(run("photos photos -o out --matcher surf").code, 2);
+    EXPECT_EQ(run("photos photos -o out --show-matches a.jpg").code, 1);
+    EXPECT_EQ(run("photos photos -o out --show-matches a.jpg,b.jpg").code, 1) << "they are no pictures";
     EXPECT_EQ(run("photos photos -o out --known-length 1,2").code, 2);
     EXPECT_EQ(run("photos photos -o out --height 2 --known-length 0,0,0,0,0,1,1").code, 2);
     EXPECT_EQ(run("photos nowhere -o out").code, 1);
     EXPECT_TRUE(out_is_empty());
+}
+
+// Figure 4.1 of papers/002, without COLMAP.
+TEST_F(PhotosCli, MatchesCanBeSeen) {
+    const auto picture = [](const test::Warp& warp) {
+        const std::vector<uint8_t> png = encode_png(test::draw_warped(warp, 5));
+        return std::string(png.begin(), png.end());
+    };
+    put("photos/first one.png", picture(test::about_middle("", DMat3(1.0))));
+    put("photos/a,b.png", picture(test::about_middle("", test::turned(10))));
+    const Outcome outcome = run("photos photos -o out --show-matches 'first one.png,a,b.png'");
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
+    EXPECT_TRUE(has(outcome.out, "of the improved one")) << outcome.out;
+    const auto shown = decode_picture(get("out/matches_first one_a,b.png"), 3);
+    ASSERT_TRUE(shown);
+    EXPECT_EQ(shown->width, 2 * test::kDrawnWidth + 8);
+    EXPECT_EQ(shown->height, 2 * test::kDrawnHeight + 8);
+    EXPECT_EQ(commands(calls()), "");
+    EXPECT_FALSE(fs::exists(folder_ / "out/colmap"));
 }
 
 TEST_F(PhotosCli, ControlCEndsColmapToo) {
@@ -158,11 +183,13 @@ TEST_F(PhotosCli, RealPhotosWithColmapItself) {
         if (!fs::exists(photo)) GTEST_SKIP() << photo << " is not there.";
         fs::create_symlink(photo, folder_ / "photos" / name);
     }
-    const Outcome outcome = run("photos photos -o out --time quick");
-    EXPECT_EQ(outcome.code, 0) << outcome.error;
-    EXPECT_TRUE(fs::exists(folder_ / "out/tree.glb"));
-    EXPECT_TRUE(has(outcome.out, " of 14 photos placed")) << outcome.out;
-    EXPECT_TRUE(has(get("out/report.json"), "up_from_photos")) << outcome.error;
+    for (const std::string matcher : {"sift", "pyrlk", "both"}) {
+        const Outcome outcome = run("photos photos -o out --time quick --matcher " + matcher);
+        EXPECT_EQ(outcome.code, 0) << outcome.error;
+        EXPECT_TRUE(fs::exists(folder_ / "out/tree.glb"));
+        EXPECT_TRUE(has(outcome.out, " of 14 photos placed")) << matcher << outcome.out;
+        EXPECT_TRUE(has(get("out/report.json"), "up_from_photos")) << outcome.error;
+    }
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 namespace treerec::test {
 
 // STANDIN_VERSION 3.8 or 4; STANDIN_LOG where to write the words; STANDIN_MODEL a folder of models;
+// STANDIN_DATABASE what the feature_extractor makes, else a list of names;
 // STANDIN_DO "COMMAND=exit1", "COMMAND=hang", "mapper=none", "COMMAND=slow"; STANDIN_FEATURES of a photo.
 inline constexpr const char* kStandIn = R"sh(#!/bin/sh
 sift=SiftExtraction match=SiftMatching size=SiftExtraction version=3.8
@@ -31,6 +32,7 @@ known() {
     case $1 in
     feature_extractor) echo "$common --image_path --image_list_path --ImageReader.single_camera --ImageReader.existing_camera_id
         --$sift.use_gpu --$sift.num_threads --$size.max_image_size --SiftExtraction.max_num_features" ;;
+    feature_importer) echo "$common --image_path --image_list_path --import_path --ImageReader.single_camera" ;;
     exhaustive_matcher) echo "$common --$match.use_gpu --$match.num_threads --ExhaustiveMatching.block_size" ;;
     sequential_matcher) echo "$common --$match.use_gpu --$match.num_threads --SequentialMatching.overlap" ;;
     matches_importer) echo "$common --$match.use_gpu --$match.num_threads --match_list_path --match_type" ;;
@@ -49,7 +51,7 @@ if [ "$1" = -h ]; then
     exit 0
 fi
 { echo "= $command"; for word in "$@"; do printf '%s\n' "$word"; done; } >>"$STANDIN_LOG"
-database= output= list=
+database= output= list= import=
 while [ $# -gt 0 ]; do
     case " $(known "$command" | tr '\n' ' ') " in
     *" $1 "*) ;;
@@ -59,6 +61,8 @@ while [ $# -gt 0 ]; do
     --database_path) database=$2 ;;
     --output_path) output=$2 ;;
     --image_list_path) list=$2 ;;
+    --import_path) import=$2 ;;
+    --match_list_path) cp "$2" "$STANDIN_LOG.matches" ;;
     esac
     shift 2
 done
@@ -71,13 +75,21 @@ esac
 case $command in
 feature_extractor)
     count=$(wc -l <"$list") i=0
+    [ -z "$STANDIN_DATABASE" ] || cp "$STANDIN_DATABASE" "$database"
     while IFS= read -r name; do
         i=$((i + 1))
         [ "$pause" = 0 ] || sleep $pause
-        printf '%s\n' "$name" >>"$database"
+        [ -n "$STANDIN_DATABASE" ] || printf '%s\n' "$name" >>"$database"
         echo "Processed file [$i/$count]"
         echo "  Name:            $name"
         echo "  Features:        ${STANDIN_FEATURES:-2400}"
+    done <"$list" ;;
+feature_importer)
+    while IFS= read -r name; do
+        [ "$pause" = 0 ] || sleep $pause
+        [ -s "$import/$name.txt" ] || continue
+        printf '%s\n' "$name" >>"$database"
+        cp "$import/$name.txt" "$STANDIN_LOG.$name.txt"
     done <"$list" ;;
 *matcher | matches_importer)
     [ -s "$database" ] || { echo "no features" >&2; exit 1; }
@@ -87,7 +99,7 @@ feature_extractor)
     done
     echo matched >>"$database" ;;
 mapper)
-    grep -q matched "$database" || { echo "no matches" >&2; exit 1; }
+    grep -aq matched "$database" || { echo "no matches" >&2; exit 1; }
     case " $STANDIN_DO " in *" mapper=none "*) echo "ERROR: failed to create sparse model"; exit 1 ;; esac
     for i in 3 4 5; do
         [ "$pause" = 0 ] || sleep $pause
@@ -183,13 +195,14 @@ class WithStandIn : public Base {
                                                               {"STANDIN_MODEL", this->path("models")},
                                                               {"STANDIN_DO", ""},
                                                               {"STANDIN_FEATURES", ""},
+                                                              {"STANDIN_DATABASE", ""},
                                                               {"STANDIN_VERSION", "3.8"}})
             ::setenv(name, value.c_str(), 1);
         take_photos({"a.jpg", "b.jpg", "c.jpg", "d.jpg", "e.jpg", "f.jpg", "g.jpg", "h.jpg", "i.jpg"});
     }
     void TearDown() override {
-        for (const char* name :
-             {"COLMAP", "STANDIN_LOG", "STANDIN_MODEL", "STANDIN_DO", "STANDIN_FEATURES", "STANDIN_VERSION"})
+        for (const char* name : {"COLMAP", "STANDIN_LOG", "STANDIN_MODEL", "STANDIN_DO", "STANDIN_FEATURES",
+                                 "STANDIN_DATABASE", "STANDIN_VERSION"})
             ::unsetenv(name);
         Base::TearDown();
     }

@@ -38,6 +38,7 @@ var _place: LineEdit = LineEdit.new()
 var _browse: Button
 var _time: OptionButton
 var _order: OptionButton
+var _matcher: OptionButton
 var _height: SpinBox
 var _target: LineEdit = LineEdit.new()
 var _options: GridContainer = GridContainer.new()
@@ -134,11 +135,14 @@ func _add_options() -> void:
 		["auto", "sequence", "exhaustive"]
 	)
 	Widgets.choose(_order, "auto")
+	_matcher = Widgets.choice(["Features", "Tracked corners", "Both"], ["sift", "pyrlk", "both"])
+	Widgets.choose(_matcher, "sift")
 	_height = Widgets.number(0.0, 100.0, 0.01, "m")
 	_height.allow_greater = true
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
 	_add_option("Compare", tips["order"], _order)
+	_add_option("By", tips["matcher"], _matcher)
 	_add_option(
 		"Height of the tree",
 		(
@@ -218,7 +222,9 @@ func _add_log() -> void:
 func _on_begin() -> void:
 	begins.emit()
 	var options: Dictionary = {
-		"time": _time.get_selected_metadata(), "order": _order.get_selected_metadata()
+		"time": _time.get_selected_metadata(),
+		"order": _order.get_selected_metadata(),
+		"matcher": _matcher.get_selected_metadata(),
 	}
 	if not colmap.is_empty():
 		options["colmap"] = colmap

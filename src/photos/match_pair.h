@@ -1,0 +1,73 @@
+// Two photos' places that show the same thing: the corners of one tracked into the other (papers/002, chapter
+// 4).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "photos/affine_track.h"
+#include "photos/corner_patches.h"
+#include "photos/grey_pyramid.h"
+#include "photos/harris.h"
+#include "progress.h"
+
+namespace treerec {
+
+// Which matches both medians of papers/002, 4.3.2 leave.
+enum class MedianFilter {
+    kNone,
+    kEither,  // as printed: better than the median in both; a quarter where they have nothing in common
+    kBoth,    // what is worse than the median in both goes: three quarters stay
+};
+
+struct MatchOptions {
+    AffineTrackOptions track{.window = {.reach = 8}, .levels = 3, .most_stretch = 2.5};
+    double back_tolerance = 1.5;    // pixels between a corner and where the way back ends
+    double least_similarity = 0.7;  // normalized correlation of the windows
+    MedianFilter medians = MedianFilter::kBoth;
+};
+
+// A photo, ready to be matched.
+struct PhotoFeatures {
+    GreyPyramid pyramid;
+    std::vector<Corner> corners;
+    CornerPatches patches;
+};
+
+struct FeatureOptions {
+    int most_pixels = 1600;  // of the longer side: larger photos are made smaller
+    HarrisOptions harris;
+};
+
+PhotoFeatures features_of(const Image& photo, const FeatureOptions& options);
+
+struct PointMatch {
+    uint32_t corner = 0;      // of the first photo
+    DVec2 place{0.0};         // in the second one's picture, pixels
+    double similarity = 0.0;  // -1 to 1
+    double back_error = 0.0;  // pixels
+    bool kept = true;         // by the tolerance, the similarity and the medians
+};
+
+struct PairMatches {
+    std::vector<PointMatch> matches;  // by corner; those that were dropped at last, too
+    size_t coarse = 0;                // patches that told where to begin
+
+    size_t kept() const;
+};
+
+// The improved method: it begins at the motion of the patches around each corner, and where these tell
+// nothing, at the corner's own place. Throws Cancelled.
+PairMatches match_pair(const PhotoFeatures& one, const PhotoFeatures& other, const MatchOptions& options = {},
+                       const Progress* progress = nullptr);
+
+// The plain one (4.1 to 4.4), with nothing checked.
+PairMatches match_pair_plain(const PhotoFeatures& one, const PhotoFeatures& other,
+                             const LucasKanadeOptions& options = {});
+
+// Both medians, over the matches that are still kept.
+void filter_by_medians(std::vector<PointMatch>& matches, MedianFilter filter);
+
+}  // namespace treerec
