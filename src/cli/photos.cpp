@@ -83,7 +83,8 @@ const Command& photos_command() {
     static const Command command{
         "photos", "photos FOLDER -o OUT [options]", "Turns photos of a tree into a tree, with COLMAP.",
         all_options(),
-        "FOLDER: photos (.jpg .png .tif .bmp) from all around the tree, 8 or more; they are only read.\n"
+        "FOLDER: photos (.jpg .png .tif .bmp) from all around the tree, 8 or more, or a film of one walk\n"
+        "around it (with ffmpeg); they are only read.\n"
         "What was done already with the same photos and options is taken from OUT, also after a kill."};
     return command;
 }
@@ -91,7 +92,7 @@ const Command& photos_command() {
 void run_photos(const std::vector<std::string>& words) {
     const Arguments arguments(photos_command(), words);
     const std::vector<std::string>& positional = arguments.positional();
-    if (positional.empty()) throw UsageError("Which photos? Name their folder.");
+    if (positional.empty()) throw UsageError("Which photos? Name their folder, or a film.");
     if (positional.size() > 1)
         throw UsageError("'" + positional[1] + "' is too much: one folder of photos at a time.");
     if (!arguments.has("-o")) throw UsageError("Where to? Name a folder with -o.");

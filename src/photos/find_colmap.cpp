@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
 #include "error.h"
 #include "file_bytes.h"
-
-#ifdef _WIN32
-#include <windows.h>
-#else
-#include <unistd.h>
-#endif
+#include "photos/find_program.h"
 
 namespace treerec {
 
@@ -25,31 +19,9 @@ constexpr double kMostSeconds = 60.0;
 
 #ifdef _WIN32
 constexpr const char* kName = "colmap.exe";
-constexpr char kPathSeparator = ';';
 #else
 constexpr const char* kName = "colmap";
-constexpr char kPathSeparator = ':';
 #endif
-
-std::string environment_value(const char* name) {
-#ifdef _WIN32
-    const wchar_t* const value = _wgetenv(path_of(name).c_str());
-    return value ? utf8_of(fs::path(value)) : "";
-#else
-    const char* const value = std::getenv(name);
-    return value ? value : "";
-#endif
-}
-
-bool is_program(const fs::path& path) {
-    std::error_code failure;
-    if (!fs::is_regular_file(path, failure)) return false;
-#ifdef _WIN32
-    return true;
-#else
-    return access(path.c_str(), X_OK) == 0;
-#endif
-}
 
 // The program in a folder in which COLMAP was unpacked or installed, or the program itself; a COLMAP.bat
 // stands for the program beside it.
@@ -61,17 +33,6 @@ std::optional<fs::path> program_at(const fs::path& place) {
                                    fs::path("Contents") / "MacOS" / kName})
         if (is_program(folder / inside)) return folder / inside;
     return std::nullopt;
-}
-
-std::vector<fs::path> folders_on_path() {
-    std::vector<fs::path> folders;
-    const std::string all = environment_value("PATH");
-    for (size_t at = 0; at <= all.size();) {
-        const size_t end = std::min(all.find(kPathSeparator, at), all.size());
-        if (end > at) folders.push_back(path_of(all.substr(at, end - at)));
-        at = end + 1;
-    }
-    return folders;
 }
 
 // Where it is installed by itself, by package managers and by those who unpack it.

@@ -80,6 +80,14 @@ std::string how_to_convert(size_t apples, const std::string& folder) {
 
 }  // namespace
 
+bool is_photo_name(const std::string& name) {
+    return is_one_of(extension_of(name), kPhotos);
+}
+
+bool is_film_name(const std::string& name) {
+    return is_one_of(extension_of(name), kFilms);
+}
+
 bool PhotoFolder::one_size() const {
     return !photos.empty() && std::all_of(photos.begin(), photos.end(), [&](const PhotoFile& photo) {
         return photo.width > 0 && photo.width == photos[0].width && photo.height == photos[0].height;
@@ -93,7 +101,7 @@ PhotoFolder list_photos(const std::string& folder) {
     PhotoFolder found;
     found.path = utf8_of(fs::canonical(path_of(folder), failure));
     if (failure) throw Error("The folder '" + folder + "' cannot be reached.");
-    size_t apples = 0, films = 0;
+    size_t apples = 0;
     fs::directory_iterator at(path_of(found.path), failure);
     for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
         std::error_code ignored;
@@ -102,7 +110,6 @@ PhotoFolder list_photos(const std::string& folder) {
         if (name.starts_with(".") || !at->is_regular_file(ignored)) continue;
         const std::string ending = extension_of(name);
         apples += is_one_of(ending, kApples);
-        films += is_one_of(ending, kFilms);
         if (!is_one_of(ending, kPhotos)) continue;
         if (!fits_a_line(name))
             throw Error(
@@ -121,10 +128,6 @@ PhotoFolder list_photos(const std::string& folder) {
               [](const PhotoFile& a, const PhotoFile& b) { return a.name < b.name; });
     if (found.photos.empty()) {
         if (apples > 0) throw Error(how_to_convert(apples, folder));
-        if (films > 0)
-            throw Error("There are no photos in '" + folder +
-                        "', but a film. Take two pictures a second out of it first: ffmpeg -i FILM -vf fps=2 "
-                        "-q:v 2 FOLDER/%04d.jpg");
         throw Error("There are no photos in '" + folder + "' (.jpg .png .tif .bmp).");
     }
     if (apples > 0) found.warnings.push_back(how_to_convert(apples, folder));

@@ -24,8 +24,12 @@ struct PhotoFolder {
     bool one_size() const;
 };
 
-// Throws Error where the folder is none, or has no photos: with a word on pictures and films of phones that
-// have to be converted.
+// By their endings: what COLMAP reads, and films.
+bool is_photo_name(const std::string& name);
+bool is_film_name(const std::string& name);
+
+// Throws Error where the folder is none, or has no photos: with a word on pictures of phones that have to
+// be converted.
 PhotoFolder list_photos(const std::string& folder);
 
 }  // namespace treerec

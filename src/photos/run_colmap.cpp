@@ -168,22 +168,6 @@ ColmapRun tell(ColmapWork& work) {
     return run;
 }
 
-// Not what is somebody else's.
-void require_own_folder(const fs::path& out, const std::string& photos) {
-    std::error_code failure;
-    if (fs::equivalent(out, path_of(photos), failure))
-        throw Error("'" + utf8_of(out) +
-                    "' is the folder of the photos itself; name another one to write to.");
-    if (fs::exists(out / "colmap" / "lock", failure)) return;
-    if (fs::is_directory(out / "colmap", failure) && fs::is_empty(out / "colmap", failure)) return;
-    for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log"})
-        if (fs::exists(out / name, failure))
-            throw Error(
-                "'" + utf8_of(out / name) +
-                "' is there already, and is not from photos that were worked on here; it was left as it "
-                "is. Name another folder to write to.");
-}
-
 }  // namespace
 
 PhotoOrder parse_photo_order(const std::string& word) {
@@ -207,17 +191,33 @@ PhotoEffort parse_photo_effort(const std::string& word) {
     throw Error("The time for photos is quick, normal or best, not " + quote_word(word) + ".");
 }
 
+std::string claim_folder(const std::string& out, const std::string& photos) {
+    std::error_code failure;
+    const fs::path whole = fs::absolute(path_of(out), failure).lexically_normal();
+    if (failure) throw Error("The folder '" + out + "' cannot be reached.");
+    if (fs::equivalent(whole, path_of(photos), failure))
+        throw Error("'" + utf8_of(whole) +
+                    "' is the folder of the photos itself; name another one to write to.");
+    const fs::path work = whole / "colmap";
+    const bool ours = fs::exists(work / "lock", failure) ||
+                      (fs::is_directory(work, failure) && fs::is_empty(work, failure));
+    for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log"})
+        if (!ours && fs::exists(whole / name, failure))
+            throw Error(
+                "'" + utf8_of(whole / name) +
+                "' is there already, and is not from photos that were worked on here; it was left as it "
+                "is. Name another folder to write to.");
+    make_folder(utf8_of(work));
+    return utf8_of(whole);
+}
+
 ColmapRun run_colmap(const std::string& folder, const std::string& out, const ColmapOptions& options,
                      Progress* progress) {
     if (progress) progress->update(0.0, "Photos");
     const PhotoFolder photos = list_photos(folder);
     if (photos.photos.size() < kLeastPhotos) throw too_few_photos(photos.photos.size(), folder);
     Colmap colmap = find_colmap(options.program, progress);
-    std::error_code failure;
-    const fs::path whole = fs::absolute(path_of(out), failure).lexically_normal();
-    if (failure) throw Error("The folder '" + out + "' cannot be reached.");
-    require_own_folder(whole, photos.path);
-    make_folder(utf8_of(whole / "colmap"));
+    const fs::path whole = path_of(claim_folder(out, photos.path));
     FolderLock lock(utf8_of(whole / "colmap" / "lock"));
     ColmapJob job(std::move(colmap), utf8_of(whole / "photos.log"), lock, progress);
     ColmapWork work{job, photos, options, whole / "colmap", whole / "sparse"};

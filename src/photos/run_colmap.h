@@ -53,6 +53,10 @@ struct ColmapRun {
     std::vector<std::string> warnings;    // what could be done better, as sentences
 };
 
+// The absolute path of `out`, which is made, with colmap/ in it. Throws Error where it is the folder of the
+// photos, or has things of our names in it that are not ours.
+std::string claim_folder(const std::string& out, const std::string& photos);
+
 // Runs COLMAP's stages in out/colmap and leaves the model in out/sparse/0, everything that COLMAP says in
 // out/photos.log, and nothing outside of `out`; the photos are only read. Stages that ended with the same
 // photos and options are not done again, one that was killed goes on. Counts photos in `progress`. Throws

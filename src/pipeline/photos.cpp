@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "file_bytes.h"
+#include "photos/film_frames.h"
 #include "photos/photo_folder.h"
 #include "photos/run_stage.h"
 
@@ -11,6 +12,7 @@ namespace treerec {
 
 namespace {
 
+constexpr double kFilmEnd = 0.1;
 constexpr double kColmapEnd = 0.6;
 constexpr double kCloudEnd = 0.95;
 
@@ -82,12 +84,22 @@ DensifyOptions densify_options_of(PhotoEffort effort) {
     return {};
 }
 
-PhotosResult reconstruct_photos(const std::string& folder, const std::string& out,
+PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,
                                 const PhotosOptions& options, Progress* progress) {
     PhotosResult result;
-    SubProgress placing(progress, 0.0, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
+    std::string folder = photos;
+    ColmapOptions colmap = options.colmap;
+    double begin = 0.0;
+    if (const std::optional<std::string> film = film_of(photos)) {
+        begin = kFilmEnd;
+        SubProgress taking(progress, 0.0, kFilmEnd);
+        folder = photos_of_film(*film, out, &taking).folder;
+        // Frames are in the order of the walk.
+        if (colmap.order == PhotoOrder::kAuto) colmap.order = PhotoOrder::kSequence;
+    }
+    SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
         growing(progress, kCloudEnd, 1.0);
-    result.photos = run_colmap(folder, out, options.colmap, &placing);
+    result.photos = run_colmap(folder, out, colmap, &placing);
     making.update(0.0, "Cloud");
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);

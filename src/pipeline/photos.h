@@ -26,10 +26,12 @@ struct PhotosResult {
     std::string cloud;  // the file that the tree was made of, in `out`
 };
 
-// Places the cameras (photos/run_colmap.h), makes out/cloud.ply, with COLMAP's model beside it in
-// out/sparse/0, and a tree of that. What is there already from the same photos and options is taken: the tree
-// alone may be made again with a known length or height. Throws Error with a sentence, or Cancelled.
-PhotosResult reconstruct_photos(const std::string& folder, const std::string& out,
+// photos: their folder, or a film of a walk around the tree, or a folder with one, whose frames become photos
+// in out/frames (photos/film_frames.h). Places the cameras (photos/run_colmap.h), makes out/cloud.ply, with
+// COLMAP's model beside it in out/sparse/0, and a tree of that. What is there already from the same photos
+// and options is taken: the tree alone may be made again with a known length or height. Throws Error with a
+// sentence, or Cancelled.
+PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,
                                 const PhotosOptions& options, Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -166,6 +166,25 @@ func test_what_goes_wrong_is_said() -> void:
 	_shut()
 
 
+func test_a_film_stands_for_its_photos() -> void:
+	_open()
+	var film: String = folder.path_join("phone/My Walk.MOV")
+	DirAccess.make_dir_recursive_absolute(film.get_base_dir())
+	PhotoFiles.write(film, "no film".to_utf8_buffer())
+	for path: String in [film, film.get_base_dir()]:
+		_panel.show_folder(path)
+		check("film" in _panel.message.text, "It says: " + _panel.message.text)
+		check(not _panel.begin.disabled, "It can't be begun: " + _panel.begin.tooltip_text)
+	_panel.show_folder(film)
+	check_equal(_panel._target.text, "res://my_walk.res", "the tree's file")
+	_panel._target.text = TARGET
+	_panel.begin.pressed.emit()
+	await _wait()
+	check(_made == null, "It made a tree of words.")
+	check("ffmpeg" in _panel.message.text, "It says: " + _panel.message.text)
+	_shut()
+
+
 func test_every_control_says_what_it_is() -> void:
 	_open()
 	for control: Node in _panel.find_children("*", "Control", true, false):

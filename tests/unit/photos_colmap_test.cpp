@@ -227,7 +227,7 @@ TEST_F(RunColmap, WhatIsNoPhotoIsASentence) {
         return sentence();
     };
     EXPECT_TRUE(has(only("IMG_1.HEIC"), "heif-convert"));
-    EXPECT_TRUE(has(only("walk.MOV"), "ffmpeg"));
+    EXPECT_TRUE(has(only("walk.MOV"), "no photos"));
     EXPECT_TRUE(has(only("scan.ply"), "There are no photos"));
     fs::remove_all(folder_ / "photos");
     EXPECT_TRUE(has(sentence(), "is no folder"));

@@ -75,6 +75,7 @@ func get_stage() -> String:
 	if job == null or job.stage.is_empty():
 		return ""
 	var stages: Dictionary[String, String] = {
+		"Film": tr("Taking photos out of the film"),
 		"Features": tr("Looking for features"),
 		"Matching": tr("Comparing photos"),
 		"Cameras": tr("Finding the cameras"),

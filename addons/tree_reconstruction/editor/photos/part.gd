@@ -6,7 +6,7 @@ extends RefCounted
 const Session := preload("../session.gd")
 const PhotosPanel := preload("photos_panel.gd")
 const Menu := preload("folder_menu.gd")
-const Files := preload("../dock/files.gd")
+const PhotoFolder := preload("photo_folder.gd")
 const SceneAdder := preload("../import/scene_adder.gd")
 const FreePlace := preload("../import/free_place.gd")
 
@@ -113,8 +113,12 @@ func _choose_folder() -> void:
 	_chooser = EditorFileDialog.new()
 	_chooser.title = tr("Choose Photos")
 	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_DIR
+	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_ANY
+	_chooser.filters = PackedStringArray(
+		["*." + ", *.".join(PhotoFolder.FILMS) + ";" + tr("Films")]
+	)
 	_chooser.dir_selected.connect(panel.show_folder)
+	_chooser.file_selected.connect(panel.show_folder)
 	window.add_child(_chooser)
 	_chooser.popup_centered_clamped(Vector2i(900, 600))
 
@@ -125,12 +129,15 @@ func _close_chooser() -> void:
 	_chooser = null
 
 
-# A folder, or photos out of one.
+# A folder, a film, or photos out of one folder.
 func _on_dropped(files: PackedStringArray) -> void:
 	if files.is_empty():
 		return
 	var first: String = files[0]
-	panel.show_folder(first if DirAccess.dir_exists_absolute(first) else first.get_base_dir())
+	var is_whole: bool = (
+		DirAccess.dir_exists_absolute(first) or not PhotoFolder.film_of(first).is_empty()
+	)
+	panel.show_folder(first if is_whole else first.get_base_dir())
 
 
 static func _add_setting(settings: EditorSettings) -> void:

@@ -4,6 +4,8 @@ extends RefCounted
 
 ## What COLMAP reads.
 const PHOTOS: PackedStringArray = ["jpg", "jpeg", "png", "tif", "tiff", "bmp"]
+## What ffmpeg takes photos out of.
+const FILMS: PackedStringArray = ["mp4", "mov", "m4v", "avi", "mkv", "webm"]
 ## Fewer are never enough.
 const LEAST: int = 8
 
@@ -25,9 +27,26 @@ static func list(folder: String) -> PackedStringArray:
 	return found
 
 
+## The film that [param path] means: itself, or the only one in a folder without photos; nothing
+## where it is none.
+static func film_of(path: String) -> String:
+	if path.get_extension().to_lower() in FILMS and FileAccess.file_exists(path):
+		return path
+	if path.is_empty() or not DirAccess.dir_exists_absolute(path) or not list(path).is_empty():
+		return ""
+	var films: PackedStringArray = []
+	for name: String in DirAccess.get_files_at(path):
+		if name.get_extension().to_lower() in FILMS:
+			films.append(path.path_join(name))
+	return films[0] if films.size() == 1 else ""
+
+
 ## A name for the tree of [param folder], as a file of the project that is not there yet.
 static func free_tree_path(folder: String) -> String:
-	var name: String = folder.trim_suffix("/").get_file().validate_filename().to_snake_case()
+	var name: String = folder.trim_suffix("/").get_file()
+	if name.get_extension().to_lower() in FILMS:
+		name = name.get_basename()
+	name = name.validate_filename().to_snake_case()
 	var base: String = "res://" + ("tree" if name.is_empty() else name)
 	for i: int in _MOST_TRIES:
 		var path: String = "%s%s.res" % [base, "" if i == 0 else "_%d" % (i + 1)]

@@ -34,6 +34,8 @@ var message: Label = Widgets.sentence()
 var _session: Session
 var _folder: String = ""
 var _names: PackedStringArray = []
+# Where the photos come out of one.
+var _film: String = ""
 var _place: LineEdit = LineEdit.new()
 var _browse: Button
 var _time: OptionButton
@@ -81,6 +83,7 @@ func show_folder(folder: String) -> void:
 	_folder = folder.trim_suffix("/") if folder.length() > 1 else folder
 	_place.text = _folder
 	_names = PhotoFolder.list(_folder)
+	_film = PhotoFolder.film_of(_folder)
 	_log = null
 	_log_text.text = ""
 	circle.visible = false
@@ -111,11 +114,16 @@ func update() -> void:
 func _add_folder() -> void:
 	var line: HBoxContainer = HBoxContainer.new()
 	_place.editable = false
-	_place.placeholder_text = tr("Choose a folder of photos, or drop it here")
+	_place.placeholder_text = tr("Choose a folder of photos or a film, or drop it here")
 	_place.tooltip_text = tr("The folder of the photos, from all around one tree.")
 	_place.size_flags_horizontal = Control.SIZE_EXPAND_FILL
-	_browse = Widgets.button(
-		"Choose Photos…", "Chooses the folder of the photos. They are only read.", &"Folder"
+	_browse = (
+		Widgets
+		. button(
+			"Choose Photos…",
+			"Chooses the folder of the photos, or a film of a walk around the tree. They are only read.",
+			&"Folder"
+		)
 	)
 	_browse.pressed.connect(folder_wanted.emit)
 	line.add_child(_place)
@@ -302,6 +310,16 @@ func _tell_folder() -> void:
 			),
 			&"font_color"
 		)
+	elif not _film.is_empty():
+		_say(
+			tr(
+				(
+					"A film: photos are taken out of it, one for each step of the walk. The program ffmpeg,"
+					+ " which is installed apart, does that."
+				)
+			),
+			&"font_color"
+		)
 	elif _names.is_empty():
 		_say(tr("There are no photos in this folder (JPEG, PNG, TIFF or BMP)."), &"warning_color")
 	elif _names.size() < PhotoFolder.LEAST:
@@ -360,7 +378,7 @@ func _tip() -> String:
 
 # Why it can't begin; nothing if it can.
 func _problem() -> String:
-	if _names.size() < PhotoFolder.LEAST:
+	if _film.is_empty() and _names.size() < PhotoFolder.LEAST:
 		return tr("Choose a folder with 8 photos or more first.")
 	var path: String = _target.text
 	if not path.begins_with("res://") or path.get_extension() not in ["res", "tres"]:

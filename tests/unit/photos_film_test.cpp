@@ -1,0 +1,216 @@
+// Films that become photos.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "cli_runner.h"
+#include "error.h"
+#include "geometry/random.h"
+#include "photos/choose_frames.h"
+#include "photos/film_frames.h"
+#include "photos_standin.h"
+
+namespace treerec {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A wall of blurred noise, wider than any picture of it.
+Image wall(uint64_t seed) {
+    Random random(seed);
+    Image picture(1600, 120, 1);
+    for (uint8_t& pixel : picture.pixels)
+        pixel = static_cast<uint8_t>(255.0 * random.uniform());
+    for (int times = 0; times < 2; times++)
+        for (int y = 0; y < picture.height; y++)
+            for (int x = 1; x + 1 < picture.width; x++)
+                *picture.at(x, y) = static_cast<uint8_t>(
+                    (*picture.at(x - 1, y) + 2 * *picture.at(x, y) + *picture.at(x + 1, y)) / 4);
+    return picture;
+}
+
+// What is seen of it from `left`, a part of a pixel counted.
+Image view(const Image& wall, double left, int width = 160, int height = 90) {
+    Image picture(width, height, 1);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const double at = left + x;
+            const int whole = static_cast<int>(std::floor(at));
+            const double part = at - whole;
+            *picture.at(x, y) = static_cast<uint8_t>(
+                std::lround((1.0 - part) * *wall.at(whole, y) + part * *wall.at(whole + 1, y)));
+        }
+    return picture;
+}
+
+TEST(PhotosFilm, MotionIsFoundToAPartOfAPixel) {
+    const Image all = wall(3);
+    for (const double moved : {0.0, 0.4, -1.3, 3.0, -6.75, 8.5}) {
+        const double found = motion_between(view(all, 400.0), view(all, 400.0 - moved)) * 160.0;
+        EXPECT_NEAR(found, moved, 0.25) << moved;
+    }
+    // An even sky tells nothing, and what stays before a background that moves does not count.
+    EXPECT_EQ(motion_between(Image(160, 90, 1), Image(160, 90, 1)), 0.0);
+    Image before = view(all, 400.0), after = view(all, 396.0);
+    for (int y = 0; y < 90; y++)
+        for (int x = 48; x < 112; x++)
+            *before.at(x, y) = *after.at(x, y) = *all.at(x, y);
+    EXPECT_NEAR(motion_between(before, after) * 160.0, 4.0, 0.25);
+    EXPECT_EQ(motion_between(Image(16, 16, 1), Image(17, 16, 1)), 0.0);
+}
+
+TEST(PhotosFilm, SharpnessFallsWithBlur) {
+    const Image sharp = view(wall(5), 100.0);
+    Image blurred = sharp;
+    for (int y = 0; y < sharp.height; y++)
+        for (int x = 2; x + 2 < sharp.width; x++) {
+            int sum = 0;
+            for (int k = -2; k <= 2; k++)
+                sum += *sharp.at(x + k, y);
+            *blurred.at(x, y) = static_cast<uint8_t>(sum / 5);
+        }
+    EXPECT_LT(sharpness_of(blurred), 0.5 * sharpness_of(sharp));
+    EXPECT_EQ(sharpness_of(Image(1, 1, 1)), 0.0);
+}
+
+// Random walks: the frames are a step apart, whatever shakes and stops there were.
+TEST(PhotosFilm, FramesAreAStepOfTheWalkApart) {
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        Random random(seed);
+        const double pace = 0.004 + 0.02 * random.uniform(), side = random.uniform() < 0.5 ? -1.0 : 1.0;
+        std::vector<FrameLook> frames;
+        std::vector<double> way;
+        double at = 0.0;
+        bool walks = true;
+        for (int i = 0; i < 600; i++) {
+            if (random.uniform() < 0.02) walks = !walks;
+            const double shake = i % 2 ? 0.003 : -0.003;
+            frames.push_back({side * (walks ? pace : 0.0) + shake, random.uniform()});
+            at += walks ? pace : 0.0;
+            way.push_back(at);
+        }
+        const FrameChoice choice;
+        const std::vector<size_t> chosen = choose_frames(frames, choice);
+        if (at < 0.3) {
+            EXPECT_TRUE(chosen.empty()) << seed;
+            continue;
+        }
+        if (at < 1.0) continue;
+        EXPECT_LE(chosen.size(), choice.most) << seed;
+        EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+        const double step = at / std::clamp(at / choice.step, 48.0, 120.0);
+        for (size_t k = 1; k < chosen.size(); k++)
+            EXPECT_LT(way[chosen[k]] - way[chosen[k - 1]], 2.0 * step + 5.0 * pace) << seed;
+        // No frame of a pair within a step is sharper.
+        EXPECT_EQ(choose_frames(frames, choice), chosen);
+    }
+}
+
+TEST(PhotosFilm, OddFilmsAreNone) {
+    EXPECT_TRUE(choose_frames({}).empty());
+    const std::vector<FrameLook> still(500, FrameLook{0.0, 1.0});
+    EXPECT_TRUE(choose_frames(still).empty());
+    std::vector<FrameLook> shaken(500);
+    for (size_t i = 0; i < shaken.size(); i++)
+        shaken[i] = {i % 2 ? 0.02 : -0.02, 1.0};
+    EXPECT_TRUE(choose_frames(shaken).empty());
+    std::vector<FrameLook> broken(500, FrameLook{0.01, 1.0});
+    broken[7] = {NAN, NAN};
+    EXPECT_FALSE(choose_frames(broken).empty());
+}
+
+class PhotosFilmFile : public test::WithStandIn<test::Cli> {
+  protected:
+    // Makes a film of a walk past a wall with ffmpeg; false where that is not installed.
+    bool film(const std::string& name, int frames, double pace) const {
+        if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) return false;
+        const Image all = wall(11);
+        std::ofstream out(folder_ / "frames.pgm", std::ios::binary);
+        for (int i = 0; i < frames; i++) {
+            const Image picture = view(all, 10.0 + pace * i, 320, 96);
+            out << "P5\n320 96\n255\n";
+            out.write(reinterpret_cast<const char*>(picture.pixels.data()),
+                      static_cast<std::streamsize>(picture.pixels.size()));
+        }
+        out.close();
+        const std::string command =
+            "cd '" + folder_.string() +
+            "' && ffmpeg -v error -y -f image2pipe -framerate 10 -c:v pgm -i frames.pgm "
+            "-c:v mpeg4 -q:v 2 film.mp4 && mv film.mp4 \"./$NAME\"";
+        ::setenv("NAME", name.c_str(), 1);
+        return std::system(command.c_str()) == 0;
+    }
+};
+
+TEST_F(PhotosFilmFile, AWalkBecomesPhotos) {
+    // A name that is no option, no pattern and no word of ASCII.
+    const std::string name = "-walk 100% 'дуб'.mp4";
+    if (!film(name, 300, 4.0)) GTEST_SKIP() << "ffmpeg is not installed.";
+    const FilmPhotos photos = photos_of_film(path(name), path("out"));
+    EXPECT_GE(photos.photos, 45U);
+    EXPECT_LE(photos.photos, 120U);
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "frames" / "frame_0001.jpg"));
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap" / "film.pgm"));
+    const auto written = fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg");
+    EXPECT_EQ(photos_of_film(path(name), path("out")).photos, photos.photos);
+    EXPECT_EQ(fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg"), written);
+    // A folder with it in it means the same.
+    fs::create_directories(folder_ / "phone");
+    fs::rename(folder_ / name, folder_ / "phone" / name);
+    ASSERT_TRUE(film_of(path("phone")));
+    fs::copy_file(folder_ / "phone" / name, folder_ / "phone" / "b.mov");
+    EXPECT_THROW(film_of(path("phone")), Error);
+    fs::copy_file(folder_ / "photos" / "a.jpg", folder_ / "phone" / "a.jpg");
+    EXPECT_FALSE(film_of(path("phone")));
+}
+
+TEST_F(PhotosFilmFile, TheProgramTakesAFilm) {
+    if (!film("walk.mp4", 300, 4.0)) GTEST_SKIP() << "ffmpeg is not installed.";
+    // The stand-in's model is of these photos.
+    std::vector<std::string> names;
+    for (int i = 1; i <= 12; i++) {
+        char name[32];
+        std::snprintf(name, sizeof name, "frame_%04d.jpg", i);
+        names.emplace_back(name);
+    }
+    fs::remove_all(folder_ / "models");
+    test::write_tiny_model(folder_ / "models" / "0", {names});
+    const test::Outcome outcome = run("photos walk.mp4 -o out --sparse");
+    EXPECT_EQ(outcome.code, 0) << outcome.error;
+    EXPECT_NE(outcome.error.find("Film"), std::string::npos) << outcome.error;
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "tree.glb"));
+    bool sequence = false;
+    for (const Words& call : calls())
+        sequence = sequence || call[0] == "sequential_matcher";
+    EXPECT_TRUE(sequence) << "The frames were not taken for a sequence.";
+}
+
+TEST_F(PhotosFilmFile, WhatIsNoFilmIsTold) {
+    std::ofstream(folder_ / "words.mp4") << "no film at all";
+    const auto sentence_of = [&](const std::string& name) {
+        try {
+            photos_of_film(path(name), path("out"));
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    ::setenv("FFMPEG", path("nowhere").c_str(), 1);
+    EXPECT_NE(sentence_of("words.mp4").find("$FFMPEG"), std::string::npos);
+    ::unsetenv("FFMPEG");
+    EXPECT_NE(sentence_of("none.mp4").find("no film"), std::string::npos);
+    if (!film("still.mp4", 40, 0.0)) GTEST_SKIP() << "ffmpeg is not installed.";
+    EXPECT_NE(sentence_of("words.mp4").find("is no film"), std::string::npos) << sentence_of("words.mp4");
+    EXPECT_NE(sentence_of("still.mp4").find("no walk"), std::string::npos) << sentence_of("still.mp4");
+    // What somebody else put there stays.
+    fs::create_directories(folder_ / "mine" / "colmap");
+    fs::create_directories(folder_ / "mine" / "frames");
+    EXPECT_THROW(photos_of_film(path("still.mp4"), path("mine")), Error);
+    EXPECT_TRUE(fs::exists(folder_ / "mine" / "frames"));
+}
+
+}  // namespace
+}  // namespace treerec
