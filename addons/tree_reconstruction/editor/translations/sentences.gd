@@ -203,6 +203,52 @@ const PATTERNS: PackedStringArray = [
 		"The file names its coordinate system without its unit; its units were taken for metres. If they"
 		+ " are feet, set the unit (in the Import dock: Unit)."
 	),
+	# Of photos.
+	"COLMAP, which finds out where photos were taken from, is not on this machine. %s",
+	"There is no program COLMAP at '%s'. %s",
+	"Install it ('sudo apt install colmap' on Debian and Ubuntu), or name the program.",
+	"Install it with 'brew install colmap', or name the program.",
+	(
+		"Unpack COLMAP for Windows from its releases page (github.com/colmap/colmap) into a folder"
+		+ " C:\\COLMAP, or name its folder."
+	),
+	(
+		"COLMAP could not find out where any of the %s photos was taken from: they overlap too"
+		+ " little, or do not show the same thing. %s"
+	),
+	(
+		"COLMAP could not find out where any of the %s photos was taken from: there is little in"
+		+ " them to recognise (%s features in a usual one, where sharp photos of bark and leaves have"
+		+ " thousands). They are blurred, dark or small, or show something smooth, such as a wall or"
+		+ " the sky."
+	),
+	(
+		"Walk around the tree and take a photo every 10 to 15 degrees (24 to 36 for the circle), each"
+		+ " showing most of what the one before it shows."
+	),
+	(
+		"The photos show two scenes that nothing joins, of %s and %s photos; the first one was taken."
+		+ " Add photos that lead from one to the other, or take those of the other tree out of the"
+		+ " folder."
+	),
+	(
+		"COLMAP found out where %s of %s photos were taken from; the others (%s) overlap too little"
+		+ " with these, or are blurred."
+	),
+	(
+		"The circle of photos around the tree is open for %s degrees, between %s and %s: what is seen"
+		+ " from there alone is missing. Add photos there, one every 10 to 15 degrees."
+	),
+	"%s of the photos could not be read; open them, and save them again.",
+	(
+		"The film '%s' shows no walk around a tree: too little moves in it. Walk all the way around,"
+		+ " and film a minute or so."
+	),
+	(
+		"Taking photos out of a film needs the program ffmpeg, which is not on this machine. %s Or"
+		+ " take the photos out of it by another program."
+	),
+	"'%s' is no film that ffmpeg can read (it says: %s).",
 	# The library of twigs.
 	"Apple",
 	"Birch",
