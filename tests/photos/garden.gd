@@ -1,0 +1,255 @@
+extends SceneTree
+## Photographs a tree whose every branch is known, in a garden, as a walker with a phone would: into
+## a folder of JPEGs, with the truth beside it. Needs a renderer:
+##
+##     godot --path project --script tests/photos/garden.gd -- TRUTH.txt FOLDER [--photos=40]
+##         [--leafy] [--width=1600] [--seed=1]
+##
+## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
+## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it) and the focal
+## length in pixels.
+
+# The long side of a photo by its short one.
+const SHAPE: float = 1.5
+# Of the short side, in degrees: a phone held upright.
+const FOV: float = 50.0
+# Radial distortion of a phone's lens: r (1 + K r²) of the picture's half width.
+const DISTORTION: float = -0.03
+# How unlike each other the exposures are, in stops.
+const STOPS: float = 0.25
+# How much of a photo's height the tree takes.
+const FILLING: float = 0.8
+
+const LENS: String = """
+shader_type canvas_item;
+uniform sampler2D scene : filter_linear;
+uniform float distortion;
+uniform float exposure;
+uniform vec2 shape;
+void fragment() {
+	vec2 at = (UV - 0.5) * 2.0 * shape / shape.x;
+	vec2 from = at * (1.0 + distortion * dot(at, at));
+	COLOR = vec4(texture(scene, from * shape.x / shape / 2.0 + 0.5).rgb * exposure, 1.0);
+}
+"""
+
+var _random: RandomNumberGenerator = RandomNumberGenerator.new()
+var _scene: SubViewport = SubViewport.new()
+var _lens: SubViewport = SubViewport.new()
+var _material: ShaderMaterial = ShaderMaterial.new()
+var _camera: Camera3D = Camera3D.new()
+var _options: Dictionary[String, String] = {}
+var _words: PackedStringArray = []
+
+
+func _initialize() -> void:
+	for word: String in OS.get_cmdline_user_args():
+		if word.begins_with("--"):
+			_options[word.trim_prefix("--").get_slice("=", 0)] = word.get_slice("=", 1)
+		else:
+			_words.append(word)
+	if _words.size() != 2:
+		printerr("A tree file and a folder are needed.")
+		quit(2)
+		return
+	_photograph.call_deferred()
+
+
+func _option(name: String, standard: int) -> int:
+	return _options.get(name, str(standard)).to_int()
+
+
+func _photograph() -> void:
+	_random.seed = _option("seed", 1)
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var tree: TreeReconstruction = worker.import_skeleton(_words[0])
+	if tree == null:
+		printerr(worker.get_error_message())
+		quit(1)
+		return
+	var width: int = _option("width", 1600)
+	_build(tree, Vector2i(width, roundi(width * SHAPE)))
+	for frame: int in 30:
+		await process_frame
+	while (_scene.get_node(^"Tree") as TreeInstance3D).is_rebuilding():
+		await process_frame
+	var folder: String = _words[1]
+	DirAccess.make_dir_recursive_absolute(folder.path_join("photos"))
+	var box: AABB = tree.get_aabb()
+	var cameras: Array[Dictionary] = []
+	var count: int = _option("photos", 40)
+	for i: int in count:
+		var at: Vector3 = _place(i, count, box)
+		# A hand is not quite steady.
+		var aim: Vector3 = box.get_center() + Vector3(0.0, -0.02 * box.size.y, 0.0)
+		aim += _shake(0.02 * box.size.y)
+		_camera.look_at_from_position(at, aim)
+		_camera.rotate_object_local(Vector3.BACK, _random.randfn(0.0, deg_to_rad(1.5)))
+		_material.set_shader_parameter(&"exposure", pow(2.0, _random.randf_range(-STOPS, STOPS)))
+		# The second picture shows what the first viewport drew for this place.
+		for frame: int in 3:
+			await RenderingServer.frame_post_draw
+		var name: String = "IMG_%04d.jpg" % (i + 101)
+		_lens.get_texture().get_image().save_jpg(folder.path_join("photos").path_join(name), 0.92)
+		# Y up in the engine, Z up in the file.
+		cameras.append({"name": name, "centre": [at.x, -at.z, at.y]})
+		print("%d of %d" % [i + 1, count])
+	var focal: float = width * 0.5 / tan(deg_to_rad(FOV) * 0.5)
+	var file: FileAccess = FileAccess.open(folder.path_join("cameras.json"), FileAccess.WRITE)
+	file.store_string(
+		JSON.stringify(
+			{"focal_pixels": focal, "width": width, "height": width * SHAPE, "cameras": cameras},
+			"\t"
+		)
+	)
+	file.close()
+	quit(0)
+
+
+# On a walk round the tree: never quite as far away, never quite as high.
+func _place(i: int, count: int, box: AABB) -> Vector3:
+	var vertical: float = 2.0 * atan(tan(deg_to_rad(FOV) * 0.5) * SHAPE)
+	var away: float = maxf(
+		box.size.y / FILLING / (2.0 * tan(vertical * 0.5)),
+		0.5 * maxf(box.size.x, box.size.z) / FILLING / tan(deg_to_rad(FOV) * 0.5)
+	)
+	var angle: float = TAU * (i + _random.randf_range(-0.2, 0.2)) / count
+	var out: Vector3 = Vector3.RIGHT.rotated(Vector3.UP, angle)
+	var at: Vector3 = out * away * _random.randf_range(0.95, 1.05)
+	return at + Vector3.UP * (1.6 + _random.randf_range(-0.15, 0.15))
+
+
+func _shake(most: float) -> Vector3:
+	return Vector3(
+		_random.randf_range(-most, most),
+		_random.randf_range(-most, most),
+		_random.randf_range(-most, most)
+	)
+
+
+func _build(tree: TreeReconstruction, size: Vector2i) -> void:
+	_scene.size = size
+	_scene.own_world_3d = true
+	_scene.msaa_3d = Viewport.MSAA_4X
+	_scene.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	root.add_child(_scene)
+	_camera.fov = FOV
+	_camera.keep_aspect = Camera3D.KEEP_WIDTH
+	_camera.far = 300.0
+	_scene.add_child(_camera)
+	var leafy: bool = _options.has("leafy")
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.name = "Tree"
+	node.lod = 0
+	node.wind = leafy
+	node.leaves = leafy
+	tree.leaf_preset = "oak"
+	node.reconstruction = tree
+	_scene.add_child(node)
+	_add_light()
+	_add_ground()
+	_add_things(tree.get_aabb())
+	_add_lens(size)
+
+
+func _add_light() -> void:
+	var world: WorldEnvironment = WorldEnvironment.new()
+	world.environment = Environment.new()
+	world.environment.background_mode = Environment.BG_COLOR
+	# A grey day.
+	world.environment.background_color = Color(0.78, 0.8, 0.83)
+	world.environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
+	world.environment.ambient_light_color = Color.WHITE
+	world.environment.ambient_light_energy = 0.6
+	_scene.add_child(world)
+	var sun: DirectionalLight3D = DirectionalLight3D.new()
+	sun.rotation_degrees = Vector3(-55, 30, 0)
+	sun.light_energy = 0.7
+	_scene.add_child(sun)
+
+
+# What looks different everywhere, from near and from afar.
+func _noise(low: Color, high: Color, scale: float) -> StandardMaterial3D:
+	var noise: FastNoiseLite = FastNoiseLite.new()
+	noise.seed = _random.randi()
+	noise.frequency = 0.02
+	noise.fractal_octaves = 6
+	noise.fractal_gain = 0.7
+	var ramp: Gradient = Gradient.new()
+	ramp.set_color(0, low)
+	ramp.set_color(1, high)
+	var picture: Image = noise.get_seamless_image(1024, 1024)
+	var colored: Image = Image.create_empty(1024, 1024, false, Image.FORMAT_RGB8)
+	for y: int in 1024:
+		for x: int in 1024:
+			colored.set_pixel(x, y, ramp.sample(picture.get_pixel(x, y).r))
+	colored.generate_mipmaps()
+	var material: StandardMaterial3D = StandardMaterial3D.new()
+	material.albedo_texture = ImageTexture.create_from_image(colored)
+	material.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
+	material.roughness = 1.0
+	material.uv1_triplanar = true
+	material.uv1_world_triplanar = true
+	material.uv1_scale = Vector3.ONE * scale
+	return material
+
+
+func _add_box(at: Vector3, size: Vector3, material: Material, turn: float = 0.0) -> void:
+	var box: MeshInstance3D = MeshInstance3D.new()
+	var mesh: BoxMesh = BoxMesh.new()
+	mesh.size = size
+	box.mesh = mesh
+	box.material_override = material
+	box.position = at
+	box.rotation.y = turn
+	_scene.add_child(box)
+
+
+func _add_ground() -> void:
+	_add_box(
+		Vector3(0, -0.5, 0),
+		Vector3(200, 1, 200),
+		_noise(Color(0.12, 0.16, 0.05), Color(0.5, 0.52, 0.3), 0.35)
+	)
+
+
+func _add_things(box: AABB) -> void:
+	var wood: StandardMaterial3D = _noise(Color(0.25, 0.17, 0.1), Color(0.62, 0.5, 0.36), 1.2)
+	var stone: StandardMaterial3D = _noise(Color(0.3, 0.3, 0.3), Color(0.75, 0.73, 0.7), 0.6)
+	var hedge: StandardMaterial3D = _noise(Color(0.05, 0.1, 0.03), Color(0.4, 0.5, 0.2), 0.5)
+	# A bench beside the trunk.
+	var aside: Vector3 = Vector3(1.4, 0, 0.9)
+	for k: int in 4:
+		_add_box(aside + Vector3(0, 0.45, 0.13 * k), Vector3(1.5, 0.04, 0.1), wood)
+	for leg: float in [-0.65, 0.65]:
+		_add_box(aside + Vector3(leg, 0.22, 0.2), Vector3(0.08, 0.44, 0.4), wood)
+	# A fence, a hedge and houses, farther away than anybody walks.
+	var around: float = 2.2 * maxf(box.size.y, box.size.x) + 6.0
+	for k: int in 60:
+		var angle: float = TAU * k / 60.0
+		var at: Vector3 = Vector3(cos(angle), 0, sin(angle)) * around
+		if k % 3 == 0:
+			var height: float = _random.randf_range(2.0, 7.0)
+			_add_box(
+				at * 1.3 + Vector3.UP * height * 0.5,
+				Vector3(_random.randf_range(2, 6), height, _random.randf_range(2, 4)),
+				hedge if k % 2 == 0 else stone,
+				-angle
+			)
+		_add_box(at + Vector3.UP * 0.6, Vector3(0.12, 1.2, around * TAU / 75.0), wood, -angle)
+
+
+func _add_lens(size: Vector2i) -> void:
+	_lens.size = size
+	_lens.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	root.add_child(_lens)
+	var shader: Shader = Shader.new()
+	shader.code = LENS
+	_material.shader = shader
+	_material.set_shader_parameter(&"scene", _scene.get_texture())
+	_material.set_shader_parameter(&"distortion", DISTORTION)
+	_material.set_shader_parameter(&"shape", Vector2(size))
+	var glass: ColorRect = ColorRect.new()
+	glass.size = size
+	glass.material = _material
+	_lens.add_child(glass)
