@@ -105,9 +105,8 @@ Json photos_json(const ReportDetails& details) {
         cameras.push_back({{"name", camera.name}, {"degrees", camera.degrees}, {"away", camera.away}});
     Json gap;
     if (run.widest_gap)
-        gap = {{"degrees", run.widest_gap->degrees},
-               {"from", run.widest_gap->from},
-               {"to", run.widest_gap->to}};
+        gap = {
+            {"degrees", run.widest_gap->degrees}, {"from", run.widest_gap->from}, {"to", run.widest_gap->to}};
     return {{"photos", run.photos},  {"placed", run.registered},     {"missing", run.missing},
             {"colmap", run.version}, {"pairs", details.photo_pairs}, {"widest_gap", gap},
             {"cameras", cameras}};
