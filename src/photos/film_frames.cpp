@@ -246,7 +246,11 @@ std::string pattern_in(const fs::path& folder) {
 std::optional<std::string> film_of(const std::string& input) {
     std::error_code failure;
     const fs::path place = path_of(input);
-    if (fs::is_regular_file(place, failure)) return input;
+    if (fs::is_regular_file(place, failure)) {
+        if (is_photo_name(input))
+            throw Error("'" + input + "' is a single photo; name the folder that it is in.");
+        return input;
+    }
     if (!fs::is_directory(place, failure)) return {};
     std::vector<std::string> films;
     for (fs::directory_iterator at(place, failure), end; !failure && at != end; at.increment(failure)) {

@@ -201,6 +201,7 @@ TEST_F(PhotosFilmFile, WhatIsNoFilmIsTold) {
     ::setenv("FFMPEG", path("nowhere").c_str(), 1);
     EXPECT_NE(sentence_of("words.mp4").find("$FFMPEG"), std::string::npos);
     ::unsetenv("FFMPEG");
+    EXPECT_THROW(film_of(path("photos/a.jpg")), Error);
     EXPECT_NE(sentence_of("none.mp4").find("no film"), std::string::npos);
     if (!film("still.mp4", 40, 0.0)) GTEST_SKIP() << "ffmpeg is not installed.";
     EXPECT_NE(sentence_of("words.mp4").find("is no film"), std::string::npos) << sentence_of("words.mp4");
