@@ -3,6 +3,8 @@ extends "./picture_suite.gd"
 
 const WindRest: GDScript = preload("res://addons/tree_reconstruction/editor/viewport/wind_rest.gd")
 const SIZE: Vector2i = Vector2i(240, 240)
+# Within so many looks at it one bends what it blows at.
+const MOST_GUSTS: int = 12
 
 var _instance: TreeInstance3D
 var _wind: TreeWind
@@ -71,9 +73,18 @@ func test_what_is_bent_over_the_border_is_drawn() -> void:
 		)
 		# The picture begins where the tree at rest ends.
 		_camera.position.x = rest.end.x + 0.5 * _camera.size + 0.005
-		var bent: Image = await _settled()
-		shown.visible = false
-		var change: float = _change(bent, await _settled())
+		var change: float = 0.0
+		# Where the clock of all tests stands, a gust may just have let go of it.
+		for gust: int in MOST_GUSTS:
+			var bent: Image = await _settled()
+			shown.visible = false
+			change = _change(bent, await _settled())
+			shown.visible = true
+			if change > 1.0:
+				break
+			_wind.speed = 1.0
+			await _wait(0.3)
+			_wind.speed = 0.0
 		check(change > 1.0, "%s is left out: %.2f." % [shown.name, change])
 	baked.free()
 	_viewport.free()
