@@ -123,7 +123,7 @@ class Ffmpeg {
     // Passes all frames through `filters` into `to`. Throws Error.
     void write(const std::string& filters, const std::vector<std::string>& to, double seconds, double begin,
                double end) {
-        std::vector<std::string> words = {"-y", "-i", "file:" + film_, "-map", "0:v:0", "-vf", filters};
+        std::vector<std::string> words = {"-y", "-i", "file:" + film_, "-map", "0:V:0", "-vf", filters};
         words.insert(words.end(), to.begin(), to.end());
         std::string last;
         const ChildEnd done = run(words, [&](const std::string& line) {
@@ -288,7 +288,7 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
     Ffmpeg ffmpeg(find_ffmpeg(), utf8_of(source), whole / "photos.log", lock, progress);
     stage.begin();
     result.seconds = ffmpeg.length();
-    const double rate = std::clamp(result.seconds > 0.0 ? kMostLooked / result.seconds : kMostPerSecond,
+    const double rate = std::clamp(result.seconds > 0.0 ? kMostLooked / result.seconds : kLeastPerSecond,
                                    kLeastPerSecond, kMostPerSecond);
     const std::string frames = "fps=" + number_text(rate), side = std::to_string(kLooked);
     const std::string looked = utf8_of(whole / "colmap" / "film.pgm");
