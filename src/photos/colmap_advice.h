@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "error.h"
+#include "photos/photo_folder.h"
 #include "photos/run_colmap.h"
 
 namespace treerec {
-
-inline constexpr size_t kLeastPhotos = 8;
 
 Error too_few_photos(size_t photos, const std::string& folder);
 

@@ -132,6 +132,9 @@ class Ffmpeg {
             if (progress_ && at > 0.0 && seconds > 0.0)
                 progress_->update(begin + (end - begin) * std::min(at / seconds, 1.0), "Film");
         });
+        if (done.overdue)
+            throw Error("ffmpeg was not done with '" + film_ +
+                        "' after an hour and was ended; cut the film down to one walk around the tree.");
         if (!done.well())
             throw Error("ffmpeg could not take pictures out of '" + film_ +
                         "' (it says: " + quote_word(last) + ").");
@@ -146,7 +149,10 @@ class Ffmpeg {
         command.arguments.insert(command.arguments.end(), words.begin(), words.end());
         command.most_seconds = kMostSeconds;
         command.lock = &lock_;
-        log_ << "== ffmpeg\n";
+        log_ << "== ffmpeg";
+        for (const std::string& word : words)
+            log_ << ' ' << word;
+        log_ << '\n';
         const ChildEnd end = run_child(
             command,
             [&](const std::string& line) {
@@ -219,6 +225,15 @@ std::string selection_of(const std::vector<size_t>& chosen) {
     return words + "'";
 }
 
+// Goes when its work is done or given up.
+struct Scrap {
+    fs::path path;
+    ~Scrap() {
+        std::error_code failure;
+        fs::remove(path, failure);
+    }
+};
+
 size_t photos_in(const fs::path& folder) {
     size_t count = 0;
     std::error_code failure;
@@ -253,16 +268,17 @@ std::optional<std::string> film_of(const std::string& input) {
     }
     if (!fs::is_directory(place, failure)) return {};
     std::vector<std::string> films;
+    size_t photos = 0;
     for (fs::directory_iterator at(place, failure), end; !failure && at != end; at.increment(failure)) {
         const std::string name = utf8_of(at->path().filename());
         if (name.starts_with(".")) continue;
-        if (is_photo_name(name)) return {};
+        photos += is_photo_name(name);
         if (is_film_name(name)) films.push_back(utf8_of(at->path()));
     }
-    if (films.empty()) return {};
+    if (films.empty() || photos >= kLeastPhotos) return {};
     if (films.size() > 1)
         throw Error("There are " + std::to_string(films.size()) + " films in '" + input +
-                    "' and no photos; name the one to take: one walk around the tree.");
+                    "' and too few photos; name the one to take: one walk around the tree.");
     return films[0];
 }
 
@@ -283,7 +299,13 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
                     "folder to write to.");
     RunStage stage(utf8_of(mark), basis_of(source));
     result.photos = photos_in(photos);
-    if (stage.done() && result.photos > 0) return result;
+    if (stage.done() && result.photos > 0) {
+        size_t made = 0;
+        // What was taken out of the folder since is made again.
+        if (std::sscanf(stage.note().c_str(), "%zu frames of %lf s", &made, &result.seconds) == 2 &&
+            made == result.photos)
+            return result;
+    }
 
     Ffmpeg ffmpeg(find_ffmpeg(), utf8_of(source), whole / "photos.log", lock, progress);
     stage.begin();
@@ -291,11 +313,11 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
     const double rate = std::clamp(result.seconds > 0.0 ? kMostLooked / result.seconds : kLeastPerSecond,
                                    kLeastPerSecond, kMostPerSecond);
     const std::string frames = "fps=" + number_text(rate), side = std::to_string(kLooked);
-    const std::string looked = utf8_of(whole / "colmap" / "film.pgm");
+    const Scrap scrap{whole / "colmap" / "film.pgm"};
+    const std::string looked = utf8_of(scrap.path);
     ffmpeg.write(frames + ",scale=" + side + ":" + side + ":force_original_aspect_ratio=decrease,format=gray",
                  {"-f", "image2pipe", "-c:v", "pgm", "file:" + looked}, result.seconds, 0.0, kLookEnd);
     const std::vector<FrameLook> looks = look_at(looked, progress);
-    fs::remove(path_of(looked), failure);
     const std::vector<size_t> chosen = choose_frames(looks);
     if (chosen.empty())
         throw Error(
@@ -315,7 +337,7 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
     fs::rename(part, photos, failure);
     if (failure)
         throw Error("The folder '" + utf8_of(photos) + "' cannot be written: " + failure.message() + ".");
-    stage.finish();
+    stage.finish(std::to_string(result.photos) + " frames of " + number_text(result.seconds) + " s");
     return result;
 }
 

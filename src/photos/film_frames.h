@@ -9,8 +9,9 @@
 
 namespace treerec {
 
-// The film that `input` means: itself, where it is a file; the one in it, where it is a folder without
-// photos. Nothing where it is a folder of photos. Throws Error for a folder with several films and no photos.
+// The film that `input` means: itself, where it is a file; the one in it, where it is a folder with fewer
+// than kLeastPhotos photos. Nothing where it is a folder of photos. Throws Error for one with several films
+// and too few photos.
 std::optional<std::string> film_of(const std::string& input);
 
 struct FilmPhotos {

@@ -102,6 +102,7 @@ PhotoFolder list_photos(const std::string& folder) {
     found.path = utf8_of(fs::canonical(path_of(folder), failure));
     if (failure) throw Error("The folder '" + folder + "' cannot be reached.");
     size_t apples = 0;
+    std::string film;
     fs::directory_iterator at(path_of(found.path), failure);
     for (const fs::directory_iterator end; !failure && at != end; at.increment(failure)) {
         std::error_code ignored;
@@ -110,6 +111,7 @@ PhotoFolder list_photos(const std::string& folder) {
         if (name.starts_with(".") || !at->is_regular_file(ignored)) continue;
         const std::string ending = extension_of(name);
         apples += is_one_of(ending, kApples);
+        if (is_one_of(ending, kFilms)) film = name;
         if (!is_one_of(ending, kPhotos)) continue;
         if (!fits_a_line(name))
             throw Error(
@@ -131,6 +133,9 @@ PhotoFolder list_photos(const std::string& folder) {
         throw Error("There are no photos in '" + folder + "' (.jpg .png .tif .bmp).");
     }
     if (apples > 0) found.warnings.push_back(how_to_convert(apples, folder));
+    if (!film.empty())
+        found.warnings.push_back("The film " + quote_word(film) +
+                                 " was left out, since there are photos beside it; name the film to take it.");
     return found;
 }
 

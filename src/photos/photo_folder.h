@@ -7,6 +7,9 @@
 
 namespace treerec {
 
+// Of which a tree can be made.
+inline constexpr size_t kLeastPhotos = 8;
+
 struct PhotoFile {
     std::string name;  // in the folder, UTF-8
     uint64_t bytes = 0;

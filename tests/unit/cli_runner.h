@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 
+#include "cases.h"
+
 #ifndef _WIN32
 #include <sys/wait.h>
 #include <unistd.h>
@@ -62,8 +64,9 @@ class Cli : public InFolder {
 
     // Runs "treerec <words>" in the test's folder.
     Outcome run(const std::string& words) const {
-        const std::string command = "cd '" + folder_.string() + "' && timeout 120 '" + program_ + "' " +
-                                    words + " >stdout.log 2>stderr.log </dev/null";
+        const std::string command = "cd '" + folder_.string() + "' && timeout " +
+                                    (kSanitized ? "900 '" : "120 '") + program_ + "' " + words +
+                                    " >stdout.log 2>stderr.log </dev/null";
         const int status = std::system(command.c_str());
         Outcome outcome;
         outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000;

@@ -11,6 +11,7 @@
 #include "geometry/random.h"
 #include "photos/choose_frames.h"
 #include "photos/film_frames.h"
+#include "photos/photo_folder.h"
 #include "photos_standin.h"
 
 namespace treerec {
@@ -155,16 +156,29 @@ TEST_F(PhotosFilmFile, AWalkBecomesPhotos) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / "frames" / "frame_0001.jpg"));
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap" / "film.pgm"));
     const auto written = fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg");
-    EXPECT_EQ(photos_of_film(path(name), path("out")).photos, photos.photos);
+    const FilmPhotos again = photos_of_film(path(name), path("out"));
+    EXPECT_EQ(again.photos, photos.photos);
+    EXPECT_NEAR(again.seconds, photos.seconds, 1e-3);
     EXPECT_EQ(fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg"), written);
+    // A frame that somebody took away is made again.
+    fs::remove(folder_ / "out" / "frames" / "frame_0002.jpg");
+    EXPECT_EQ(photos_of_film(path(name), path("out")).photos, photos.photos);
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "frames" / "frame_0002.jpg"));
     // A folder with it in it means the same.
     fs::create_directories(folder_ / "phone");
     fs::rename(folder_ / name, folder_ / "phone" / name);
     ASSERT_TRUE(film_of(path("phone")));
     fs::copy_file(folder_ / "phone" / name, folder_ / "phone" / "b.mov");
     EXPECT_THROW(film_of(path("phone")), Error);
-    fs::copy_file(folder_ / "photos" / "a.jpg", folder_ / "phone" / "a.jpg");
-    EXPECT_FALSE(film_of(path("phone")));
+    fs::remove(folder_ / "phone" / "b.mov");
+    // A stray photo beside it makes no folder of photos; enough of them do, and the film is told.
+    for (size_t i = 1; i <= kLeastPhotos; i++) {
+        fs::copy_file(folder_ / "photos" / "a.jpg", folder_ / "phone" / (std::to_string(i) + ".jpg"));
+        EXPECT_EQ(film_of(path("phone")).has_value(), i < kLeastPhotos) << i;
+    }
+    const PhotoFolder beside = list_photos(path("phone"));
+    ASSERT_EQ(beside.warnings.size(), 1U);
+    EXPECT_NE(beside.warnings[0].find("name the film"), std::string::npos) << beside.warnings[0];
 }
 
 TEST_F(PhotosFilmFile, TheProgramTakesAFilm) {
@@ -206,6 +220,7 @@ TEST_F(PhotosFilmFile, WhatIsNoFilmIsTold) {
     if (!film("still.mp4", 40, 0.0)) GTEST_SKIP() << "ffmpeg is not installed.";
     EXPECT_NE(sentence_of("words.mp4").find("is no film"), std::string::npos) << sentence_of("words.mp4");
     EXPECT_NE(sentence_of("still.mp4").find("no walk"), std::string::npos) << sentence_of("still.mp4");
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap" / "film.pgm"));
     // What somebody else put there stays.
     fs::create_directories(folder_ / "mine" / "colmap");
     fs::create_directories(folder_ / "mine" / "frames");

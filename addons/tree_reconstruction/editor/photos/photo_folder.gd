@@ -27,12 +27,12 @@ static func list(folder: String) -> PackedStringArray:
 	return found
 
 
-## The film that [param path] means: itself, or the only one in a folder without photos; nothing
+## The film that [param path] means: itself, or the only one in a folder of too few photos; nothing
 ## where it is none.
 static func film_of(path: String) -> String:
 	if path.get_extension().to_lower() in FILMS and FileAccess.file_exists(path):
 		return path
-	if path.is_empty() or not DirAccess.dir_exists_absolute(path) or not list(path).is_empty():
+	if path.is_empty() or not DirAccess.dir_exists_absolute(path) or list(path).size() >= LEAST:
 		return ""
 	var films: PackedStringArray = []
 	for name: String in DirAccess.get_files_at(path):

@@ -150,7 +150,7 @@ func _add_options() -> void:
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
 	_add_option("Compare", tips["order"], _order)
-	_add_option("By", tips["matcher"], _matcher)
+	_add_option("Compare by", tips["matcher"], _matcher)
 	_add_option(
 		"Height of the tree",
 		(

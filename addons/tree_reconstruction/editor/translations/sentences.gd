@@ -249,6 +249,11 @@ const PATTERNS: PackedStringArray = [
 		+ " take the photos out of it by another program."
 	),
 	"'%s' is no film that ffmpeg can read (it says: %s).",
+	(
+		"ffmpeg was not done with '%s' after an hour and was ended; cut the film down to one walk"
+		+ " around the tree."
+	),
+	"The film %s was left out, since there are photos beside it; name the film to take it.",
 	# The library of twigs.
 	"Apple",
 	"Birch",
