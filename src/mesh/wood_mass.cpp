@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "error.h"
+#include "geometry/symmetric_eigen.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -45,36 +46,6 @@ std::vector<Frustum> frusta_of(const Tree& tree, double density) {
     return frusta;
 }
 
-// Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5) of the symmetric matrix `a`; the
-// eigenvectors become the columns of `v`.
-void diagonalize(double (&a)[3][3], double (&v)[3][3]) {
-    for (int sweep = 0; sweep < 24; sweep++) {
-        for (int p = 0; p < 2; p++) {
-            for (int q = p + 1; q < 3; q++) {
-                if (std::abs(a[p][q]) <= 1e-15 * (std::abs(a[p][p]) + std::abs(a[q][q]))) continue;
-                const double tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                const double t = (tau >= 0.0 ? 1.0 : -1.0) / (std::abs(tau) + std::sqrt(1.0 + tau * tau));
-                const double c = 1.0 / std::sqrt(1.0 + t * t), s = t * c;
-                for (int k = 0; k < 3; k++) {
-                    const double kp = a[k][p], kq = a[k][q];
-                    a[k][p] = c * kp - s * kq;
-                    a[k][q] = s * kp + c * kq;
-                }
-                for (int k = 0; k < 3; k++) {
-                    const double pk = a[p][k], qk = a[q][k];
-                    a[p][k] = c * pk - s * qk;
-                    a[q][k] = s * pk + c * qk;
-                }
-                for (int k = 0; k < 3; k++) {
-                    const double kp = v[k][p], kq = v[k][q];
-                    v[k][p] = c * kp - s * kq;
-                    v[k][q] = s * kp + c * kq;
-                }
-            }
-        }
-    }
-}
-
 }  // namespace
 
 WoodMass weigh_wood(const Tree& tree, double density) {
@@ -91,7 +62,7 @@ WoodMass weigh_wood(const Tree& tree, double density) {
     }
     if (!(wood.mass > 0.0)) return wood;
     wood.centre += moment / wood.mass;
-    double tensor[3][3] = {}, axes[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    SquareMatrix<3> tensor{};
     for (const Frustum& part : frusta) {
         const DVec3 from = part.centre - wood.centre;
         for (int i = 0; i < 3; i++) {
@@ -103,9 +74,10 @@ WoodMass weigh_wood(const Tree& tree, double density) {
             }
         }
     }
-    diagonalize(tensor, axes);
+    const SymmetricEigen<3> eigen = symmetric_eigen(tensor);
+    const SquareMatrix<3>& axes = eigen.vectors;
     // Of the six orders the one that turns least.
-    int order[3] = {0, 1, 2}, best[3] = {0, 1, 2};
+    size_t order[3] = {0, 1, 2}, best[3] = {0, 1, 2};
     double most = -1.0;
     do {
         double sum = 0.0;
@@ -117,10 +89,10 @@ WoodMass weigh_wood(const Tree& tree, double density) {
         }
     } while (std::next_permutation(order, order + 3));
     for (int i = 0; i < 3; i++) {
-        const int k = best[i];
+        const size_t k = best[i];
         const double sign = axes[i][k] < 0.0 ? -1.0 : 1.0;
         wood.axes[i] = DVec3(axes[0][k], axes[1][k], axes[2][k]) * sign;
-        wood.inertia[i] = tensor[k][k];
+        wood.inertia[i] = eigen.values[k];
     }
     wood.axes[2] = glm::cross(wood.axes[0], wood.axes[1]);
     return wood;

@@ -14,6 +14,7 @@ constexpr double kStep = 5.0;           // pixels between a patch's grey levels
 constexpr size_t kPatchLevel = 2;       // smooth enough for that step
 constexpr float kLeastContrast = 4.0F;  // grey levels: standard deviation of a patch
 constexpr float kLeastAlike = 0.75F;    // normalized correlation
+constexpr float kLeastRival = 0.6F;     // of what may be taken for another
 constexpr float kClearly = 0.8F;        // of the second best one's distance
 constexpr double kElsewhere = 10.0;     // pixels: nearer ones show the same thing
 constexpr size_t kAround = 8;           // neighbours that a match is compared with
@@ -119,6 +120,27 @@ CornerPatches strongest_of(const CornerPatches& patches, size_t most) {
         few.values.insert(few.values.end(), row, row + static_cast<ptrdiff_t>(count));
     }
     return few;
+}
+
+std::vector<size_t> rivals_of(const CornerPatches& one, uint32_t corner, const CornerPatches& other,
+                              const DVec2& but, size_t most) {
+    std::vector<size_t> rivals;
+    const auto at = std::lower_bound(one.corners.begin(), one.corners.end(), corner);
+    if (at == one.corners.end() || *at != corner) return rivals;
+    std::vector<float> alike(other.places.size());
+    compare(one, static_cast<size_t>(at - one.corners.begin()), other, alike);
+    while (rivals.size() < most) {
+        size_t best = alike.size();
+        for (size_t j = 0; j < alike.size(); j++)
+            if (alike[j] >= kLeastRival && (best == alike.size() || alike[j] > alike[best]) &&
+                glm::distance(other.places[j], but) > kElsewhere)
+                best = j;
+        if (best == alike.size()) break;
+        rivals.push_back(best);
+        for (size_t j = 0; j < alike.size(); j++)
+            if (glm::distance(other.places[j], other.places[best]) <= kElsewhere) alike[j] = -1.0F;
+    }
+    return rivals;
 }
 
 std::vector<CoarseMatch> match_patches(const CornerPatches& one, const CornerPatches& other,

@@ -45,6 +45,11 @@ struct CoarseMatch {
     DVec2 to{0.0};
 };
 
+// The patches of `other` that are most like the one of a corner, the likest first, none of them near another
+// or near `but`: what a match may have been taken for. Numbers of places; none where the corner has no patch.
+std::vector<size_t> rivals_of(const CornerPatches& one, uint32_t corner, const CornerPatches& other,
+                              const DVec2& but, size_t most);
+
 // Each the other's most similar one, clearly more similar than any other, and moved as those around it. turn:
 // that the patches of `other` were made with.
 std::vector<CoarseMatch> match_patches(const CornerPatches& one, const CornerPatches& other,

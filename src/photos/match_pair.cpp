@@ -15,6 +15,8 @@ constexpr size_t kAsked = 400;         // corners that tell how a pair is turned
 constexpr size_t kLeastCoarse = 8;     // matched patches whose motion is believed
 constexpr size_t kNearest = 8;         // of them tell the motion of a corner
 constexpr size_t kBetweenChecks = 64;  // corners
+constexpr double kSameThing = 10.0;    // pixels: two ends that are nearer show the same thing
+constexpr double kGrain = 0.02;        // what of a similarity may be the pictures' noise
 constexpr double kOften = 0.9;         // similarity: no other beginning is tried
 
 // Beyond upright photos of the same distance.
@@ -113,6 +115,34 @@ double back_error_of(const PhotoFeatures& one, const PhotoFeatures& other, const
     return end ? glm::distance(end->motion.place, place) : INFINITY;
 }
 
+// Whether something elsewhere is nearly as similar to the corner as what was found.
+bool has_rival(const PhotoFeatures& one, const PhotoFeatures& other, const PointMatch& match,
+               const DMat2& turn, const MatchOptions& options, const AffineTrackOptions& track) {
+    const DVec2 place = one.corners[match.corner].place;
+    const double least = 1.0 - std::max(1.0 - match.similarity, kGrain) / options.clearly;
+    for (const size_t rival :
+         rivals_of(one.patches, match.corner, other.patches, match.place, options.rivals)) {
+        const auto found =
+            track_affine(one.pyramid, other.pyramid, place, {other.patches.places[rival], turn}, track);
+        if (found && found->similarity > least &&
+            glm::distance(found->motion.place, match.place) > kSameThing)
+            return true;
+    }
+    return false;
+}
+
+// Drops what does not agree with the rest on how the two cameras stood.
+void filter_by_geometry(const PhotoFeatures& one, std::vector<PointMatch>& matches,
+                        const PairGeometryOptions& options, const Progress* progress) {
+    std::vector<PlacePair> places;
+    for (const PointMatch& match : matches)
+        if (match.kept) places.push_back({one.corners[match.corner].place, match.place});
+    const std::vector<uint8_t> agreeing = agreeing_on_geometry(places, options, progress);
+    size_t next = 0;
+    for (PointMatch& match : matches)
+        if (match.kept) match.kept = agreeing[next++] != 0;
+}
+
 }  // namespace
 
 size_t PairMatches::kept() const {
@@ -156,10 +186,12 @@ PairMatches match_pair(const PhotoFeatures& one, const PhotoFeatures& other, con
         match.back_error = INFINITY;
         if (match.kept) {
             match.back_error = back_error_of(one, other, place, begun, *best, track);
-            match.kept = match.back_error <= options.back_tolerance;
+            match.kept = match.back_error <= options.back_tolerance &&
+                         !has_rival(one, other, match, begun.turn, options, track);
         }
         result.matches.push_back(match);
     }
+    if (options.geometry) filter_by_geometry(one, result.matches, *options.geometry, progress);
     filter_by_medians(result.matches, options.medians);
     return result;
 }

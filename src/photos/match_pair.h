@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "photos/corner_patches.h"
 #include "photos/grey_pyramid.h"
 #include "photos/harris.h"
+#include "photos/pair_geometry.h"
 #include "progress.h"
 
 namespace treerec {
@@ -26,6 +28,12 @@ struct MatchOptions {
     AffineTrackOptions track{.window = {.reach = 8}, .levels = 3, .most_stretch = 2.5};
     double back_tolerance = 1.5;    // pixels between a corner and where the way back ends
     double least_similarity = 0.7;  // normalized correlation of the windows
+    // A match has to be clearly more similar than what else it may be taken for, as in a fence or in tiles:
+    // the distance from 1 of its similarity at most this share of theirs (Lowe 2004, 7.1).
+    double clearly = 0.8;
+    size_t rivals = 2;  // that are tried
+    // Matches have to agree on one epipolar geometry; none where nothing shall be asked.
+    std::optional<PairGeometryOptions> geometry = PairGeometryOptions{};
     MedianFilter medians = MedianFilter::kBoth;
 };
 
@@ -48,7 +56,7 @@ struct PointMatch {
     DVec2 place{0.0};         // in the second one's picture, pixels
     double similarity = 0.0;  // -1 to 1
     double back_error = 0.0;  // pixels
-    bool kept = true;         // by the tolerance, the similarity and the medians
+    bool kept = true;         // by the tolerance, the similarity, rivals, geometry and medians
 };
 
 struct PairMatches {

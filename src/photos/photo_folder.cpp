@@ -134,8 +134,9 @@ PhotoFolder list_photos(const std::string& folder) {
     }
     if (apples > 0) found.warnings.push_back(how_to_convert(apples, folder));
     if (!film.empty())
-        found.warnings.push_back("The film " + quote_word(film) +
-                                 " was left out, since there are photos beside it; name the film to take it.");
+        found.warnings.push_back(
+            "The film " + quote_word(film) +
+            " was left out, since there are photos beside it; name the film to take it.");
     return found;
 }
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 using Pair = std::pair<size_t, size_t>;
 
-constexpr const char* kMethod = "tracked corners 1";  // another number where other matches come out
+constexpr const char* kMethod = "tracked corners 2";  // another number where other matches come out
 constexpr size_t kChunk = 16;                         // pairs of a file: what a kill may lose
 constexpr double kImporting = 0.1;                    // of the matching: COLMAP's part of it
 constexpr double kSame = 1.0;                         // pixels of the pictures that are tracked

@@ -9,6 +9,7 @@
 #include "geometry/covariance.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
+#include "geometry/symmetric_eigen.h"
 #include "scan/robust.h"
 
 namespace treerec {
@@ -26,30 +27,14 @@ constexpr double kEven = 0.7;            // share of the box that holds points
 constexpr double kMostCells = 30000.0;   // in the box
 constexpr double kShell = 0.06;          // of its radius: how thick the surface of a ball is
 
-// Eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations, which keep the small ones exact.
-std::array<double, 3> eigenvalues(const DMat3& m) {
-    DMat3 a = m;
-    for (int sweep = 0; sweep < 30; sweep++)
-        for (int p = 0; p < 2; p++)
-            for (int q = p + 1; q < 3; q++) {
-                if (a[p][q] == 0.0) continue;
-                const double theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                const double t =
-                    (theta < 0.0 ? -1.0 : 1.0) / (std::abs(theta) + std::sqrt(theta * theta + 1.0));
-                const double c = 1.0 / std::sqrt(t * t + 1.0);
-                DMat3 rotation(1.0);
-                rotation[p][p] = rotation[q][q] = c;
-                rotation[q][p] = t * c;
-                rotation[p][q] = -t * c;
-                a = glm::transpose(rotation) * a * rotation;
-            }
-    std::array<double, 3> values{a[0][0], a[1][1], a[2][2]};
-    std::sort(values.begin(), values.end());
-    return values;
-}
-
 std::array<double, 3> spreads(const std::vector<Vec3>& points) {
-    std::array<double, 3> values = eigenvalues(covariance_of(points));
+    const DMat3 covariance = covariance_of(points);
+    SquareMatrix<3> matrix;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            matrix[i][j] = covariance[i][j];
+    std::array<double, 3> values = symmetric_eigen(matrix).values;
+    std::sort(values.begin(), values.end());
     for (double& v : values)
         v = std::sqrt(std::max(0.0, v));
     return values;

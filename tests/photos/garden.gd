@@ -6,8 +6,8 @@ extends SceneTree
 ##         [--leafy] [--width=1600] [--seed=1]
 ##
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
-## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it) and the focal
-## length in pixels.
+## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
+## right, down and ahead) and the focal length in pixels.
 
 # The long side of a photo by its short one.
 const SHAPE: float = 1.5
@@ -91,8 +91,7 @@ func _photograph() -> void:
 			await RenderingServer.frame_post_draw
 		var name: String = "IMG_%04d.jpg" % (i + 101)
 		_lens.get_texture().get_image().save_jpg(folder.path_join("photos").path_join(name), 0.92)
-		# Y up in the engine, Z up in the file.
-		cameras.append({"name": name, "centre": [at.x, -at.z, at.y]})
+		cameras.append({"name": name, "centre": _z_up(at), "axes": _axes()})
 		print("%d of %d" % [i + 1, count])
 	var focal: float = width * 0.5 / tan(deg_to_rad(FOV) * 0.5)
 	var file: FileAccess = FileAccess.open(folder.path_join("cameras.json"), FileAccess.WRITE)
@@ -104,6 +103,16 @@ func _photograph() -> void:
 	)
 	file.close()
 	quit(0)
+
+
+# Y up in the engine, Z up in the file.
+func _z_up(v: Vector3) -> Array[float]:
+	return [v.x, -v.z, v.y]
+
+
+func _axes() -> Array[Array]:
+	var turn: Basis = _camera.global_basis
+	return [_z_up(turn.x), _z_up(-turn.y), _z_up(-turn.z)]
 
 
 # On a walk round the tree: never quite as far away, never quite as high.
@@ -168,8 +177,27 @@ func _add_light() -> void:
 	_scene.add_child(sun)
 
 
-# What looks different everywhere, from near and from afar.
+# What looks different everywhere, from near and from afar: two pictures whose tiles never fall
+# together.
 func _noise(low: Color, high: Color, scale: float) -> StandardMaterial3D:
+	var material: StandardMaterial3D = StandardMaterial3D.new()
+	material.albedo_texture = _noise_picture(low, high)
+	material.detail_enabled = true
+	material.detail_albedo = _noise_picture(Color(0.55, 0.55, 0.55), Color.WHITE)
+	material.detail_blend_mode = BaseMaterial3D.BLEND_MODE_MUL
+	material.detail_uv_layer = BaseMaterial3D.DETAIL_UV_2
+	material.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
+	material.roughness = 1.0
+	material.uv1_triplanar = true
+	material.uv1_world_triplanar = true
+	material.uv1_scale = Vector3.ONE * scale
+	material.uv2_triplanar = true
+	material.uv2_world_triplanar = true
+	material.uv2_scale = Vector3.ONE * scale * 0.2236
+	return material
+
+
+func _noise_picture(low: Color, high: Color) -> ImageTexture:
 	var noise: FastNoiseLite = FastNoiseLite.new()
 	noise.seed = _random.randi()
 	noise.frequency = 0.02
@@ -184,14 +212,18 @@ func _noise(low: Color, high: Color, scale: float) -> StandardMaterial3D:
 		for x: int in 1024:
 			colored.set_pixel(x, y, ramp.sample(picture.get_pixel(x, y).r))
 	colored.generate_mipmaps()
-	var material: StandardMaterial3D = StandardMaterial3D.new()
-	material.albedo_texture = ImageTexture.create_from_image(colored)
-	material.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
-	material.roughness = 1.0
-	material.uv1_triplanar = true
-	material.uv1_world_triplanar = true
-	material.uv1_scale = Vector3.ONE * scale
-	return material
+	return ImageTexture.create_from_image(colored)
+
+
+# The same stuff, lighter or darker and from another place.
+func _other(material: StandardMaterial3D) -> StandardMaterial3D:
+	var other: StandardMaterial3D = material.duplicate()
+	other.uv1_offset = Vector3(_random.randf(), _random.randf(), _random.randf())
+	other.uv2_offset = Vector3(_random.randf(), _random.randf(), _random.randf())
+	other.albedo_color = Color.from_hsv(
+		_random.randf(), _random.randf_range(0.0, 0.25), _random.randf_range(0.6, 1.0)
+	)
+	return other
 
 
 func _add_box(at: Vector3, size: Vector3, material: Material, turn: float = 0.0) -> void:
@@ -223,20 +255,33 @@ func _add_things(box: AABB) -> void:
 		_add_box(aside + Vector3(0, 0.45, 0.13 * k), Vector3(1.5, 0.04, 0.1), wood)
 	for leg: float in [-0.65, 0.65]:
 		_add_box(aside + Vector3(leg, 0.22, 0.2), Vector3(0.08, 0.44, 0.4), wood)
-	# A fence, a hedge and houses, farther away than anybody walks.
+	# A fence, hedges and houses, farther away than anybody walks; no two alike, as none are.
 	var around: float = 2.2 * maxf(box.size.y, box.size.x) + 6.0
-	for k: int in 60:
-		var angle: float = TAU * k / 60.0
-		var at: Vector3 = Vector3(cos(angle), 0, sin(angle)) * around
-		if k % 3 == 0:
-			var height: float = _random.randf_range(2.0, 7.0)
-			_add_box(
-				at * 1.3 + Vector3.UP * height * 0.5,
-				Vector3(_random.randf_range(2, 6), height, _random.randf_range(2, 4)),
-				hedge if k % 2 == 0 else stone,
-				-angle
-			)
-		_add_box(at + Vector3.UP * 0.6, Vector3(0.12, 1.2, around * TAU / 75.0), wood, -angle)
+	var angle: float = 0.0
+	while angle < TAU - 0.05:
+		var wide: float = _random.randf_range(0.05, 0.14)
+		_add_box(
+			_on_circle(angle + 0.5 * wide, around) + Vector3.UP * 0.6,
+			Vector3(0.12, _random.randf_range(0.9, 1.5), around * wide * 0.9),
+			_other(wood),
+			-angle - 0.5 * wide
+		)
+		angle += wide
+	for k: int in 26:
+		var height: float = _random.randf_range(2.0, 7.0)
+		_add_box(
+			(
+				_on_circle(_random.randf_range(0.0, TAU), around * _random.randf_range(1.15, 1.9))
+				+ Vector3.UP * height * 0.5
+			),
+			Vector3(_random.randf_range(1, 6), height, _random.randf_range(1, 6)),
+			_other(hedge if k % 2 == 0 else stone),
+			_random.randf_range(0.0, TAU)
+		)
+
+
+func _on_circle(angle: float, radius: float) -> Vector3:
+	return Vector3(cos(angle), 0, sin(angle)) * radius
 
 
 func _add_lens(size: Vector2i) -> void:
