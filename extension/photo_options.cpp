@@ -82,8 +82,8 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
     pipeline.colmap.order = treerec::parse_photo_order(to_std(String(values["order"])));
     pipeline.colmap.matcher = treerec::parse_photo_matcher(to_std(String(values["matcher"])));
     pipeline.colmap.effort = treerec::parse_photo_effort(to_std(String(values["time"])));
+    pipeline.cloud = treerec::cloud_options_of(pipeline.colmap.effort);
     pipeline.cloud.dense = bool(values["dense"]);
-    pipeline.cloud.densify = treerec::densify_options_of(pipeline.colmap.effort);
     pipeline.reconstruct = options.tree.pipeline;
     return options;
 }

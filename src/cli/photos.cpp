@@ -103,8 +103,8 @@ void run_photos(const std::vector<std::string>& words) {
     options.colmap.matcher =
         as_usage([&] { return parse_photo_matcher(arguments.text("--matcher", "sift")); });
     options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
+    options.cloud = cloud_options_of(options.colmap.effort);
     options.cloud.dense = !arguments.has("--sparse");
-    options.cloud.densify = densify_options_of(options.colmap.effort);
     options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
     options.reconstruct = reconstruct_options_from(arguments);
     options.reconstruct.score_points = ReconstructOptions{}.score_points;

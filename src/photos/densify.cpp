@@ -13,6 +13,7 @@
 #include "photos/photo_picture.h"
 #include "photos/rectify.h"
 #include "photos/semi_global.h"
+#include "photos/sky_mask.h"
 
 namespace treerec {
 
@@ -139,9 +140,23 @@ std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std
     return pairs;
 }
 
-// What a pair sees, a sum for each cell, by cell.
-std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const Depths& depths,
-                        const Region& region, const Cells& cells, double cell, uint32_t number) {
+// Whether a photo's own pixel there is the sky.
+bool is_sky(const LoadedPhoto& photo, const std::vector<uint8_t>& sky, const DVec3& p) {
+    if (sky.empty()) return false;
+    const auto at = photo.camera->project(photo.photo->to_camera(p));
+    if (!at) return false;
+    const DVec2 place = photo.scale * *at;
+    if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < photo.picture.width &&
+          place.y < photo.picture.height))
+        return false;
+    return sky[static_cast<size_t>(place.y) * static_cast<size_t>(photo.picture.width) +
+               static_cast<size_t>(place.x)] != 0;
+}
+
+// What a pair sees, a sum for each cell, by cell. sky: of the first one.
+std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const std::vector<uint8_t>& sky,
+                        const Depths& depths, const Region& region, const Cells& cells, double cell,
+                        uint32_t number) {
     const auto pair = rectify(one, other);
     if (!pair) return {};
     const double lengths = pair->focal * pair->baseline;
@@ -158,7 +173,7 @@ std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const 
             const float disparity = disparities[at];
             if (std::isnan(disparity)) continue;
             const DVec3 p = pair->point_at(x, y, disparity);
-            if (!region.has(p) || !cells.has(p)) continue;
+            if (!region.has(p) || !cells.has(p) || is_sky(one, sky, p)) continue;
             // Half a pixel of disparity, as a length.
             const double unsure =
                 0.5 * lengths / (static_cast<double>(disparity) * static_cast<double>(disparity));
@@ -304,13 +319,20 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
         throw Error("No two photos look at the same thing from nearby: take more of them, a step apart.");
     const DVec3 middle = region.everything ? sparse[sparse.size() / 2] : region.subject;
     const Cells cells(middle, result.cell);
+    // Beside a twig, matching takes the sky for wood.
+    std::vector<std::vector<uint8_t>> skies(photos.size());
+    if (!region.everything)
+        parallel_for(photos.size(), 1, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; i++)
+                skies[i] = sky_in(photos[i], region.sky, 0);
+        });
     std::vector<std::vector<Sight>> seen(pairs.size());
     std::atomic<size_t> done{0};
     parallel_for(pairs.size(), 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             matching.check();
             const auto [one, other] = pairs[i];
-            seen[i] = look(photos[one], photos[other], depths[one], region, cells, result.cell,
+            seen[i] = look(photos[one], photos[other], skies[one], depths[one], region, cells, result.cell,
                            static_cast<uint32_t>(i));
             matching.update(static_cast<double>(++done) / static_cast<double>(pairs.size()), "Dense points");
         }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "photos/densify.h"
+#include "photos/sky_mask.h"
+#include "photos/thin_wood.h"
 #include "progress.h"
 
 namespace treerec {
@@ -14,12 +16,16 @@ struct MakeCloudOptions {
     double most_error = 2.0;  // pixels: the reprojection error of a point that stays
     bool dense = true;  // match the photos pixel by pixel (photos/densify.h), else the model's own points
     DensifyOptions densify;
+    CarveOptions carve;
+    bool thin = true;  // look for thin wood, too, where there are dense points (photos/thin_points.h)
+    ThinWoodOptions thin_wood;
 };
 
 struct MadeCloud {
     size_t points = 0;
     size_t left_out = 0;  // of the model's, that too few photos saw, or that fit these badly
     size_t pairs = 0;  // of photos that were matched pixel by pixel; 0: the cloud has the model's own points
+    size_t thin = 0;   // places of thin wood
     std::vector<std::string> warnings;
 };
 

@@ -12,6 +12,7 @@ namespace treerec {
 
 namespace {
 
+constexpr const char* kMethod = "points 2";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
 constexpr double kColmapEnd = 0.6;
 constexpr double kCloudEnd = 0.95;
@@ -20,14 +21,18 @@ using json = nlohmann::json;
 
 // Everything that the cloud depends on.
 std::string basis_of(const std::string& folder, const std::string& model, const MakeCloudOptions& options) {
-    json basis = {photos_as_text(list_photos(folder)),
+    json basis = {kMethod,
+                  photos_as_text(list_photos(folder)),
                   options.least_track,
                   options.most_error,
                   options.dense,
                   options.densify.megapixels,
                   options.densify.neighbours,
                   options.densify.agreeing,
-                  options.densify.cell};
+                  options.densify.cell,
+                  options.thin,
+                  options.thin_wood.most_pixels,
+                  options.carve.most_pixels};
     for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
         std::error_code failure;
         const std::filesystem::path file = path_of(model) / name;
@@ -45,6 +50,7 @@ std::optional<MadeCloud> read_note(const std::string& text) {
         made.points = note.at("points").get<size_t>();
         made.left_out = note.at("left_out").get<size_t>();
         made.pairs = note.at("pairs").get<size_t>();
+        made.thin = note.at("thin").get<size_t>();
         made.warnings = note.at("warnings").get<std::vector<std::string>>();
         return made;
     } catch (const json::exception&) {
@@ -65,6 +71,7 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
     const json note = {{"points", made.points},
                        {"left_out", made.left_out},
                        {"pairs", made.pairs},
+                       {"thin", made.thin},
                        {"warnings", made.warnings}};
     stage.finish(note.dump(-1, ' ', false, json::error_handler_t::replace));
     return made;
@@ -72,16 +79,21 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
 
 }  // namespace
 
-DensifyOptions densify_options_of(PhotoEffort effort) {
+MakeCloudOptions cloud_options_of(PhotoEffort effort) {
+    MakeCloudOptions options;
     switch (effort) {
         case PhotoEffort::kQuick:
-            return {.megapixels = 0.15, .neighbours = 2};
+            options.densify = {.megapixels = 0.15, .neighbours = 2};
+            options.thin_wood.most_pixels = 1200;
+            break;
         case PhotoEffort::kBest:
-            return {.megapixels = 0.6, .neighbours = 6};
+            options.densify = {.megapixels = 0.6, .neighbours = 6};
+            options.thin_wood.most_pixels = 3600;
+            break;
         case PhotoEffort::kNormal:
             break;
     }
-    return {};
+    return options;
 }
 
 PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,

@@ -17,7 +17,7 @@ struct PhotosOptions {
 };
 
 // How finely photos are matched.
-DensifyOptions densify_options_of(PhotoEffort effort);
+MakeCloudOptions cloud_options_of(PhotoEffort effort);
 
 struct PhotosResult {
     Reconstruction tree;  // with the warnings of all that was before it, the first ones first

@@ -80,6 +80,8 @@ func get_stage() -> String:
 		"Matching": tr("Comparing photos"),
 		"Cameras": tr("Finding the cameras"),
 		"Dense points": tr("Matching pixels"),
+		"Sky": tr("Looking for the sky"),
+		"Thin wood": tr("Matching twigs"),
 	}
 	# What comes before them is quick, and what comes after makes the tree.
 	var stage: String = tr("Making the tree")

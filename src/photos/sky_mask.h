@@ -1,0 +1,60 @@
+// Where photos show the sky, and what can't be there because they do.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "photos/colmap_model.h"
+#include "photos/grey_pyramid.h"
+#include "photos/rectify.h"
+#include "progress.h"
+
+namespace treerec {
+
+// 1 where a photo shows the sky and nothing within `margin` pixels: picture.width * height, rows from the
+// top; empty where no sky is sure. It is what looks like the even, light areas above the horizon do, as a
+// polynomial of second degree over the picture tells it: the holes in a crown, too. sky: the way up in the
+// model.
+std::vector<uint8_t> sky_in(const LoadedPhoto& photo, const DVec3& sky, int margin);
+
+struct CarveOptions {
+    int most_pixels = 1600;      // of the longer side: larger photos are made smaller
+    int margin = 2;              // pixels that a point may be off
+    double least_beside = 0.35;  // share of the photos that have to show it beside thin wood
+    double most_sky = 0.25;      // share of the photos which a point is in that may show the sky there
+    size_t least_photos = 3;     // that have to show it
+};
+
+// The photos' sky, from which it can be told what is not there.
+class SkyCarver {
+  public:
+    // Reads the photos; those that can't be read show none. Nothing is carved where sky_of() knows nothing.
+    // Throws Cancelled.
+    SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, const std::string& folder,
+              const CarveOptions& options = {}, Progress* progress = nullptr);
+
+    // Whether too many photos show the sky where a point of the model would be. Wood and leaves never do.
+    bool is_sky(const DVec3& p) const;
+
+    // Whether enough photos show the sky right beside wood that passes there: then it is thin. A furrow of a
+    // trunk has it there at the outline alone. way: along
+    // it, a unit vector; radius: in the model's unit.
+    bool is_before_sky(const DVec3& p, const DVec3& way, double radius) const;
+
+  private:
+    struct View {
+        const Photo* photo = nullptr;
+        const Camera* camera = nullptr;
+        double scale = 1.0;
+        int width = 0, height = 0;
+        std::vector<uint8_t> sky;
+    };
+    // The pixel of a view there, or -1.
+    static ptrdiff_t pixel_in(const View& view, const DVec2& place);
+
+    std::vector<View> views_;
+    CarveOptions options_;
+};
+
+}  // namespace treerec
