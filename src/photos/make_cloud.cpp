@@ -74,6 +74,7 @@ MadeCloud make_cloud(const std::string& model_folder, const std::string& photos,
             Densified dense = densify(model, sparse, photos, options.densify, &matching);
             made.pairs = dense.pairs;
             made.warnings.insert(made.warnings.end(), dense.warnings.begin(), dense.warnings.end());
+            made.cell = dense.cell;
             cloud = std::move(dense.cloud);
             SubProgress carving(progress, kSkyBegin, kThinBegin);
             const SkyCarver sky(model, sparse, photos, options.carve, &carving);

@@ -12,7 +12,9 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 2";  // another number where another cloud comes out
+constexpr const char* kMethod = "points 3";  // another number where another cloud comes out
+constexpr size_t kManyThin = 2000;           // places of thin wood: a crown
+constexpr double kSpacing = 0.7;             // of the dense points' cells, between points of the skeleton
 constexpr double kFilmEnd = 0.1;
 constexpr double kColmapEnd = 0.6;
 constexpr double kCloudEnd = 0.95;
@@ -51,6 +53,7 @@ std::optional<MadeCloud> read_note(const std::string& text) {
         made.left_out = note.at("left_out").get<size_t>();
         made.pairs = note.at("pairs").get<size_t>();
         made.thin = note.at("thin").get<size_t>();
+        made.cell = note.at("cell").get<double>();
         made.warnings = note.at("warnings").get<std::vector<std::string>>();
         return made;
     } catch (const json::exception&) {
@@ -68,11 +71,8 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
         if (const std::optional<MadeCloud> made = read_note(stage.note())) return *made;
     stage.begin();
     MadeCloud made = make_cloud(result.photos.model, folder, result.cloud, options, progress);
-    const json note = {{"points", made.points},
-                       {"left_out", made.left_out},
-                       {"pairs", made.pairs},
-                       {"thin", made.thin},
-                       {"warnings", made.warnings}};
+    const json note = {{"points", made.points}, {"left_out", made.left_out}, {"pairs", made.pairs},
+                       {"thin", made.thin},     {"cell", made.cell},         {"warnings", made.warnings}};
     stage.finish(note.dump(-1, ' ', false, json::error_handler_t::replace));
     return made;
 }
@@ -116,7 +116,10 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
     making.check();
-    result.tree = reconstruct_file(result.cloud, options.reconstruct, &growing);
+    ReconstructOptions reconstruct = options.reconstruct;
+    // Rings of points around twigs are denser than they are sure.
+    if (result.made.thin > kManyThin) reconstruct.scan_spacing = kSpacing * result.made.cell;
+    result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
     result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());

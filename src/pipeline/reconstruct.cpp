@@ -267,6 +267,8 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
     const bool doubted = !told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay;
     SubProgress growing(progress, kLeavesEnd, doubted ? kFirstSkeletonEnd : kSkeletonEnd);
     SkeletonOptions skeleton_options = options.skeleton;
+    if (skeleton_options.spacing <= 0.0)
+        skeleton_options.spacing = options.scan_spacing * result.orient.metres_per_unit;
     skeleton_options.one_stem = skeleton_options.one_stem || told.fronds;
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
     SkeletonResult skeleton = skeletonize_wood(result, told, skeleton_options, growing);

@@ -14,6 +14,7 @@ import struct
 import sys
 
 STEP = 0.02  # metres along the wood
+OFF = 0.02  # metres from its surface: what is as near as that is found, and right
 
 
 def read_tree(path):
@@ -138,8 +139,8 @@ def main(truth_path, garden, out):
               (name, is_, should, 100 * (is_ / should - 1), abs(is_ - should) / pixel))
     for pixels in (2, 4, 8):
         thick = samples(truth, pixels * pixel / 2)
-        recall = share_near(thick, samples(made), 2 * pixel)
-        precision = share_near(samples(made), samples(truth), 2 * pixel)
+        recall = share_near(thick, samples(made), OFF)
+        precision = share_near(samples(made), samples(truth), OFF)
         print("wood of %d px and more (%.0f mm): recall %.3f, precision %.3f, F %.3f" %
               (pixels, 1000 * pixels * pixel, recall, precision, 2 * recall * precision / max(recall + precision, 1e-9)))
 
