@@ -203,6 +203,11 @@ std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras) {
     return widest;
 }
 
+double degrees_between(const DVec3& a, const DVec3& b) {
+    const double cosine = glm::dot(a, b) / (glm::length(a) * glm::length(b));
+    return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / kPi;
+}
+
 double away_from_line(const DVec3& p, const DVec3& on_line, const DVec3& direction) {
     const DVec3 way = p - on_line;
     return glm::length(way - glm::dot(way, direction) * direction);

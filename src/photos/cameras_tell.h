@@ -42,6 +42,9 @@ struct CircleGap {
 // cameras: in their order around. Nothing for fewer than two.
 std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras);
 
+// Degrees between two directions, of any length.
+double degrees_between(const DVec3& a, const DVec3& b);
+
 // How far a point is from a line. direction: a unit vector.
 double away_from_line(const DVec3& p, const DVec3& on_line, const DVec3& direction);
 

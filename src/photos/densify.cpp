@@ -109,11 +109,6 @@ Depths depths_of(const LoadedPhoto& photo, std::span<const DVec3> sparse) {
     return found;
 }
 
-double degrees_between(const DVec3& a, const DVec3& b) {
-    const double cosine = glm::dot(a, b) / (glm::length(a) * glm::length(b));
-    return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / kPi;
-}
-
 // The pairs that tell most: for each photo its neighbours at the best angle.
 std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std::vector<Depths>& depths,
                                int neighbours) {
@@ -140,21 +135,8 @@ std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std
     return pairs;
 }
 
-// Whether a photo's own pixel there is the sky.
-bool is_sky(const LoadedPhoto& photo, const std::vector<uint8_t>& sky, const DVec3& p) {
-    if (sky.empty()) return false;
-    const auto at = photo.camera->project(photo.photo->to_camera(p));
-    if (!at) return false;
-    const DVec2 place = photo.scale * *at;
-    if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < photo.picture.width &&
-          place.y < photo.picture.height))
-        return false;
-    return sky[static_cast<size_t>(place.y) * static_cast<size_t>(photo.picture.width) +
-               static_cast<size_t>(place.x)] != 0;
-}
-
 // What a pair sees, a sum for each cell, by cell. sky: of the first one.
-std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const std::vector<uint8_t>& sky,
+std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const PhotoSky& sky,
                         const Depths& depths, const Region& region, const Cells& cells, double cell,
                         uint32_t number) {
     const auto pair = rectify(one, other);
@@ -173,7 +155,8 @@ std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const 
             const float disparity = disparities[at];
             if (std::isnan(disparity)) continue;
             const DVec3 p = pair->point_at(x, y, disparity);
-            if (!region.has(p) || !cells.has(p) || is_sky(one, sky, p)) continue;
+            if (!region.has(p) || !cells.has(p)) continue;
+            if (sky.shown_at(one.photo->to_camera(p)) == PhotoSky::Shown::kSky) continue;
             // Half a pixel of disparity, as a length.
             const double unsure =
                 0.5 * lengths / (static_cast<double>(disparity) * static_cast<double>(disparity));
@@ -320,7 +303,7 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
     const DVec3 middle = region.everything ? sparse[sparse.size() / 2] : region.subject;
     const Cells cells(middle, result.cell);
     // Beside a twig, matching takes the sky for wood.
-    std::vector<std::vector<uint8_t>> skies(photos.size());
+    std::vector<PhotoSky> skies(photos.size());
     if (!region.everything)
         parallel_for(photos.size(), 1, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; i++)

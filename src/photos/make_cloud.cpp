@@ -12,8 +12,8 @@ namespace treerec {
 
 namespace {
 
-constexpr double kSkyBegin = 0.35;  // of the progress
-constexpr double kThinBegin = 0.4;
+constexpr double kDenseEnd = 0.35;  // of the progress
+constexpr double kSkyEnd = 0.1;     // of what comes after it
 
 // The model's points that are sure.
 PointCloud sure_points(const std::vector<SparsePoint>& points, const MakeCloudOptions& options,
@@ -34,29 +34,28 @@ PointCloud sure_points(const std::vector<SparsePoint>& points, const MakeCloudOp
     return cloud;
 }
 
-// Leaves out the points that the photos show the sky at: what matching makes of the sky beside a twig.
-void carve(PointCloud& cloud, const SkyCarver& sky) {
-    std::vector<uint8_t> drop(cloud.size(), 0);
-    parallel_for(cloud.size(), 1024, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; i++)
-            drop[i] = sky.is_sky(cloud.frame.origin + DVec3(cloud.positions[i]));
-    });
-    size_t kept = 0;
-    for (size_t i = 0; i < cloud.size(); i++) {
-        if (drop[i]) continue;
-        cloud.positions[kept] = cloud.positions[i];
-        cloud.colors[kept++] = cloud.colors[i];
-    }
-    cloud.positions.resize(kept);
-    cloud.colors.resize(kept);
-}
-
 std::vector<DVec3> places_of(const PointCloud& cloud) {
     std::vector<DVec3> places;
     places.reserve(cloud.size());
     for (const Vec3& p : cloud.positions)
         places.push_back(cloud.frame.origin + DVec3(p));
     return places;
+}
+
+// Leaves out of a dense cloud what the photos show the sky at, which is what matching makes of the sky beside
+// a twig, and puts thin wood in.
+void refine(PointCloud& cloud, const PhotoModel& model, const std::vector<DVec3>& sparse,
+            const std::string& photos, const MakeCloudOptions& options, MadeCloud& made, Progress* progress) {
+    SubProgress carving(progress, 0.0, kSkyEnd), looking(progress, kSkyEnd, 1.0);
+    const SkyCarver sky(model, sparse, photos, options.carve, &carving);
+    std::vector<uint8_t> keep(cloud.size(), 1);
+    parallel_for(cloud.size(), 1024, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; i++)
+            keep[i] = !sky.is_sky(cloud.frame.origin + DVec3(cloud.positions[i]));
+    });
+    cloud.keep_only(keep);
+    made.thin = add_thin_wood(
+        cloud, made.cell, find_thin_wood(model, sparse, photos, sky, options.thin_wood, &looking), progress);
 }
 
 }  // namespace
@@ -69,27 +68,15 @@ MadeCloud make_cloud(const std::string& model_folder, const std::string& photos,
     if (options.dense) {
         const PhotoModel model = read_photo_model(model_folder, &quiet);
         const std::vector<DVec3> sparse = places_of(cloud);
+        SubProgress matching(progress, 0.0, kDenseEnd), refining(progress, kDenseEnd, 1.0);
         try {
-            SubProgress matching(progress, 0.0, kSkyBegin), looking(progress, kThinBegin, 1.0);
             Densified dense = densify(model, sparse, photos, options.densify, &matching);
-            made.pairs = dense.pairs;
             made.warnings.insert(made.warnings.end(), dense.warnings.begin(), dense.warnings.end());
             made.cell = dense.cell;
+            refine(dense.cloud, model, sparse, photos, options, made, &refining);
+            if (dense.cloud.empty()) throw Error("The photos agree on nothing but the sky.");
+            made.pairs = dense.pairs;
             cloud = std::move(dense.cloud);
-            SubProgress carving(progress, kSkyBegin, kThinBegin);
-            const SkyCarver sky(model, sparse, photos, options.carve, &carving);
-            carve(cloud, sky);
-            if (options.thin) {
-                ThinPoints thin = find_thin_points(model, sparse, photos, options.thin_wood, &looking);
-                thin.remove_if([&](const ThinPlace& place) { return sky.is_sky(place.position); });
-                thin.before_sky.resize(thin.places.size());
-                parallel_for(thin.places.size(), 256, [&](size_t first, size_t last) {
-                    for (size_t i = first; i < last; i++)
-                        thin.before_sky[i] = sky.is_before_sky(thin.places[i].position, thin.places[i].way,
-                                                               thin.places[i].radius);
-                });
-                made.thin = add_thin_points(cloud, dense.cell, thin, progress);
-            }
         } catch (const Cancelled&) {
             throw;
         } catch (const Error& error) {

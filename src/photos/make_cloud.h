@@ -17,7 +17,6 @@ struct MakeCloudOptions {
     bool dense = true;  // match the photos pixel by pixel (photos/densify.h), else the model's own points
     DensifyOptions densify;
     CarveOptions carve;
-    bool thin = true;  // look for thin wood, too, where there are dense points (photos/thin_points.h)
     ThinWoodOptions thin_wood;
 };
 

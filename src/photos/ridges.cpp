@@ -189,6 +189,24 @@ class Tracer {
     std::vector<Pixel> pixels_;
 };
 
+// With places about a pixel of the picture apart.
+std::vector<Ridge> filled(const std::vector<Ridge>& row) {
+    std::vector<Ridge> all;
+    for (size_t i = 0; i + 1 < row.size(); i++) {
+        const Ridge &one = row[i], &next = row[i + 1];
+        const int pieces = std::max(1, static_cast<int>(std::lround(glm::distance(one.place, next.place))));
+        for (int k = 0; k < pieces; k++) {
+            const double t = static_cast<double>(k) / pieces;
+            // Neighbours' ways are nearly the same, or opposite.
+            const DVec2 other = glm::dot(one.way, next.way) < 0.0 ? -next.way : next.way;
+            all.push_back({glm::mix(one.place, next.place, t), glm::normalize(glm::mix(one.way, other, t)),
+                           glm::mix(one.width, next.width, t)});
+        }
+    }
+    all.push_back(row.back());
+    return all;
+}
+
 }  // namespace
 
 std::vector<std::vector<Ridge>> find_ridges(const GreyPyramid& pyramid, const RidgeOptions& options,
@@ -206,7 +224,7 @@ std::vector<std::vector<Ridge>> find_ridges(const GreyPyramid& pyramid, const Ri
         for (const std::vector<Bend>& line : tracer.lines()) {
             std::vector<Ridge> row;
             const auto end_row = [&] {
-                if (row.size() >= options.least_points) found.push_back(row);
+                if (row.size() >= options.least_points) found.push_back(filled(row));
                 row.clear();
             };
             for (const Bend& bend : line) {

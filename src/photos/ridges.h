@@ -24,7 +24,7 @@ struct RidgeOptions {
     size_t least_points = 10;      // of a line, about a pixel of its level apart
 };
 
-// Lines, each a row of places about a pixel of their level of the pyramid apart. Found where the grey levels'
+// Lines, each a row of places about a pixel of the picture apart. Found where the grey levels'
 // second derivative across is largest (C. Steger, "An unbiased detector of curvilinear structures", 1998),
 // and then moved to the middle between both edges. A line 1 to 4 pixels of a level wide is found there.
 std::vector<std::vector<Ridge>> find_ridges(const GreyPyramid& pyramid, const RidgeOptions& options = {},

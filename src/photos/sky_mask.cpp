@@ -109,13 +109,25 @@ std::vector<uint8_t> sure_sky(const Image& picture, const std::vector<uint8_t>& 
 
 }  // namespace
 
-std::vector<uint8_t> sky_in(const LoadedPhoto& loaded, const DVec3& sky, int margin) {
+PhotoSky::Shown PhotoSky::shown_at(const DVec3& in_camera) const {
+    if (mask.empty()) return Shown::kOutside;
+    const auto at = camera->project(in_camera);
+    if (!at) return Shown::kOutside;
+    const DVec2 place = scale * *at;
+    if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < width && place.y < height)) return Shown::kOutside;
+    const size_t pixel =
+        static_cast<size_t>(place.y) * static_cast<size_t>(width) + static_cast<size_t>(place.x);
+    return mask[pixel] ? Shown::kSky : Shown::kSomething;
+}
+
+PhotoSky sky_in(const LoadedPhoto& loaded, const DVec3& sky, int margin) {
     const Image& picture = loaded.picture;
     const int width = picture.width, height = picture.height;
+    PhotoSky found{loaded.photo, loaded.camera, loaded.scale, width, height, {}};
     const size_t all = static_cast<size_t>(width) * static_cast<size_t>(height);
     const double focal = loaded.camera->focal_length() * loaded.scale;
     const auto middle = loaded.camera->project({0.0, 0.0, 1.0});
-    if (!(focal > 0.0) || !middle || width < 8 || height < 8) return {};
+    if (!(focal > 0.0) || !middle || width < 8 || height < 8) return found;
     const DVec3 up = loaded.photo->turn() * sky;
     std::vector<uint8_t> above(all, 0);
     for (int y = 0; y < height; y++)
@@ -162,7 +174,7 @@ std::vector<uint8_t> sky_in(const LoadedPhoto& loaded, const DVec3& sky, int mar
                 }
                 used++;
             }
-        if (used < 100 || !solve(rows)) return {};
+        if (used < 100 || !solve(rows)) return found;
         for (size_t part = 0; part < 3; part++)
             for (size_t k = 0; k < kTerms; k++)
                 fit[part][k] = rows[k][kTerms + part];
@@ -170,7 +182,7 @@ std::vector<uint8_t> sky_in(const LoadedPhoto& loaded, const DVec3& sky, int mar
             for (int x = 0; x < width; x += 4)
                 if (sure[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)])
                     offs.push_back(off_at(x, y));
-        if (offs.empty()) return {};
+        if (offs.empty()) return found;
         alike = std::max(kLeastAlike, kSpreads * quantile(offs, 0.5));
     }
     // Not the sky: 1, and grown by the margin, first along the rows, then along the columns.
@@ -193,7 +205,8 @@ std::vector<uint8_t> sky_in(const LoadedPhoto& loaded, const DVec3& sky, int mar
                 any |= grown[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(x)];
             shown[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] = !any;
         }
-    return shown;
+    found.mask = std::move(shown);
+    return found;
 }
 
 SkyCarver::SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, const std::string& folder,
@@ -206,7 +219,6 @@ SkyCarver::SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, con
     parallel_for(views_.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
             if (progress) progress->check();
-            View& view = views_[i];
             const Photo& photo = model.photos[i];
             const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
             try {
@@ -214,67 +226,47 @@ SkyCarver::SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, con
                 if (picture.width == camera.width && picture.height == camera.height) {
                     const int longer = std::max(picture.width, picture.height);
                     const int times = (longer + options_.most_pixels - 1) / options_.most_pixels;
-                    const LoadedPhoto loaded{&photo, &camera, reduced(picture, times), 1.0 / times};
-                    view = {&photo,
-                            &camera,
-                            loaded.scale,
-                            loaded.picture.width,
-                            loaded.picture.height,
-                            sky_in(loaded, *sky, options_.margin)};
+                    views_[i] = sky_in({&photo, &camera, reduced(picture, times), 1.0 / times}, *sky,
+                                       options_.margin);
                 }
-            } catch (const Cancelled&) {
-                throw;
             } catch (const Error&) {
-                // Whoever needs its picture says so.
-                view.sky.clear();
+                // densify() says which can't be read.
+                views_[i] = {};
             }
             if (progress)
                 progress->update(static_cast<double>(++done) / static_cast<double>(views_.size()), "Sky");
         }
     });
-    std::erase_if(views_, [](const View& view) { return view.sky.empty(); });
-}
-
-ptrdiff_t SkyCarver::pixel_in(const View& view, const DVec2& place) {
-    if (!(place.x >= 0.0 && place.y >= 0.0 && place.x < view.width && place.y < view.height)) return -1;
-    return static_cast<ptrdiff_t>(place.y) * view.width + static_cast<ptrdiff_t>(place.x);
-}
-
-bool SkyCarver::is_before_sky(const DVec3& p, const DVec3& way, double radius) const {
-    size_t shown = 0, sky = 0;
-    for (const View& view : views_) {
-        const DVec3 here = view.photo->to_camera(p);
-        const auto at = view.camera->project(here);
-        if (!at || pixel_in(view, view.scale * *at) < 0) continue;
-        const DVec3 across = glm::cross(view.photo->turn() * way, glm::normalize(here));
-        // Wood that points at the camera has no sides.
-        if (!(glm::length(across) > 0.3)) continue;
-        shown++;
-        const double away =
-            kWider * radius + (options_.margin + 2.0) * here.z / (view.camera->focal_length() * view.scale);
-        const auto shows_sky = [&](double side) {
-            const auto beside = view.camera->project(here + side * glm::normalize(across));
-            const ptrdiff_t pixel = beside ? pixel_in(view, view.scale * *beside) : -1;
-            return pixel >= 0 && view.sky[static_cast<size_t>(pixel)] != 0;
-        };
-        sky += shows_sky(-away) || shows_sky(away);
-    }
-    return sky >= options_.least_photos &&
-           static_cast<double>(sky) >= options_.least_beside * static_cast<double>(shown);
+    std::erase_if(views_, [](const PhotoSky& view) { return view.mask.empty(); });
 }
 
 bool SkyCarver::is_sky(const DVec3& p) const {
     size_t shown = 0, sky = 0;
-    for (const View& view : views_) {
-        const auto at = view.camera->project(view.photo->to_camera(p));
-        if (!at) continue;
-        const ptrdiff_t pixel = pixel_in(view, view.scale * *at);
-        if (pixel < 0) continue;
-        shown++;
-        sky += view.sky[static_cast<size_t>(pixel)];
+    for (const PhotoSky& view : views_) {
+        const PhotoSky::Shown there = view.shown_at(view.photo->to_camera(p));
+        shown += there != PhotoSky::Shown::kOutside;
+        sky += there == PhotoSky::Shown::kSky;
     }
     return sky >= options_.least_photos &&
            static_cast<double>(sky) > options_.most_sky * static_cast<double>(shown);
+}
+
+bool SkyCarver::is_before_sky(const DVec3& p, const DVec3& way, double radius) const {
+    size_t shown = 0, sky = 0;
+    for (const PhotoSky& view : views_) {
+        const DVec3 here = view.photo->to_camera(p);
+        if (view.shown_at(here) == PhotoSky::Shown::kOutside) continue;
+        const DVec3 across = glm::cross(view.photo->turn() * way, glm::normalize(here));
+        // Wood that points at the camera has no sides.
+        if (!(glm::length(across) > 0.3)) continue;
+        shown++;
+        const double pixel = here.z / (view.camera->focal_length() * view.scale);
+        const DVec3 aside = (kWider * radius + (options_.margin + 2.0) * pixel) * glm::normalize(across);
+        sky += view.shown_at(here - aside) == PhotoSky::Shown::kSky ||
+               view.shown_at(here + aside) == PhotoSky::Shown::kSky;
+    }
+    return sky >= options_.least_photos &&
+           static_cast<double>(sky) >= options_.least_beside * static_cast<double>(shown);
 }
 
 }  // namespace treerec

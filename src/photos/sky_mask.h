@@ -12,11 +12,25 @@
 
 namespace treerec {
 
-// 1 where a photo shows the sky and nothing within `margin` pixels: picture.width * height, rows from the
-// top; empty where no sky is sure. It is what looks like the even, light areas above the horizon do, as a
-// polynomial of second degree over the picture tells it: the holes in a crown, too. sky: the way up in the
-// model.
-std::vector<uint8_t> sky_in(const LoadedPhoto& photo, const DVec3& sky, int margin);
+// Where a photo shows the sky.
+struct PhotoSky {
+    enum class Shown { kOutside, kSomething, kSky };
+
+    const Photo* photo = nullptr;
+    const Camera* camera = nullptr;
+    double scale = 1.0;  // the mask's pixels in one of the camera's
+    int width = 0;       // of the mask
+    int height = 0;
+    std::vector<uint8_t> mask;  // 1 for the sky, rows from the top; empty where no sky is sure
+
+    // What the photo shows where a point is, given in the camera's coordinates.
+    Shown shown_at(const DVec3& in_camera) const;
+};
+
+// The sky of a photo, but for what has something else within `margin` pixels. It is what looks like the even,
+// light areas above the horizon do, as a polynomial of second degree over the picture tells it: the holes in
+// a crown, too. sky: the way up in the model.
+PhotoSky sky_in(const LoadedPhoto& photo, const DVec3& sky, int margin);
 
 struct CarveOptions {
     int most_pixels = 1600;      // of the longer side: larger photos are made smaller
@@ -43,17 +57,7 @@ class SkyCarver {
     bool is_before_sky(const DVec3& p, const DVec3& way, double radius) const;
 
   private:
-    struct View {
-        const Photo* photo = nullptr;
-        const Camera* camera = nullptr;
-        double scale = 1.0;
-        int width = 0, height = 0;
-        std::vector<uint8_t> sky;
-    };
-    // The pixel of a view there, or -1.
-    static ptrdiff_t pixel_in(const View& view, const DVec2& place);
-
-    std::vector<View> views_;
+    std::vector<PhotoSky> views_;
     CarveOptions options_;
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <functional>
+#include <optional>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -25,6 +25,45 @@ constexpr size_t kSurface = 12;       // of them: a flat one fills 28 cells, and
 constexpr double kReplaced = 2.5;     // cells beside thin wood, whose points go
 constexpr double kRoundPixels = 1.5;  // of radius: thinner wood gets fewer points
 
+// A photo as the model has it; nothing for one that can't be read.
+std::optional<Image> picture_of(const PhotoModel& model, size_t i, const std::string& folder) {
+    const Photo& photo = model.photos[i];
+    const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+    try {
+        Image picture = read_photo(utf8_of(path_of(folder) / path_of(photo.name)));
+        if (picture.width == camera.width && picture.height == camera.height) return picture;
+    } catch (const Error&) {
+        // densify() says so.
+        return {};
+    }
+    return {};
+}
+
+// What the photo shows there that a place was found from.
+void colour(std::vector<ThinPlace>& places, const PhotoModel& model, const std::string& folder,
+            Progress* progress) {
+    std::vector<std::vector<size_t>> of_photo(model.photos.size());
+    for (size_t k = 0; k < places.size(); k++)
+        of_photo[places[k].photo].push_back(k);
+    parallel_for(of_photo.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; i++) {
+            if (progress) progress->check();
+            if (of_photo[i].empty()) continue;
+            const auto picture = picture_of(model, i, folder);
+            if (!picture) continue;
+            const Photo& photo = model.photos[i];
+            const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+            for (const size_t k : of_photo[i]) {
+                const auto at = camera.project(photo.to_camera(places[k].position));
+                if (!at || !(at->x >= 0 && at->y >= 0 && at->x < picture->width && at->y < picture->height))
+                    continue;
+                const uint8_t* pixel = picture->at(static_cast<int>(at->x), static_cast<int>(at->y));
+                places[k].color = {pixel[0], pixel[1], pixel[2]};
+            }
+        }
+    });
+}
+
 // Where a ray is nearer to the upright line through the subject than `reach`.
 DepthRange range_in_cylinder(const DVec3& from, const DVec3& along, const DVec3& subject, const DVec3& sky,
                              double reach) {
@@ -38,146 +77,98 @@ DepthRange range_in_cylinder(const DVec3& from, const DVec3& along, const DVec3&
 
 }  // namespace
 
-void ThinPoints::remove_if(const std::function<bool(const ThinPlace&)>& wrong) {
-    std::vector<uint8_t> drop(places.size(), 0);
-    parallel_for(places.size(), 256, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; i++)
-            drop[i] = wrong(places[i]);
-    });
-    size_t kept = 0;
-    for (size_t i = 0; i < places.size(); i++) {
-        if (drop[i]) continue;
-        places[kept] = places[i];
-        colors[kept++] = colors[i];
-    }
-    places.resize(kept);
-    colors.resize(kept);
-}
-
-ThinPoints find_thin_points(const PhotoModel& model, std::span<const DVec3> sparse, const std::string& folder,
-                            const ThinWoodOptions& options, Progress* progress) {
-    ThinPoints thin;
+std::vector<ThinPlace> find_thin_wood(const PhotoModel& model, std::span<const DVec3> sparse,
+                                      const std::string& folder, const SkyCarver& carver,
+                                      const ThinWoodOptions& options, Progress* progress) {
     const auto subject = subject_of(model);
     const auto sky = sky_of(model, sparse);
-    if (!subject || !sky) return thin;
+    if (!subject || !sky) return {};
     const double reach = subject_reach(model, *subject, *sky);
     const size_t count = model.photos.size();
     std::vector<std::vector<std::vector<Ridge>>> ridges(count);
     std::vector<double> scales(count, 1.0);
-    std::vector<std::string> failures(count);
     std::atomic<size_t> done = 0;
-    const auto path_to = [&](size_t i) { return utf8_of(path_of(folder) / path_of(model.photos[i].name)); };
     parallel_for(count, 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
             if (progress) progress->check();
-            try {
-                const Image picture = read_photo(path_to(i));
-                const Camera& camera = model.cameras[static_cast<size_t>(model.photos[i].camera)];
-                if (picture.width != camera.width || picture.height != camera.height)
-                    throw Error("'" + path_to(i) + "' is not as large as the model says; it was left out.");
-                const GreyPyramid pyramid = pyramid_of(picture, options.most_pixels);
+            if (const auto picture = picture_of(model, i, folder)) {
+                const GreyPyramid pyramid = pyramid_of(*picture, options.most_pixels);
                 scales[i] = 1.0 / pyramid.to_photo.x;
                 ridges[i] = find_ridges(pyramid, options.ridges, progress);
-            } catch (const Cancelled&) {
-                throw;
-            } catch (const Error& error) {
-                failures[i] = error.what();
             }
             if (progress)
                 progress->update(kLooking * static_cast<double>(++done) / static_cast<double>(count),
                                  "Thin wood");
         }
     });
-    for (const std::string& failure : failures)
-        if (!failure.empty()) thin.warnings.push_back(failure);
     SubProgress matching(progress, kLooking, kMatched);
-    const std::vector<ThinPlace> places = match_lines(
-        model, ridges, scales, *subject,
-        [&](const DVec3& from, const DVec3& along) {
-            return range_in_cylinder(from, along, *subject, *sky, reach);
-        },
-        options, &matching);
-    thin.places = merged_places(places, progress);
-    thin.colors.resize(thin.places.size(), {128, 128, 128});
-    std::vector<std::vector<size_t>> of_photo(count);
-    for (size_t k = 0; k < thin.places.size(); k++)
-        of_photo[thin.places[k].photo].push_back(k);
-    parallel_for(count, 1, [&](size_t first, size_t last) {
+    std::vector<ThinPlace> places =
+        merged_places(match_lines(
+                          model, ridges, scales, *subject,
+                          [&](const DVec3& from, const DVec3& along) {
+                              return range_in_cylinder(from, along, *subject, *sky, reach);
+                          },
+                          options, &matching),
+                      progress);
+    std::vector<uint8_t> is_sky(places.size(), 0);
+    parallel_for(places.size(), 256, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
-            if (progress) progress->check();
-            if (of_photo[i].empty()) continue;
-            const Image picture = read_photo(path_to(i));
-            const Camera& camera = model.cameras[static_cast<size_t>(model.photos[i].camera)];
-            for (const size_t k : of_photo[i]) {
-                const auto at = camera.project(model.photos[i].to_camera(thin.places[k].position));
-                if (!at || !(at->x >= 0 && at->y >= 0 && at->x < picture.width && at->y < picture.height))
-                    continue;
-                const uint8_t* pixel = picture.at(static_cast<int>(at->x), static_cast<int>(at->y));
-                thin.colors[k] = {pixel[0], pixel[1], pixel[2]};
-            }
+            is_sky[i] = carver.is_sky(places[i].position);
+            places[i].before_sky = carver.is_before_sky(places[i].position, places[i].way, places[i].radius);
         }
     });
-    return thin;
+    size_t kept = 0;
+    for (size_t i = 0; i < places.size(); i++)
+        if (!is_sky[i]) places[kept++] = places[i];
+    places.resize(kept);
+    colour(places, model, folder, progress);
+    return places;
 }
 
-size_t add_thin_points(PointCloud& cloud, double cell, const ThinPoints& thin, const Progress* progress) {
-    if (thin.places.empty() || !(cell > 0.0)) return 0;
+size_t add_thin_wood(PointCloud& cloud, double cell, std::vector<ThinPlace> places,
+                     const Progress* progress) {
     const DVec3 origin = cloud.frame.origin;
-    std::vector<uint8_t> drop(cloud.size(), 0), stays(thin.places.size(), 1);
-    if (!cloud.empty()) {
+    if (!cloud.empty() && !places.empty()) {
         const PointTree tree(cloud.positions, progress);
-        parallel_for(thin.places.size(), 256, [&](size_t first, size_t last) {
+        const double reach = kAround * cell;
+        std::erase_if(places, [&](const ThinPlace& place) {
+            if (place.before_sky) return false;
             std::array<uint32_t, kSurface> near{};
             std::array<float, kSurface> squared{};
-            for (size_t i = first; i < last; i++) {
-                const Vec3 at(thin.places[i].position - origin);
-                const size_t count = tree.nearest(at, kSurface, near.data(), squared.data());
-                const auto reach = static_cast<float>(kAround * cell);
-                stays[i] = (!thin.before_sky.empty() && thin.before_sky[i]) || count < kSurface ||
-                           squared[kSurface - 1] > reach * reach;
-            }
+            const size_t count =
+                tree.nearest(Vec3(place.position - origin), kSurface, near.data(), squared.data());
+            return count == kSurface && squared[kSurface - 1] <= reach * reach;
         });
     }
+    if (places.empty()) return 0;
     std::vector<Vec3> axes;
-    std::vector<float> reaches;
-    for (size_t i = 0; i < thin.places.size(); i++) {
-        if (!stays[i]) continue;
-        axes.emplace_back(thin.places[i].position - origin);
-        reaches.push_back(static_cast<float>(thin.places[i].radius + kReplaced * cell));
-    }
-    if (axes.empty()) return 0;
+    for (const ThinPlace& place : places)
+        axes.emplace_back(place.position - origin);
     const PointTree tree(axes, progress);
+    std::vector<uint8_t> keep(cloud.size(), 1);
     parallel_for(cloud.size(), 1024, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
             uint32_t near = 0;
             float squared = 0.0F;
-            if (tree.nearest(cloud.positions[i], 1, &near, &squared) == 1)
-                drop[i] = squared < reaches[near] * reaches[near];
+            if (tree.nearest(cloud.positions[i], 1, &near, &squared) != 1) continue;
+            const double reach = places[near].radius + kReplaced * cell;
+            keep[i] = squared >= reach * reach;
         }
     });
-    size_t kept = 0;
-    for (size_t i = 0; i < cloud.size(); i++) {
-        if (drop[i]) continue;
-        cloud.positions[kept] = cloud.positions[i];
-        cloud.colors[kept++] = cloud.colors[i];
-    }
-    cloud.positions.resize(kept);
-    cloud.colors.resize(kept);
-    size_t added = 0;
-    for (size_t i = 0; i < thin.places.size(); i++) {
-        if (!stays[i]) continue;
-        const ThinPlace& place = thin.places[i];
+    cloud.keep_only(keep);
+    for (size_t i = 0; i < places.size(); i++) {
+        const ThinPlace& place = places[i];
         const DVec3 side = any_perpendicular(place.way), other = glm::cross(place.way, side);
         const int points = place.radius > kRoundPixels * place.pixel ? 6 : 3;
         for (int k = 0; k < points; k++) {
-            const double angle = 2.0 * kPi * (k + 0.5 * static_cast<double>(added % 2)) / points;
+            // Each ring is turned against the last.
+            const double angle = 2.0 * kPi * (k + 0.5 * static_cast<double>(i % 2)) / points;
             cloud.positions.emplace_back(place.position - origin +
                                          place.radius * (std::cos(angle) * side + std::sin(angle) * other));
-            cloud.colors.push_back(thin.colors[i]);
+            cloud.colors.push_back(place.color);
         }
-        added++;
     }
-    return added;
+    return places.size();
 }
 
 }  // namespace treerec

@@ -7,6 +7,7 @@
 
 #include "geometry/parallel.h"
 #include "photos/affine_track.h"
+#include "photos/cameras_tell.h"
 
 namespace treerec {
 
@@ -50,8 +51,7 @@ bool undo_lens(const Camera& camera, const DVec2& photo_place, double focal, DVe
     return false;
 }
 
-}  // namespace
-
+// The lines of one photo, without the lens's distortion.
 class PhotoLines {
   public:
     PhotoLines(const Photo& photo, const Camera& camera, const std::vector<std::vector<Ridge>>& ridges,
@@ -153,8 +153,6 @@ class PhotoLines {
     std::vector<Mark> marks_;  // by cell
 };
 
-namespace {
-
 struct Depth {
     double depth = 0.0, score = 0.0;
     DVec3 way{0.0};
@@ -180,7 +178,7 @@ class Matcher {
         std::vector<Depth> found;
         for (const PhotoLines* other : others_) {
             const DVec3 a = other->to_camera(own_.centre), b = other->turn * along;
-            cross(mark, *other, a, b, range, [&](double depth, const Mark& there) {
+            crossings(mark, *other, a, b, range, [&](double depth, const Mark& there) {
                 const DVec3 side =
                     glm::cross(glm::transpose(other->turn) * DVec3(there.place / other->focal, 1.0),
                                glm::transpose(other->turn) * DVec3(there.way, 0.0));
@@ -286,8 +284,8 @@ class Matcher {
   private:
     // Where the other photo's lines cross the mark's epipolar line.
     template <typename Body>
-    void cross(const Mark& mark, const PhotoLines& other, const DVec3& a, const DVec3& b,
-               const DepthRange& range, const Body& body) const {
+    void crossings(const Mark& mark, const PhotoLines& other, const DVec3& a, const DVec3& b,
+                   const DepthRange& range, const Body& body) const {
         DVec3 near = a + range.least * b, far = a + range.most * b;
         if (near.z < 0.05 * range.least || far.z < 0.05 * range.least) return;
         DVec2 begin = other.focal * DVec2(near) / near.z, end = other.focal * DVec2(far) / far.z;
@@ -297,8 +295,7 @@ class Matcher {
         const DVec2 way = whole / length, across(-way.y, way.x);
         const double steps = std::ceil(glm::length(end - begin) / (0.5 * kCell));
         if (!(steps < 4000.0)) return;
-        const DVec2* last = nullptr;
-        double last_along = -1e30;
+        double last = -1e30;
         for (int k = 0; k <= static_cast<int>(steps); k++) {
             const DVec2 at = glm::mix(begin, end, std::min(1.0, k / std::max(steps, 1.0)));
             other.around(at, [&](const Mark& there) {
@@ -325,9 +322,9 @@ class Matcher {
                     other_wide > kSameWidth * wide + depth / other.focal)
                     return;
                 const double here = glm::dot(place - begin, way);
-                if (last && std::abs(here - last_along) < 0.3) return;
-                last = &there.place;
-                last_along = here;
+                // Of the same line, which has a place at each pixel.
+                if (std::abs(here - last) < 0.3) return;
+                last = here;
                 body(u, there);
             });
         }
@@ -366,11 +363,6 @@ class Matcher {
     const std::function<DepthRange(const DVec3&, const DVec3&)>& range_of_;
     const ThinWoodOptions& options_;
 };
-
-double degrees_between(const DVec3& a, const DVec3& b) {
-    const double cosine = glm::dot(a, b) / (glm::length(a) * glm::length(b));
-    return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / kPi;
-}
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include "photos/colmap_model.h"
 #include "photos/ridges.h"
 #include "progress.h"
+#include "scan/point_cloud.h"
 
 namespace treerec {
 
@@ -28,11 +29,13 @@ struct ThinWoodOptions {
 
 // A place on the axis of thin wood.
 struct ThinPlace {
-    DVec3 position{0.0};  // in the model
-    DVec3 way{0.0};       // along the wood, a unit vector
-    double radius = 0.0;  // in the model's unit
-    double pixel = 0.0;   // what a pixel of the photo is there
-    uint32_t photo = 0;   // index of the model's photo that it was found from
+    DVec3 position{0.0};          // in the model
+    DVec3 way{0.0};               // along the wood, a unit vector
+    double radius = 0.0;          // in the model's unit
+    double pixel = 0.0;           // what a pixel of the photo is there
+    uint32_t photo = 0;           // index of the model's photo that it was found from
+    Color8 color{128, 128, 128};  // there, as find_thin_wood() tells
+    bool before_sky = false;      // photos show the sky right beside it (SkyCarver::is_before_sky)
 };
 
 // What a photo may see of the tree: from the camera, in its own z.

@@ -12,7 +12,7 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 3";  // another number where another cloud comes out
+constexpr const char* kMethod = "points 4";  // another number where another cloud comes out
 constexpr size_t kManyThin = 2000;           // places of thin wood: a crown
 constexpr double kSpacing = 0.7;             // of the dense points' cells, between points of the skeleton
 constexpr double kFilmEnd = 0.1;
@@ -32,7 +32,6 @@ std::string basis_of(const std::string& folder, const std::string& model, const 
                   options.densify.neighbours,
                   options.densify.agreeing,
                   options.densify.cell,
-                  options.thin,
                   options.thin_wood.most_pixels,
                   options.carve.most_pixels};
     for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {

@@ -91,7 +91,7 @@ TEST(SkyMask, IsTheSkyAndTheHolesInACrown) {
     // A grey day, too.
     for (const double slope : {1.0, 0.0}) {
         const Image picture = drawn(photo, truth, slope, 1.5 * slope);
-        const std::vector<uint8_t> sky = sky_in({&photo, &camera, picture, 1.0}, {0, 0, 1}, 0);
+        const std::vector<uint8_t> sky = sky_in({&photo, &camera, picture, 1.0}, {0, 0, 1}, 0).mask;
         ASSERT_EQ(sky.size(), truth.size());
         size_t shown = 0, found = 0, wrong = 0;
         for (size_t i = 0; i < sky.size(); i++) {
@@ -101,7 +101,7 @@ TEST(SkyMask, IsTheSkyAndTheHolesInACrown) {
         }
         EXPECT_GT(static_cast<double>(found), 0.9 * static_cast<double>(shown));
         EXPECT_LT(static_cast<double>(wrong), 0.01 * static_cast<double>(shown));
-        const std::vector<uint8_t> less = sky_in({&photo, &camera, picture, 1.0}, {0, 0, 1}, 3);
+        const std::vector<uint8_t> less = sky_in({&photo, &camera, picture, 1.0}, {0, 0, 1}, 3).mask;
         for (size_t i = 0; i < less.size(); i++)
             EXPECT_LE(less[i], sky[i]);
     }
@@ -111,13 +111,15 @@ TEST(SkyMask, IsNowhereWhereThereIsNone) {
     const Photo photo = photo_at(0.0);
     const Camera camera = lens();
     Random random(5);
-    Image noise(kSide, kSide, 3), dark(kSide, kSide, 3);
+    Image noise(kSide, kSide, 3);
     for (uint8_t& value : noise.pixels)
         value = static_cast<uint8_t>(random.below(256));
-    EXPECT_TRUE(sky_in({&photo, &camera, noise, 1.0}, {0, 0, 1}, 1).empty());
-    // An even wall below the horizon, seen from above.
-    EXPECT_TRUE(sky_in({&photo, &camera, dark, 1.0}, {0, 0, -1}, 1).size() != 1);
-    EXPECT_TRUE(sky_in({&photo, &camera, Image(2, 2, 3), 0.01}, {0, 0, 1}, 1).empty());
+    EXPECT_TRUE(sky_in({&photo, &camera, noise, 1.0}, {0, 0, 1}, 1).mask.empty());
+    // An even floor below the horizon.
+    std::fill(noise.pixels.begin() + 3 * kSide * (3 * kSide / 4), noise.pixels.end(), uint8_t{220});
+    EXPECT_TRUE(sky_in({&photo, &camera, noise, 1.0}, {0, 0, 1}, 1).mask.empty());
+    EXPECT_FALSE(sky_in({&photo, &camera, noise, 1.0}, {0, 0, -1}, 1).mask.empty());
+    EXPECT_TRUE(sky_in({&photo, &camera, Image(2, 2, 3), 0.01}, {0, 0, 1}, 1).mask.empty());
 }
 
 class SkyCarving : public test::InFolder {};

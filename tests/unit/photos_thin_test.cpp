@@ -219,10 +219,9 @@ TEST(ThinWood, IsNotFoundWherePhotosHaveNothingInCommon) {
 
 TEST(ThinWood, TakesTheCoarsePointsPlaceButNotASurfaces) {
     constexpr double kCell = 0.02;
-    ThinPoints thin;
+    std::vector<ThinPlace> thin;
     const auto add = [&](const DVec3& p) {
-        thin.places.push_back({p, {0.0, 0.0, 1.0}, 0.004, 0.003, 0});
-        thin.colors.push_back({9, 8, 7});
+        thin.push_back({p, {0.0, 0.0, 1.0}, 0.004, 0.003, 0, {9, 8, 7}, false});
     };
     for (int k = 0; k < 100; k++)
         add({1.0, 0.0, 0.006 * k});  // a twig
@@ -230,7 +229,7 @@ TEST(ThinWood, TakesTheCoarsePointsPlaceButNotASurfaces) {
         add({0.0, 0.3, 0.006 * k});  // a furrow in a wall
     PointCloud cloud;
     cloud.frame.origin = {10.0, 20.0, 30.0};
-    for (ThinPlace& place : thin.places)
+    for (ThinPlace& place : thin)
         place.position += cloud.frame.origin;
     const auto put = [&](double x, double y, double z) {
         cloud.positions.emplace_back(x, y, z);
@@ -243,7 +242,7 @@ TEST(ThinWood, TakesTheCoarsePointsPlaceButNotASurfaces) {
         for (int z = 0; z < 40; z++)
             put(0.001, kCell * y, kCell * z);
     const size_t wall = cloud.size() - on_twig;
-    EXPECT_EQ(add_thin_points(cloud, kCell, thin), 100u);
+    EXPECT_EQ(add_thin_wood(cloud, kCell, thin), 100u);
     size_t rings = 0, old = 0;
     for (size_t i = 0; i < cloud.size(); i++) {
         const bool ring = cloud.colors[i][0] == 9;
@@ -255,7 +254,7 @@ TEST(ThinWood, TakesTheCoarsePointsPlaceButNotASurfaces) {
     EXPECT_GE(rings, 300u);
     EXPECT_EQ(old, wall);
     PointCloud none;
-    EXPECT_EQ(add_thin_points(none, kCell, {}), 0u);
+    EXPECT_EQ(add_thin_wood(none, kCell, {}), 0u);
 }
 
 }  // namespace
