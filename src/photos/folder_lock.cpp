@@ -107,6 +107,9 @@ FolderLock::FolderLock(const std::string& path) {
 }
 
 FolderLock::~FolderLock() {
+    // Closing alone would leave it with whatever has inherited the file, such as a killed program that takes
+    // a moment to die.
+    flock(descriptor_, LOCK_UN);
     close(descriptor_);
 }
 

@@ -146,6 +146,22 @@ TEST_F(ChildProcess, ALockThatIsLetGoIsFree) {
         const FolderLock lock(path("lock"));
 }
 
+// What a program leaves behind outside of its group, or what takes a moment to die, has the lock's file open.
+TEST_F(ChildProcess, ALockThatIsLetGoIsFreeWhateverStillHasItsFile) {
+    {
+        FolderLock lock(path("lock"));
+        ChildCommand command =
+            shell("exec >/dev/null 2>&1; setsid -f sh -c 'echo $$ >$PID_FILE; exec sleep 1000'; " +
+                  std::string("while [ ! -s $PID_FILE ]; do sleep .01; done"));
+        command.environment.emplace_back("PID_FILE", path("pid"));
+        command.lock = &lock;
+        EXPECT_TRUE(run_child(command, keep_).well());
+    }
+    EXPECT_NO_THROW(FolderLock{path("lock")});
+    EXPECT_TRUE(lives(std::stoi(get("pid"))));
+    ::kill(std::stoi(get("pid")), SIGKILL);
+}
+
 // Our process ends, as by kill -9, while its program works on.
 TEST_F(ChildProcess, ALockOfAKilledRunIsTakenFromItsProgram) {
     const pid_t ours = ::fork();
