@@ -14,6 +14,9 @@
 namespace treerec {
 
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat, kDouble };
+// The line of a cloud's header that has PointCloud::spacing after it.
+inline constexpr std::string_view kSpacingComment = "comment spacing ";
+
 enum class PlyEncoding { kAscii, kLittle, kBig };
 
 // In bytes, in the binary encodings.

@@ -10,9 +10,8 @@
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "photos/cameras_tell.h"
+#include "photos/pair_places.h"
 #include "photos/photo_picture.h"
-#include "photos/rectify.h"
-#include "photos/semi_global.h"
 #include "photos/sky_mask.h"
 
 namespace treerec {
@@ -28,6 +27,8 @@ constexpr double kNear = 0.7;        // of the nearest sparse points' distance
 constexpr double kFar = 1.5;         // of the farthest ones'
 constexpr double kOutermost = 0.01;  // share of the sparse points that is not asked
 constexpr double kCellPixels = 2.0;
+constexpr double kFinePixels = 4.0;     // of the matched pictures', have those that tell parts of a pixel,
+constexpr double kMostFine = 400.0;     // megapixels of all photos together at most: three bytes each
 constexpr double kCellReach = 1 << 20;  // cells to each side that have a number
 
 // How far what a photo shows is in front of it, in the model's unit.
@@ -110,19 +111,19 @@ Depths depths_of(const LoadedPhoto& photo, std::span<const DVec3> sparse) {
 }
 
 // The pairs that tell most: for each photo its neighbours at the best angle.
-std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std::vector<Depths>& depths,
+std::vector<Pair> choose_pairs(const std::vector<PhotoSizes>& photos, const std::vector<Depths>& depths,
                                int neighbours) {
     std::set<std::pair<size_t, size_t>> chosen;
     for (size_t i = 0; i < photos.size(); i++) {
         if (!(depths[i].median > 0.0)) continue;
-        const DVec3 here = photos[i].photo->centre(), ahead = photos[i].photo->ahead();
+        const DVec3 here = photos[i].matched.photo->centre(), ahead = photos[i].matched.photo->ahead();
         const DVec3 shown = here + depths[i].median * ahead;
         std::vector<std::pair<double, size_t>> others;
         for (size_t j = 0; j < photos.size(); j++) {
             if (j == i || !(depths[j].median > 0.0)) continue;
-            const double angle = degrees_between(here - shown, photos[j].photo->centre() - shown);
+            const double angle = degrees_between(here - shown, photos[j].matched.photo->centre() - shown);
             if (!(angle >= kLeastAngle && angle <= kLargestAngle)) continue;
-            if (glm::dot(ahead, photos[j].photo->ahead()) < kTurned) continue;
+            if (glm::dot(ahead, photos[j].matched.photo->ahead()) < kTurned) continue;
             others.emplace_back(std::abs(std::log(angle / kBestAngle)), j);
         }
         std::sort(others.begin(), others.end());
@@ -136,40 +137,20 @@ std::vector<Pair> choose_pairs(const std::vector<LoadedPhoto>& photos, const std
 }
 
 // What a pair sees, a sum for each cell, by cell. sky: of the first one.
-std::vector<Sight> look(const LoadedPhoto& one, const LoadedPhoto& other, const PhotoSky& sky,
+std::vector<Sight> look(const PhotoSizes& one, const PhotoSizes& other, const PhotoSky& sky,
                         const Depths& depths, const Region& region, const Cells& cells, double cell,
                         uint32_t number) {
-    const auto pair = rectify(one, other);
-    if (!pair) return {};
-    const double lengths = pair->focal * pair->baseline;
-    const int least = std::max(1, static_cast<int>(std::floor(lengths / depths.most)));
-    const int most =
-        std::min(static_cast<int>(std::ceil(lengths / depths.least)), least + kMostDisparities - 1);
-    if (most - least < 4) return {};
-    const std::vector<float> disparities = match_rectified(*pair, least, most);
     std::vector<Sight> sights;
-    for (int y = 0; y < pair->height; y++)
-        for (int x = 0; x < pair->width; x++) {
-            const size_t at =
-                static_cast<size_t>(y) * static_cast<size_t>(pair->width) + static_cast<size_t>(x);
-            const float disparity = disparities[at];
-            if (std::isnan(disparity)) continue;
-            const DVec3 p = pair->point_at(x, y, disparity);
-            if (!region.has(p) || !cells.has(p)) continue;
-            if (sky.shown_at(one.photo->to_camera(p)) == PhotoSky::Shown::kSky) continue;
-            // Half a pixel of disparity, as a length.
-            const double unsure =
-                0.5 * lengths / (static_cast<double>(disparity) * static_cast<double>(disparity));
-            const auto weight = static_cast<float>(cell * cell / (cell * cell + unsure * unsure));
-            Sight sight;
-            sight.cell = cells.of(p);
-            sight.pair = number;
-            sight.weight = weight;
-            sight.place = weight * Vec3((p - cells.corner(sight.cell)) / cell);
-            const auto& colour = pair->left.colours[at];
-            sight.colour = weight * Vec3(colour[0], colour[1], colour[2]);
-            sights.push_back(sight);
-        }
+    for (const PairPlace& seen : places_of_pair(one, other, sky, depths.least, depths.most)) {
+        if (!region.has(seen.place) || !cells.has(seen.place)) continue;
+        Sight sight;
+        sight.cell = cells.of(seen.place);
+        sight.pair = number;
+        sight.weight = static_cast<float>(cell * cell / (cell * cell + seen.unsure * seen.unsure));
+        sight.place = sight.weight * Vec3((seen.place - cells.corner(sight.cell)) / cell);
+        sight.colour = sight.weight * Vec3(seen.colour[0], seen.colour[1], seen.colour[2]);
+        sights.push_back(sight);
+    }
     std::stable_sort(sights.begin(), sights.end(),
                      [](const Sight& a, const Sight& b) { return a.cell < b.cell; });
     size_t kept = 0;
@@ -243,9 +224,17 @@ PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double c
     return cloud;
 }
 
-std::vector<LoadedPhoto> load_photos(const PhotoModel& model, const std::string& folder, double megapixels,
-                                     Densified& result, Progress* progress) {
-    std::vector<LoadedPhoto> photos;
+// By how much a picture's sides are divided to have about so many megapixels.
+int times_smaller(const Image& picture, double megapixels) {
+    const double pixels = static_cast<double>(picture.width) * picture.height;
+    return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / (1e6 * megapixels)))));
+}
+
+std::vector<PhotoSizes> load_photos(const PhotoModel& model, const std::string& folder, double megapixels,
+                                    Densified& result, Progress* progress) {
+    const double fine_megapixels =
+        std::min(kFinePixels * megapixels, kMostFine / static_cast<double>(model.photos.size()));
+    std::vector<PhotoSizes> photos;
     for (size_t i = 0; i < model.photos.size(); i++) {
         if (progress) {
             progress->check();
@@ -258,10 +247,12 @@ std::vector<LoadedPhoto> load_photos(const PhotoModel& model, const std::string&
             const Image picture = read_photo(path);
             if (picture.width != camera.width || picture.height != camera.height)
                 throw Error("'" + path + "' is not as large as the model says; it was left out.");
-            const double pixels = static_cast<double>(picture.width) * picture.height;
-            const int times =
-                std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / (1e6 * megapixels)))));
-            photos.push_back({&photo, &camera, reduced(picture, times), 1.0 / times});
+            const int times = times_smaller(picture, megapixels);
+            const int fine = times_smaller(picture, fine_megapixels);
+            PhotoSizes sizes;
+            sizes.matched = {&photo, &camera, reduced(picture, times), 1.0 / times};
+            if (fine < times) sizes.fine = {&photo, &camera, reduced(picture, fine), 1.0 / fine};
+            photos.push_back(std::move(sizes));
         } catch (const Error& error) {
             result.warnings.emplace_back(error.what());
         }
@@ -271,15 +262,15 @@ std::vector<LoadedPhoto> load_photos(const PhotoModel& model, const std::string&
 }
 
 // Two of the pictures' pixels, where what was photographed is.
-double usual_cell(const std::vector<LoadedPhoto>& photos, const std::vector<Depths>& depths,
+double usual_cell(const std::vector<PhotoSizes>& photos, const std::vector<Depths>& depths,
                   const Region& region) {
     std::vector<double> cells;
     for (size_t i = 0; i < photos.size(); i++) {
         if (!(depths[i].median > 0.0)) continue;
         const double away = region.everything ? depths[i].median
-                                              : glm::dot(region.subject - photos[i].photo->centre(),
-                                                         photos[i].photo->ahead());
-        const double focal = photos[i].camera->focal_length() * photos[i].scale;
+                                              : glm::dot(region.subject - photos[i].matched.photo->centre(),
+                                                         photos[i].matched.photo->ahead());
+        const double focal = photos[i].matched.camera->focal_length() * photos[i].matched.scale;
         if (focal > 0.0 && away > 0.0) cells.push_back(kCellPixels * away / focal);
     }
     return cells.empty() ? 0.0 : quantile(cells, 0.5);
@@ -291,11 +282,11 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
                   const DensifyOptions& options, Progress* progress) {
     Densified result;
     SubProgress loading(progress, 0.0, 0.1), matching(progress, 0.1, 0.95);
-    const std::vector<LoadedPhoto> photos = load_photos(model, folder, options.megapixels, result, &loading);
+    const std::vector<PhotoSizes> photos = load_photos(model, folder, options.megapixels, result, &loading);
     const Region region = region_of(model, sparse);
     std::vector<Depths> depths;
-    for (const LoadedPhoto& photo : photos)
-        depths.push_back(depths_of(photo, sparse));
+    for (const PhotoSizes& photo : photos)
+        depths.push_back(depths_of(photo.matched, sparse));
     const std::vector<Pair> pairs = choose_pairs(photos, depths, options.neighbours);
     result.cell = options.cell > 0.0 ? options.cell : usual_cell(photos, depths, region);
     if (pairs.empty() || !(result.cell > 0.0))
@@ -307,7 +298,7 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
     if (!region.everything)
         parallel_for(photos.size(), 1, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; i++)
-                skies[i] = sky_in(photos[i], region.sky, 0);
+                skies[i] = sky_in(photos[i].matched, region.sky, 0);
         });
     std::vector<std::vector<Sight>> seen(pairs.size());
     std::atomic<size_t> done{0};

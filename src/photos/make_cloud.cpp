@@ -12,6 +12,8 @@ namespace treerec {
 
 namespace {
 
+constexpr size_t kManyThin = 2000;  // places of thin wood: a crown
+constexpr double kSpacing = 0.7;    // of the dense points' cells, between points that tell of the shape
 constexpr double kDenseEnd = 0.35;  // of the progress
 constexpr double kSkyEnd = 0.1;     // of what comes after it
 
@@ -56,6 +58,8 @@ void refine(PointCloud& cloud, const PhotoModel& model, const std::vector<DVec3>
     cloud.keep_only(keep);
     made.thin = add_thin_wood(
         cloud, made.cell, find_thin_wood(model, sparse, photos, sky, options.thin_wood, &looking), progress);
+    // Rings of points around twigs are denser than they are sure.
+    if (made.thin > kManyThin) cloud.spacing = kSpacing * made.cell;
 }
 
 }  // namespace

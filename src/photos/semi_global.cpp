@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "photos/refine_disparity.h"
+
 namespace treerec {
 
 namespace {
@@ -22,10 +24,7 @@ constexpr int kEdge = 8;          // grey levels: of a change that makes it chea
 constexpr int kTexture =
     6;  // grey levels within 3 x 3 pixels: more, and what stands before the sky would grow
 constexpr float kUnique = 0.97F;  // of the second best cost apart from its neighbours
-constexpr int kWindow = 2;        // pixels to each side, whose grey levels refine a disparity
-constexpr int kSteps = 3;
-constexpr float kFlat = 4.0F;  // mean square of grey levels per pixel: less slope tells nothing
-constexpr int kSpot = 60;      // pixels: smaller spots are errors
+constexpr int kSpot = 60;         // pixels: smaller spots are errors
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 struct Size {
@@ -176,47 +175,6 @@ float disparity_at(const std::vector<int16_t>& sums, const std::vector<int>& fro
     return static_cast<float>(least + best) + std::clamp(part, -0.5F, 0.5F);
 }
 
-// A grey level between the pixels of a row.
-float level_at(const std::vector<uint8_t>& grey, const Size& size, float x, int y) {
-    const float inside = std::clamp(x, 0.0F, static_cast<float>(size.width - 1) - 1e-3F);
-    const int left = static_cast<int>(inside);
-    const float part = inside - static_cast<float>(left);
-    const uint8_t* row = &grey[size.pixel(left, y)];
-    return (1.0F - part) * row[0] + part * row[1];
-}
-
-// A census knows whole pixels. The grey levels tell the rest: steps of Gauss and Newton by which the window
-// becomes most alike in both pictures, but for a level that all of one picture has more (B. Lucas and T.
-// Kanade, 1981).
-float refined(const RectifiedPair& pair, const Size& size, int x, int y, float disparity) {
-    constexpr int kCount = (2 * kWindow + 1) * (2 * kWindow + 1);
-    if (x < kWindow || y < kWindow || x + kWindow >= size.width || y + kWindow >= size.height)
-        return disparity;
-    float refined = disparity;
-    for (int step = 0; step < kSteps; step++) {
-        std::array<float, kCount> slope, miss;
-        float mean_slope = 0.0F, mean_miss = 0.0F;
-        size_t i = 0;
-        for (int v = y - kWindow; v <= y + kWindow; v++)
-            for (int u = x - kWindow; u <= x + kWindow; u++, i++) {
-                const float other = static_cast<float>(u) - refined;
-                slope[i] = 0.5F * (level_at(pair.right.grey, size, other + 1.0F, v) -
-                                   level_at(pair.right.grey, size, other - 1.0F, v));
-                miss[i] = pair.left.grey[size.pixel(u, v)] - level_at(pair.right.grey, size, other, v);
-                mean_slope += slope[i] / kCount;
-                mean_miss += miss[i] / kCount;
-            }
-        float both = 0.0F, square = 0.0F;
-        for (i = 0; i < kCount; i++) {
-            both += (slope[i] - mean_slope) * (miss[i] - mean_miss);
-            square += (slope[i] - mean_slope) * (slope[i] - mean_slope);
-        }
-        if (square < kFlat * kCount) return disparity;
-        refined -= std::clamp(both / square, -0.5F, 0.5F);
-    }
-    return std::abs(refined - disparity) <= 1.0F ? refined : disparity;
-}
-
 void drop_spots(std::vector<float>& disparities, const Size& size) {
     std::vector<uint8_t> seen(disparities.size(), 0);
     std::vector<size_t> spot;
@@ -267,7 +225,7 @@ std::vector<float> match_rectified(const RectifiedPair& pair, int least, int mos
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < size.width; x++) {
             float& disparity = disparities[size.pixel(x, y)];
-            if (!std::isnan(disparity)) disparity = refined(pair, size, x, y, disparity);
+            if (!std::isnan(disparity)) disparity = refine_disparity(pair, x, y, disparity);
         }
     return disparities;
 }

@@ -12,9 +12,7 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 4";  // another number where another cloud comes out
-constexpr size_t kManyThin = 2000;           // places of thin wood: a crown
-constexpr double kSpacing = 0.7;             // of the dense points' cells, between points of the skeleton
+constexpr const char* kMethod = "points 5";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
 constexpr double kColmapEnd = 0.6;
 constexpr double kCloudEnd = 0.95;
@@ -115,10 +113,7 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
     making.check();
-    ReconstructOptions reconstruct = options.reconstruct;
-    // Rings of points around twigs are denser than they are sure.
-    if (result.made.thin > kManyThin) reconstruct.scan_spacing = kSpacing * result.made.cell;
-    result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
+    result.tree = reconstruct_file(result.cloud, options.reconstruct, &growing);
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
     result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());

@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "geometry/bounds.h"
 #include "pipeline/ask_photos.h"
 #include "scan/check_shape.h"
 #include "scan/thin_cloud.h"
@@ -45,6 +46,10 @@ constexpr size_t kLeastFollowed = 200;
 // Where more than this went that was grown through leaves, as a share of what stayed, the leaves' points have
 // made that crooked and thick.
 constexpr double kMuchDropped = 0.25;
+
+// A tree has details to show: what a scan's file says of its spacing is not believed beyond this share of its
+// size.
+constexpr double kWidestSpacing = 0.02;
 
 void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -174,6 +179,15 @@ Foliage foliage_of(const PointCloud& cloud, const std::vector<uint8_t>& leaf, co
     return gather_foliage(points, colors, &progress);
 }
 
+// In metres; 0 where the scan's file tells none, or nonsense.
+double told_spacing(const Reconstruction& result) {
+    Bounds bounds;
+    for (const Vec3& p : result.cloud.positions)
+        bounds.add(DVec3(p));
+    const double spacing = result.cloud.spacing * result.orient.metres_per_unit;
+    return spacing < kWidestSpacing * bounds.diagonal() ? spacing : 0.0;
+}
+
 }  // namespace
 
 std::string chosen_leaves(const std::string& asked, const Reconstruction& result) {
@@ -267,8 +281,7 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
     const bool doubted = !told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay;
     SubProgress growing(progress, kLeavesEnd, doubted ? kFirstSkeletonEnd : kSkeletonEnd);
     SkeletonOptions skeleton_options = options.skeleton;
-    if (skeleton_options.spacing <= 0.0)
-        skeleton_options.spacing = options.scan_spacing * result.orient.metres_per_unit;
+    if (skeleton_options.spacing <= 0.0) skeleton_options.spacing = told_spacing(result);
     skeleton_options.one_stem = skeleton_options.one_stem || told.fronds;
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
     SkeletonResult skeleton = skeletonize_wood(result, told, skeleton_options, growing);

@@ -34,9 +34,6 @@ struct ReconstructOptions {
     std::optional<PruneOptions> prune;
     bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;
-    // Where skeleton.spacing is found out: what it is, in the scan's unit; 0 where nothing is known of the
-    // scan.
-    double scan_spacing = 0.0;
     RadiusRule radii = RadiusRule::kMeasured;  // of the whole tree, whichever way it was found
     size_t score_points = 200000;              // about how many points the fit is measured on
 };

@@ -39,6 +39,8 @@ struct PointCloud {
     std::vector<Vec3> normals;
     ScanUnit unit;
     PointLabels labels;
+    // In the scan's unit: points nearer to each other tell no more of the shape. 0: its file does not tell.
+    double spacing = 0.0;
 
     size_t size() const { return positions.size(); }
     bool empty() const { return positions.empty(); }

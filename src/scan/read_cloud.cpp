@@ -279,6 +279,7 @@ PointCloud settle(const ReadJob& job, RawCloud&& raw) {
     refuse_coarse_steps(job, raw, keep);
     raw.positions = {};
     cloud.unit = raw.unit;
+    cloud.spacing = raw.spacing;
     convert_labels(raw, cloud);
     raw.labels = {};
     if (!raw.colors.empty()) convert_colors(job, raw, cloud);

@@ -59,8 +59,8 @@ PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes,
                             const ReadCloudOptions& options = {}, ReadCloudReport* report = nullptr);
 
 // Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
-// there are colours or normals), .las (1.2; without normals). Scan coordinates, axes and units, to 1e-8 of
-// the cloud's extent. Writes beside and renames. Throws Error.
+// there are colours or normals), .las (1.2; without normals). Only PLY has the cloud's spacing. Scan
+// coordinates, axes and units, to 1e-8 of the cloud's extent. Writes beside and renames. Throws Error.
 void write_cloud(const std::string& path, const PointCloud& cloud);
 
 }  // namespace treerec

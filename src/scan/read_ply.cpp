@@ -1,5 +1,6 @@
 // PLY clouds, Gaussian splats among them.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -242,6 +243,20 @@ class AsciiReader {
     const char* end_;
 };
 
+// As write_cloud() has it in a comment; 0 where there is none.
+double spacing_of(const PlyHeader& header) {
+    for (std::string_view comment : header.comments) {
+        if (!comment.starts_with(kSpacingComment)) continue;
+        comment.remove_prefix(kSpacingComment.size());
+        double spacing = 0.0;
+        const auto [end, error] = std::from_chars(comment.data(), comment.data() + comment.size(), spacing);
+        if (error == std::errc() && end == comment.data() + comment.size() && std::isfinite(spacing) &&
+            spacing > 0.0)
+            return spacing;
+    }
+    return 0.0;
+}
+
 template <typename Reader>
 RawCloud read_vertices(const ReadJob& job, const PlyHeader& header) {
     Reader reader(job, header);
@@ -255,6 +270,7 @@ RawCloud read_vertices(const ReadJob& job, const PlyHeader& header) {
         RawCloud raw = reader.read(element, vertices);
         raw.color_white = vertices.white;
         raw.label_column = vertices.label_column;
+        raw.spacing = spacing_of(header);
         if (vertices.splats) {
             job.report.format += ", Gaussian splats";
             settle_splats(job, raw);

@@ -60,6 +60,7 @@ struct RawCloud {
     std::vector<float> labels;
     std::string label_column;  // the name of the labels' column
     ScanUnit unit;
+    double spacing = 0.0;      // as PointCloud has it
     float color_white = 0.0F;  // the value of full brightness; 0: decide by the largest value
 
     size_t size() const { return positions.size(); }

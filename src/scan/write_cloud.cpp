@@ -8,6 +8,7 @@
 #include "file_bytes.h"
 #include "geometry/bounds.h"
 #include "geometry/portable_math.h"
+#include "ply_header.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
@@ -59,9 +60,14 @@ int decimals_for(const Bounds& bounds) {
 }
 
 std::string to_ply(const PointCloud& cloud) {
-    std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                         std::to_string(cloud.size()) +
-                         "\nproperty double x\nproperty double y\nproperty double z\n";
+    std::string header = "ply\nformat binary_little_endian 1.0\n";
+    if (cloud.spacing > 0.0) {
+        char number[32];
+        const std::to_chars_result end = std::to_chars(number, number + sizeof number, cloud.spacing);
+        header += std::string(kSpacingComment).append(number, end.ptr) + '\n';
+    }
+    header += "element vertex " + std::to_string(cloud.size()) +
+              "\nproperty double x\nproperty double y\nproperty double z\n";
     if (cloud.has_normals()) header += "property float nx\nproperty float ny\nproperty float nz\n";
     if (cloud.has_colors()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     header += "end_header\n";

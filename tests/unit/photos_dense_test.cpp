@@ -80,12 +80,12 @@ struct Scene {
     }
 };
 
-Camera usual_camera() {
+Camera usual_camera(int times = 1) {
     Camera camera;
     camera.model = LensModel::kPinhole;
-    camera.width = 300;
-    camera.height = 220;
-    camera.parameters = {260.0, 260.0, 150.0, 110.0};
+    camera.width = 300 * times;
+    camera.height = 220 * times;
+    camera.parameters = {260.0 * times, 260.0 * times, 150.0 * times, 110.0 * times};
     return camera;
 }
 
@@ -109,10 +109,10 @@ Image take(const Photo& photo, const Camera& camera) {
 }
 
 // Photos on a part of a circle around the stem, 6 degrees apart, and points on it as a model has them.
-void fill(Scene& scene, int photos, const char* name) {
+void fill(Scene& scene, int photos, const char* name, int times = 1) {
     scene.folder = utf8_of(std::filesystem::temp_directory_path() / name);
     make_folder(scene.folder);
-    scene.model.cameras.push_back(usual_camera());
+    scene.model.cameras.push_back(usual_camera(times));
     for (int i = 0; i < photos; i++) {
         const double angle = glm::radians(6.0 * i);
         Photo photo = photo_from({2.0 * std::sin(angle), 0.1 * (i % 3), 2.0 * std::cos(angle)}, {0, 0, 0});
@@ -158,6 +158,30 @@ TEST(Densify, AStemSeenFromAroundIsRoundAndInItsPlace) {
         blue += colour[2];
     }
     EXPECT_NEAR(blue / red, 0.5, 0.02);
+}
+
+// How far the middle one of the stem's points is from its surface.
+double off_stem(const Densified& made) {
+    std::vector<double> beside;
+    for (const Vec3& position : made.cloud.positions) {
+        const DVec3 p = made.cloud.frame.origin + DVec3(position);
+        if (p.y > -0.9) beside.push_back(std::abs(std::hypot(p.x, p.z) - kRadius));
+    }
+    std::nth_element(beside.begin(), beside.begin() + static_cast<long>(beside.size() / 2), beside.end());
+    return beside[beside.size() / 2];
+}
+
+// Larger photos are matched at the same size, and tell parts of a pixel.
+TEST(Densify, LargerPhotosAreMoreExact) {
+    Scene small, large;
+    fill(small, 6, "treerec_dense_small");
+    fill(large, 6, "treerec_dense_large", 2);
+    DensifyOptions options;
+    options.megapixels = 0.066;
+    const Densified coarse = densify(small.model, small.sparse, small.folder, options);
+    const Densified fine = densify(large.model, large.sparse, large.folder, options);
+    EXPECT_NEAR(fine.cell / coarse.cell, 1.0, 0.01);
+    EXPECT_LT(off_stem(fine), 0.7 * off_stem(coarse)) << off_stem(coarse);
 }
 
 TEST(Densify, IsTheSameOnAnyThreads) {

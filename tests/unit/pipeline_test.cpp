@@ -110,6 +110,24 @@ TEST_F(Pipeline, ItsHalvesAndPartsMadeAheadMakeTheSame) {
     }
 }
 
+TEST_F(Pipeline, ASpacingThatTheScanTellsIsTaken) {
+    cloud_.frame.metres_per_unit = 0.5;
+    cloud_.spacing = 0.1;  // of the file's units: 5 cm
+    write_cloud(path("told.ply"), cloud_);
+    ReconstructOptions options;
+    options.orient.metres_per_unit = 0.5;
+    const Reconstruction told = reconstruct_file(path("told.ply"), options);
+    EXPECT_NEAR(told.spacing, 0.05, 1e-9);
+    options.skeleton.spacing = 0.03;  // the user knows better
+    EXPECT_NEAR(reconstruct_file(path("told.ply"), options).spacing, 0.03, 1e-9);
+    // Nonsense is not believed.
+    const Reconstruction plain = reconstruct_file(path("scan.ply"), {});
+    cloud_.frame.metres_per_unit = 1.0;
+    cloud_.spacing = 3.0;
+    write_cloud(path("nonsense.ply"), cloud_);
+    EXPECT_EQ(reconstruct_file(path("nonsense.ply"), {}).spacing, plain.spacing);
+}
+
 TEST_F(Pipeline, TheCloudLiesOnTheTreeInTheTreesFrame) {
     const Reconstruction result = reconstruct_file(path("scan.ply"), {});
     EXPECT_EQ(result.cloud.frame, result.tree.frame());

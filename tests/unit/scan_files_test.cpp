@@ -227,6 +227,22 @@ TEST(ScanRead, RoundTrips) {
     }
 }
 
+TEST(ScanRead, PlyKeepsTheSpacing) {
+    const Folder folder;
+    PointCloud cloud = random_cloud(1, 10, DVec3(0.0), 1.0, true, false);
+    for (const double spacing : {0.0, 0.1, 1.0 / 3.0, 1e-9}) {
+        cloud.spacing = spacing;
+        write_cloud(folder.file("a.ply"), cloud);
+        EXPECT_EQ(read_cloud(folder.file("a.ply")).spacing, spacing);
+    }
+    for (const char* told : {"", "nan", "inf", "-1", "0", "1e999", "0.1 m", "0.1x", "wide"}) {
+        const std::string header = "ply\nformat ascii 1.0\ncomment spacing " + std::string(told) +
+                                   "\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+                                   "float z\nend_header\n0 0 0\n";
+        EXPECT_EQ(read_cloud_bytes("a.ply", header).spacing, 0.0) << told;
+    }
+}
+
 TEST(ScanRead, WritingSaysWhatIsWrong) {
     const Folder folder;
     const PointCloud cloud = random_cloud(1, 10, DVec3(0.0), 1.0, false, false);
