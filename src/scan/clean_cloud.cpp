@@ -106,6 +106,13 @@ class Cleaning {
         report_.steps.push_back({"Other trees", removed});
     }
 
+    // Leaves out what stands beside the tree that is wanted.
+    void take_beside(const Ground& ground, const DVec3& place, const Progress* progress) {
+        const std::vector<uint8_t> goes =
+            find_beside(points(), ground, cloud_.frame.to_tree(place), progress);
+        if (std::find(goes.begin(), goes.end(), uint8_t{1}) != goes.end()) take("Beside the tree", goes);
+    }
+
     void apply(const Progress* progress) {
         std::vector<uint8_t> sample_stays(samples_.points.size());
         for (const uint32_t s : alive_)
@@ -158,6 +165,7 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     }
     step(0.75);
     if (options.pick.enabled) cleaning.take_others(ground, spacing, options.pick, progress);
+    if (options.pick.position) cleaning.take_beside(ground, *options.pick.position, progress);
     step(0.85);
     if (options.remove_fragments) {
         const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing, progress));

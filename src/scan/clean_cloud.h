@@ -68,8 +68,8 @@ struct CleanOptions {
 };
 
 struct CleanStep {
-    std::string name;    // "Extreme colours", "Outliers", "Ground", "Walls" (where there are any), "Other
-                         // trees", "Fragments"
+    std::string name;    // "Extreme colours", "Outliers", "Ground", "Walls", "Other trees", "Beside the
+                         // tree" (where there are any), "Fragments"
     size_t removed = 0;  // points
 };
 

@@ -70,4 +70,9 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground
 std::vector<uint8_t> find_walls(const std::vector<Vec3>& points, std::vector<DVec2>& walls,
                                 const Progress* progress);
 
+// Low things that stand on the ground apart from a tree of which it is known that it stands nearest to
+// `place`: benches, bushes. Nothing where no ground was found. points: without ground.
+std::vector<uint8_t> find_beside(const std::vector<Vec3>& points, const Ground& ground, const DVec3& place,
+                                 const Progress* progress);
+
 }  // namespace treerec
