@@ -13,8 +13,8 @@ namespace treerec {
 namespace {
 
 constexpr int kLeastDisparities = 4;  // fewer tell nothing apart
-constexpr double kLeastAlike =
-    0.6;  // correlation: a pixel of the trunk has .9, one of the grass beside it .2
+// Correlation: a pixel of a trunk has .9, one of the grass beside it .2; half way.
+constexpr double kLeastAlike = 0.55;
 // Of the larger pictures: what a matched pixel was out by, which is a part of it, twice as large.
 constexpr RefineOptions kFine{.window = 3, .steps = 5, .most = 1.5F};
 
