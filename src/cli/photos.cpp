@@ -8,6 +8,7 @@
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
+#include "photos/heic_photos.h"
 #include "photos/matches_picture.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
@@ -83,8 +84,8 @@ const Command& photos_command() {
     static const Command command{
         "photos", "photos FOLDER -o OUT [options]", "Turns photos of a tree into a tree, with COLMAP.",
         all_options(),
-        "FOLDER: photos (.jpg .png .tif .bmp) from all around the tree, 8 or more, or a film of one walk\n"
-        "around it (with ffmpeg); they are only read.\n"
+        "FOLDER: photos (.jpg .png .tif .bmp, or .heic with heif-convert, sips or magick) from all around\n"
+        "the tree, 8 or more, or a film of one walk around it (with ffmpeg); they are only read.\n"
         "What was done already with the same photos and options is taken from OUT, also after a kill."};
     return command;
 }
@@ -122,7 +123,8 @@ void run_photos(const std::vector<std::string>& words) {
     TerminalProgress progress(quiet);
     if (arguments.has("--show-matches")) {
         const ShownMatches shown =
-            show_matches(folder, out, arguments.text("--show-matches", ""), options.colmap.effort, &progress);
+            show_matches(readable_photos(folder, out, &progress).folder, out,
+                         arguments.text("--show-matches", ""), options.colmap.effort, &progress);
         if (!quiet)
             std::printf("%s: %zu matches of the plain method; of the improved one %zu, and %zu dropped\n",
                         shown.path.c_str(), shown.plain, shown.improved, shown.dropped);

@@ -34,11 +34,6 @@ constexpr int kLooked = 480;            // pixels of the longer side, for the sh
 constexpr int kSmaller = 3;             // as many times smaller for the motion
 constexpr double kLookEnd = 0.5;        // of the progress
 constexpr double kMostSeconds = 3600.0;
-#ifdef _WIN32
-constexpr const char* kName = "ffmpeg.exe";
-#else
-constexpr const char* kName = "ffmpeg";
-#endif
 
 const char* how_to_install() {
 #ifdef _WIN32
@@ -51,23 +46,9 @@ const char* how_to_install() {
 }
 
 std::string find_ffmpeg() {
-    const std::string wanted = environment_value("FFMPEG");
-    if (!wanted.empty()) {
-        for (const fs::path& place : {path_of(wanted), path_of(wanted) / kName})
-            if (is_program(place)) return utf8_of(place);
-        throw Error("There is no program ffmpeg at '" + wanted + "', which $FFMPEG names.");
-    }
-    std::vector<fs::path> folders = folders_on_path();
-#ifdef _WIN32
-    for (const char* folder : {"C:\\ffmpeg\\bin", "C:\\ffmpeg", "C:\\Program Files\\ffmpeg\\bin"})
-        folders.emplace_back(folder);
-#else
-    for (const char* folder :
-         {"/usr/bin", "/usr/local/bin", "/opt/homebrew/bin", "/opt/local/bin", "/snap/bin"})
-        folders.emplace_back(folder);
-#endif
-    for (const fs::path& folder : folders)
-        if (is_program(folder / kName)) return utf8_of(folder / kName);
+    const std::string found =
+        find_program("ffmpeg", "FFMPEG", {"C:\\ffmpeg\\bin", "C:\\ffmpeg", "C:\\Program Files\\ffmpeg\\bin"});
+    if (!found.empty()) return found;
     throw Error(
         std::string("Taking photos out of a film needs the program ffmpeg, which is not on this machine. ") +
         how_to_install() + " Or take the photos out of it by another program.");
@@ -262,7 +243,7 @@ std::optional<std::string> film_of(const std::string& input) {
     std::error_code failure;
     const fs::path place = path_of(input);
     if (fs::is_regular_file(place, failure)) {
-        if (is_photo_name(input))
+        if (is_photo_name(input) || is_heic_name(input))
             throw Error("'" + input + "' is a single photo; name the folder that it is in.");
         return input;
     }
@@ -272,7 +253,7 @@ std::optional<std::string> film_of(const std::string& input) {
     for (fs::directory_iterator at(place, failure), end; !failure && at != end; at.increment(failure)) {
         const std::string name = utf8_of(at->path().filename());
         if (name.starts_with(".")) continue;
-        photos += is_photo_name(name);
+        photos += is_photo_name(name) || is_heic_name(name);
         if (is_film_name(name)) films.push_back(utf8_of(at->path()));
     }
     if (films.empty() || photos >= kLeastPhotos) return {};

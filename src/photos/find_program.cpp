@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "error.h"
 #include "file_bytes.h"
 
 #ifdef _WIN32
@@ -44,6 +45,30 @@ std::vector<fs::path> folders_on_path() {
         at = end + 1;
     }
     return folders;
+}
+
+std::string find_program(const std::string& name, const char* variable, const std::vector<fs::path>& beside) {
+#ifdef _WIN32
+    const std::string file = name + ".exe";
+#else
+    const std::string file = name;
+#endif
+    const std::string wanted = environment_value(variable);
+    if (!wanted.empty()) {
+        for (const fs::path& place : {path_of(wanted), path_of(wanted) / file})
+            if (is_program(place)) return utf8_of(place);
+        throw Error("There is no program " + name + " at '" + wanted + "', which $" + variable + " names.");
+    }
+    std::vector<fs::path> folders = folders_on_path();
+    folders.insert(folders.end(), beside.begin(), beside.end());
+#ifndef _WIN32
+    // What is begun from a desktop may have a shorter PATH than a shell.
+    for (const char* folder : {"/usr/local/bin", "/opt/homebrew/bin", "/opt/local/bin", "/snap/bin"})
+        folders.emplace_back(folder);
+#endif
+    for (const fs::path& folder : folders)
+        if (is_program(folder / file)) return utf8_of(folder / file);
+    return "";
 }
 
 }  // namespace treerec

@@ -5,6 +5,7 @@
 
 #include "file_bytes.h"
 #include "photos/film_frames.h"
+#include "photos/heic_photos.h"
 #include "photos/photo_folder.h"
 #include "photos/run_stage.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr const char* kMethod = "points 5";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
+constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
 constexpr double kCloudEnd = 0.95;
 
@@ -98,6 +100,7 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     PhotosResult result;
     std::string folder = photos;
     ColmapOptions colmap = options.colmap;
+    std::vector<std::string> left_out;
     double begin = 0.0;
     if (const std::optional<std::string> film = film_of(photos)) {
         begin = kFilmEnd;
@@ -105,10 +108,17 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
         folder = photos_of_film(*film, out, &taking).folder;
         // Frames are in the order of the walk.
         if (colmap.order == PhotoOrder::kAuto) colmap.order = PhotoOrder::kSequence;
+    } else {
+        SubProgress converting(progress, 0.0, kHeicEnd);
+        const ReadablePhotos readable = readable_photos(photos, out, &converting);
+        if (readable.converted > 0) begin = kHeicEnd;
+        folder = readable.folder;
+        left_out = readable.warnings;
     }
     SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
         growing(progress, kCloudEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
+    result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
     making.update(0.0, "Cloud");
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);

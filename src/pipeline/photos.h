@@ -27,10 +27,10 @@ struct PhotosResult {
 };
 
 // photos: their folder, or a film of a walk around the tree, or a folder with one, whose frames become photos
-// in out/frames (photos/film_frames.h). Places the cameras (photos/run_colmap.h), makes out/cloud.ply, with
-// COLMAP's model beside it in out/sparse/0, and a tree of that. What is there already from the same photos
-// and options is taken: the tree alone may be made again with a known length or height. Throws Error with a
-// sentence, or Cancelled.
+// in out/frames (photos/film_frames.h). HEIC photos become JPEGs in out/photos (photos/heic_photos.h). Places
+// the cameras (photos/run_colmap.h), makes out/cloud.ply, with COLMAP's model beside it in out/sparse/0, and
+// a tree of that. What is there already from the same photos and options is taken: the tree alone may be made
+// again with a known length or height. Throws Error with a sentence, or Cancelled.
 PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,
                                 const PhotosOptions& options, Progress* progress = nullptr);
 
