@@ -166,6 +166,35 @@ func test_what_goes_wrong_is_said() -> void:
 	_shut()
 
 
+func test_heic_photos_are_converted() -> void:
+	_open()
+	# A JPEG by the name of a HEIC, and a program that calls itself a converter.
+	for i: int in [2, 5, 8]:
+		var jpeg: String = _files.photos.path_join("photo %d.jpg" % i)
+		DirAccess.rename_absolute(jpeg, jpeg.get_basename() + ".HEIC")
+	var converter: String = folder.path_join("converter")
+	PhotoFiles.write(converter, '#!/bin/sh\nexec cp "$3" "$4"\n'.to_utf8_buffer())
+	FileAccess.set_unix_permissions(converter, 0x1C0)
+	OS.set_environment("HEIF_CONVERT", converter)
+	_begin()
+	check_equal(_panel.grid.item_count, 9, "photos that are shown")
+	check_equal(_panel.grid.get_item_text(5), "photo 5.HEIC", "the name of a photo")
+	await _wait()
+	OS.unset_environment("HEIF_CONVERT")
+	check(_made != null, "No tree was made: " + _panel.message.text)
+	var work: String = "res://photo_test_tree_photos"
+	check(FileAccess.file_exists(work + "/photos/photo 5.jpg"), "It was not converted.")
+	check("2,006 features" in _panel.grid.get_item_tooltip(5), "Its features aren't told.")
+	check("not found" in _panel.grid.get_item_tooltip(8), "A photo without a place isn't told.")
+	check(_panel.grid.get_item_icon(5) != null, "What was converted has no picture.")
+	check_equal(
+		PhotoFolder.read_names(["IMG.HEIC", "IMG.avif", "a.heic", "a.png"]),
+		PackedStringArray(["IMG.jpg", "IMG.avif.jpg", "a.jpg", "a.png"]),
+		"names of what is read"
+	)
+	_shut()
+
+
 func test_a_film_stands_for_its_photos() -> void:
 	_open()
 	var film: String = folder.path_join("phone/My Walk.MOV")

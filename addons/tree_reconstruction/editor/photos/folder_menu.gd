@@ -31,7 +31,7 @@ static func _folder_of(paths: PackedStringArray) -> String:
 			path.trim_suffix("/") if path.ends_with("/") and path != "res://" else path
 		)
 		if not DirAccess.dir_exists_absolute(own):
-			if path.get_extension().to_lower() not in PhotoFolder.PHOTOS:
+			if not PhotoFolder.is_photo(path):
 				return ""
 			own = path.get_base_dir()
 		if not folder.is_empty() and own != folder:

@@ -76,6 +76,7 @@ func get_stage() -> String:
 		return ""
 	var stages: Dictionary[String, String] = {
 		"Film": tr("Taking photos out of the film"),
+		"HEIC": tr("Converting HEIC photos"),
 		"Features": tr("Looking for features"),
 		"Matching": tr("Comparing photos"),
 		"Cameras": tr("Finding the cameras"),

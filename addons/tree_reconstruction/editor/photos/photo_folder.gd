@@ -4,6 +4,8 @@ extends RefCounted
 
 ## What COLMAP reads.
 const PHOTOS: PackedStringArray = ["jpg", "jpeg", "png", "tif", "tiff", "bmp"]
+## What phones save, and is converted to JPEG first.
+const HEICS: PackedStringArray = ["heic", "heif", "avif"]
 ## What ffmpeg takes photos out of.
 const FILMS: PackedStringArray = ["mp4", "mov", "m4v", "avi", "mkv", "webm"]
 ## Fewer are never enough.
@@ -15,16 +17,49 @@ const _NOTE: String = "# The work on these photos; the engine leaves it alone.\n
 const _MOST_TRIES: int = 1000
 
 
-## The photos in [param folder], by name.
+static func is_photo(path: String) -> bool:
+	return path.get_extension().to_lower() in PHOTOS or is_heic(path)
+
+
+static func is_heic(path: String) -> bool:
+	return path.get_extension().to_lower() in HEICS
+
+
+## The photos in [param folder], by name. Of a HEIC and a JPEG of one name, the JPEG.
 static func list(folder: String) -> PackedStringArray:
 	var found: PackedStringArray = []
 	if folder.is_empty() or not DirAccess.dir_exists_absolute(folder):
 		return found
-	for name: String in DirAccess.get_files_at(folder):
-		if name.get_extension().to_lower() in PHOTOS:
+	var names: PackedStringArray = DirAccess.get_files_at(folder)
+	var jpegs: Dictionary[String, bool] = {}
+	for name: String in names:
+		if name.get_extension().to_lower() in ["jpg", "jpeg"]:
+			jpegs[name.get_basename()] = true
+	for name: String in names:
+		if name.begins_with(".") or not is_photo(name):
+			continue
+		if not is_heic(name) or not jpegs.has(name.get_basename()):
 			found.append(name)
 	found.sort()
 	return found
+
+
+## What the photos of [param names] are called where COLMAP reads them: HEICs became JPEGs there.
+static func read_names(names: PackedStringArray) -> PackedStringArray:
+	var read: PackedStringArray = []
+	var taken: Dictionary[String, bool] = {}
+	for name: String in names:
+		if not is_heic(name):
+			taken[name.to_lower()] = true
+	for name: String in names:
+		var jpeg: String = name
+		if is_heic(name):
+			jpeg = name.get_basename() + ".jpg"
+			if taken.has(jpeg.to_lower()):
+				jpeg = name + ".jpg"
+			taken[jpeg.to_lower()] = true
+		read.append(jpeg)
+	return read
 
 
 ## The film that [param path] means: itself, or the only one in a folder of too few photos; nothing

@@ -5,6 +5,7 @@ extends ItemList
 
 const Jobs := preload("../jobs.gd")
 const Widgets := preload("../dock/widgets.gd")
+const PhotoFolder := preload("photo_folder.gd")
 
 const _EDGE: float = 96.0
 # So many pictures may be wide open at once in memory before they are small.
@@ -12,7 +13,10 @@ const _MOST: int = 400
 
 var _jobs: Jobs
 var _job: Jobs.Job
+var _folder: String = ""
 var _names: PackedStringArray = []
+# What they are called where COLMAP reads them.
+var _read_names: PackedStringArray = []
 var _lock: Mutex = Mutex.new()
 # What the worker has made and nobody has shown yet.
 var _made: Array[Array] = []
@@ -35,21 +39,43 @@ func _init(jobs: Jobs) -> void:
 	custom_minimum_size = Vector2(Widgets.px(320), Widgets.px(150))
 
 
-## Shows the photos of [param names] in [param folder]; their pictures come one after another.
-func show_photos(folder: String, names: PackedStringArray) -> void:
+## Shows the photos of [param names] in [param folder]; their pictures come one after another. Those
+## that the engine can't read are shown as they lie in [param converted], if they do.
+func show_photos(folder: String, names: PackedStringArray, converted: String = "") -> void:
 	stop()
 	clear()
+	_folder = folder
 	_names = names.slice(0, _MOST)
+	_read_names = PhotoFolder.read_names(names).slice(0, _MOST)
 	_features = {}
 	_missing = []
 	_is_placed = false
 	for name: String in _names:
 		add_item(name)
-	if not _names.is_empty():
-		_job = _jobs.start(
-			tr("Looking at photos"), _draw_all.bind(folder, _names, fixed_icon_size.x), _on_drawn
-		)
+	_draw_photos(converted)
 	_tell_all()
+
+
+## Shows the pictures of the HEIC photos, which lie in [param converted] now.
+func show_converted(converted: String) -> void:
+	if _read_names != _names:
+		stop()
+		_draw_photos(converted)
+
+
+func _draw_photos(converted: String) -> void:
+	if _names.is_empty():
+		return
+	var paths: PackedStringArray = []
+	for i: int in _names.size():
+		paths.append(
+			(
+				converted.path_join(_read_names[i])
+				if PhotoFolder.is_heic(_names[i])
+				else _folder.path_join(_names[i])
+			)
+		)
+	_job = _jobs.start(tr("Looking at photos"), _draw_all.bind(paths, fixed_icon_size.x), _on_drawn)
 
 
 ## Ends its work.
@@ -99,23 +125,24 @@ func _tell_all() -> void:
 		# That is the theme's.
 		set_item_custom_fg_color(i, Color())
 		set_item_icon_modulate(i, Color.WHITE)
-		if _features.has(name):
-			told.append(tr("%s features") % Widgets.grouped(_features[name]))
-		if name in _missing:
+		var read: String = _read_names[i]
+		if _features.has(read):
+			told.append(tr("%s features") % Widgets.grouped(_features[read]))
+		if read in _missing:
 			told.append(tr("Its camera's place was not found."))
 			set_item_custom_fg_color(i, warning)
 			set_item_icon_modulate(i, Color(1, 1, 1, 0.35))
 		elif _is_placed:
 			told.append(tr("Its camera's place is known."))
 		set_item_tooltip(i, "\n".join(told))
-		set_item_text(i, name if not _features.has(name) else "%s\n%s" % [name, told[1]])
+		set_item_text(i, name if not _features.has(read) else "%s\n%s" % [name, told[1]])
 
 
-func _draw_all(job: Jobs.Job, folder: String, names: PackedStringArray, edge: int) -> void:
-	for i: int in names.size():
+func _draw_all(job: Jobs.Job, paths: PackedStringArray, edge: int) -> void:
+	for i: int in paths.size():
 		if job.cancelled:
 			return
-		var image: Image = _small(folder.path_join(names[i]), edge)
+		var image: Image = _small(paths[i], edge)
 		_lock.lock()
 		if not job.cancelled:
 			_made.append([i, image])
@@ -127,9 +154,10 @@ func _on_drawn(_nothing: Variant, job: Jobs.Job) -> void:
 		_job = null
 
 
-# A picture that fits into a square; nothing for what the engine can't read, as TIFF.
+# A picture that fits into a square; nothing for what the engine can't read, as TIFF, and for what
+# is not converted yet.
 static func _small(path: String, edge: int) -> Image:
-	if path.get_extension().to_lower() in ["tif", "tiff"]:
+	if path.get_extension().to_lower() in ["tif", "tiff"] or not FileAccess.file_exists(path):
 		return null
 	var image: Image = Image.load_from_file(ProjectSettings.globalize_path(path))
 	if image == null or image.is_empty():

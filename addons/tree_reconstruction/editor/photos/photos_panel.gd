@@ -36,6 +36,7 @@ var _folder: String = ""
 var _names: PackedStringArray = []
 # Where the photos come out of one.
 var _film: String = ""
+var _stage_seen: String = ""
 var _place: LineEdit = LineEdit.new()
 var _browse: Button
 var _time: OptionButton
@@ -87,9 +88,9 @@ func show_folder(folder: String) -> void:
 	_log = null
 	_log_text.text = ""
 	circle.visible = false
-	grid.show_photos(_folder, _names)
 	if not _folder.is_empty():
 		_target.text = PhotoFolder.free_tree_path(_folder)
+	grid.show_photos(_folder, _names, _converted_in(_work_folder()))
 	_tell_folder()
 	_update_buttons()
 
@@ -100,6 +101,9 @@ func update() -> void:
 	if not making.is_running():
 		return
 	_bar.value = making.job.progress
+	if making.job.stage == "Features" and _stage_seen != "Features":
+		grid.show_converted(_converted_in(making.work))
+	_stage_seen = making.job.stage
 	var words: String = making.get_stage()
 	if making.job.cancelled:
 		words = tr("Ending…")
@@ -109,6 +113,15 @@ func update() -> void:
 	if now - _log_read >= _LOG_SECONDS:
 		_log_read = now
 		_update_log()
+
+
+# Where the photos that were HEIC lie as JPEGs.
+static func _converted_in(work: String) -> String:
+	return "" if work.is_empty() else work.path_join("photos")
+
+
+func _work_folder() -> String:
+	return "" if _folder.is_empty() else PhotoFolder.work_folder(_folder, _target.text)
 
 
 func _add_folder() -> void:
@@ -321,7 +334,10 @@ func _tell_folder() -> void:
 			&"font_color"
 		)
 	elif _names.is_empty():
-		_say(tr("There are no photos in this folder (JPEG, PNG, TIFF or BMP)."), &"warning_color")
+		_say(
+			tr("There are no photos in this folder (JPEG, HEIC, PNG, TIFF or BMP)."),
+			&"warning_color"
+		)
 	elif _names.size() < PhotoFolder.LEAST:
 		_say(
 			(

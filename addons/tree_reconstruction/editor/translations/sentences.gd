@@ -254,6 +254,33 @@ const PATTERNS: PackedStringArray = [
 		+ " around the tree."
 	),
 	"The film %s was left out, since there are photos beside it; name the film to take it.",
+	"The photo '%s' could not be converted by %s and was left out (it says: %s).",
+	"The photo '%s' could not be converted by %s and was left out (it says nothing).",
+	(
+		"The photo '%s' could not be converted by %s and was left out (it was not done after five"
+		+ " minutes)."
+	),
+	"The photo '%s' could not be converted by %s and was left out (it cannot be read: %s).",
+	"So were %s more photos; photos.log names them.",
+	"None of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more. %s",
+	(
+		"Only %s of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more."
+		+ " %s"
+	),
+	(
+		"%s picture in '%s' is HEIC, as phones save them, which COLMAP does not read. They are converted"
+		+ " to JPEG where one of the programs heif-dec, heif-convert, sips (a part of macOS) or magick is"
+		+ " there: %s. Or set the camera to 'most compatible'."
+	),
+	(
+		"%s pictures in '%s' are HEIC, as phones save them, which COLMAP does not read. They are"
+		+ " converted to JPEG where one of the programs heif-dec, heif-convert, sips (a part of macOS) or"
+		+ " magick is there: %s. Or set the camera to 'most compatible'."
+	),
+	(
+		"'%s' is there already, and was not made of HEIC photos here; it was left as it is. Name another"
+		+ " folder to write to."
+	),
 	# The library of twigs.
 	"Apple",
 	"Birch",
