@@ -6,10 +6,12 @@
 #include "cli/commands.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
+#include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "photos/heic_photos.h"
 #include "photos/matches_picture.h"
+#include "pipeline/compare_sheet.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
 #include "pipeline/photos.h"
@@ -76,6 +78,22 @@ void print_photos(const PhotosResult& result) {
         std::printf("; %zu points, of %zu pairs of photos\n", result.made.points, result.made.pairs);
     else
         std::printf("; %zu points\n", result.made.points);
+}
+
+// The tree over some of its photos. Whether there is one: it is no reason for a tree to fail.
+bool write_sheet(PhotosResult& result, const std::string& path, Progress& progress) {
+    try {
+        const PhotoModel model = read_photo_model(result.photos.model, &progress);
+        const std::vector<uint8_t> bytes =
+            encode_png(compare_sheet(result.tree.tree, model, result.photos_folder, {}, &progress));
+        write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        return true;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        result.tree.warnings.emplace_back("There is no compare.png. " + std::string(error.what()));
+        return false;
+    }
 }
 
 }  // namespace
@@ -152,6 +170,9 @@ void run_photos(const std::vector<std::string>& words) {
     details.leaf_count = exporter.leaves();
     outs.push_back(utf8_of(path_of(out) / "report.json"));
     write_file(outs.back(), report_json(tree, details));
+    progress.update(0.98, "Comparing");
+    if (write_sheet(result, utf8_of(path_of(out) / "compare.png"), progress))
+        outs.push_back(utf8_of(path_of(out) / "compare.png"));
     outs.push_back(result.cloud);
     progress.clear();
     for (const std::string& warning : tree.warnings)

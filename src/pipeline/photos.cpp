@@ -118,6 +118,7 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
         growing(progress, kCloudEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
+    result.photos_folder = folder;
     result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
     making.update(0.0, "Cloud");
     result.cloud = utf8_of(path_of(out) / "cloud.ply");

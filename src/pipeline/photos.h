@@ -23,7 +23,8 @@ struct PhotosResult {
     Reconstruction tree;  // with the warnings of all that was before it, the first ones first
     ColmapRun photos;
     MadeCloud made;
-    std::string cloud;  // the file that the tree was made of, in `out`
+    std::string photos_folder;  // where those lie that were read: given, taken out of a film, converted
+    std::string cloud;          // the file that the tree was made of, in `out`
 };
 
 // photos: their folder, or a film of a walk around the tree, or a folder with one, whose frames become photos

@@ -1,0 +1,100 @@
+// A tree over its photos: pipeline/compare_sheet.h.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "error.h"
+#include "exchange/material_textures.h"
+#include "file_bytes.h"
+#include "pipeline/compare_sheet.h"
+
+namespace treerec {
+namespace {
+
+constexpr int kWidth = 120;
+constexpr int kHeight = 160;
+constexpr double kFocal = 200.0;
+
+// Photos of nothing but blue, from 10 in front of a stem of 4 high and .5 thick that stands upright, y to the
+// sky, and one from its other side.
+class CompareSheet : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = utf8_of(std::filesystem::temp_directory_path() / "treerec_compare_sheet");
+        std::filesystem::remove_all(path_of(folder_));
+        make_folder(folder_);
+        Camera camera;
+        camera.model = LensModel::kPinhole;
+        camera.width = kWidth;
+        camera.height = kHeight;
+        camera.parameters = {kFocal, kFocal, kWidth / 2.0, kHeight / 2.0};
+        model_.cameras.push_back(camera);
+        // Right, down and ahead in the rows: half a turn about x, and half a turn about z.
+        add("front.png", {0.0, 1.0, 0.0, 0.0});
+        add("back.png", {0.0, 0.0, 0.0, 1.0});
+        ScanFrame frame;
+        frame.up = UpAxis::kY;
+        tree_.set_frame(frame);
+        tree_.add_child(tree_.add_root({0.0, -2.0, 0.0}, 0.25), {0.0, 2.0, 0.0}, 0.25);
+    }
+    void TearDown() override { std::filesystem::remove_all(path_of(folder_)); }
+
+    void add(const std::string& name, const std::array<double, 4>& rotation) {
+        Photo photo;
+        photo.name = name;
+        photo.rotation = rotation;
+        photo.translation = {0.0, 0.0, 10.0};
+        model_.photos.push_back(photo);
+        Image picture(kWidth, kHeight, 3);
+        for (int y = 0; y < kHeight; y++)
+            for (int x = 0; x < kWidth; x++)
+                picture.at(x, y)[2] = 200;
+        const std::vector<uint8_t> bytes = encode_png(picture);
+        write_file(folder_ + "/" + name,
+                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    }
+
+    std::string folder_;
+    PhotoModel model_;
+    Tree tree_;
+};
+
+TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
+    const Image sheet = compare_sheet(tree_, model_, folder_);
+    ASSERT_EQ(sheet.width, 2 * kWidth);
+    ASSERT_EQ(sheet.height, 2 * kHeight);
+    for (int row = 0; row < 2; row++)
+        for (int y = 0; y < kHeight; y++)
+            for (int x = 0; x < kWidth; x++) {
+                const uint8_t* plain = sheet.at(x, row * kHeight + y);
+                ASSERT_TRUE(plain[0] == 0 && plain[2] == 200) << x << " " << y;
+                const uint8_t* drawn = sheet.at(kWidth + x, row * kHeight + y);
+                // 10 pixels wide and 80 high; its ends are round.
+                const double beside = std::abs(x + 0.5 - kWidth / 2.0),
+                             above = std::abs(y + 0.5 - kHeight / 2.0);
+                if (beside < 4.0 && above < 40.0) {
+                    ASSERT_GT(drawn[0], 180) << x << " " << y;
+                } else if (beside > 6.0 || above > 46.0) {
+                    ASSERT_TRUE(drawn[0] == 0 && drawn[2] == 100) << x << " " << y;
+                }
+            }
+}
+
+TEST_F(CompareSheet, PassesOverWhatCanNotBeRead) {
+    write_file(folder_ + "/front.png", "no picture");
+    const Image sheet = compare_sheet(tree_, model_, folder_);
+    EXPECT_EQ(sheet.height, kHeight);
+    write_file(folder_ + "/back.png", "");
+    EXPECT_THROW(compare_sheet(tree_, model_, folder_), Error);
+}
+
+TEST_F(CompareSheet, IsAsLargeAsAskedAndShowsNoMorePhotosThanThat) {
+    const Image sheet = compare_sheet(tree_, model_, folder_, {.photos = 1, .longest = 80});
+    EXPECT_EQ(sheet.width, 2 * 60);
+    EXPECT_EQ(sheet.height, 80);
+}
+
+}  // namespace
+}  // namespace treerec
