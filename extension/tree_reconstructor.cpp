@@ -138,6 +138,12 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const std::function<Task
         treerec::Reconstruction result = task.run(&reconstructing, details);
         listener.update(kReportBegins, "Reporting");
         details.scan_path = to_std(String(task.provenance["source"]));
+        if (details.sized_by_gps) {
+            // The cloud alone does not tell it when the tree is made again.
+            Dictionary options = task.provenance["options"];
+            options["scale"] = result.orient.metres_per_unit;
+            task.provenance["options"] = options;
+        }
         fill_details(details, result, task.options, listener);
         const std::string report = treerec::report_json(result, details);
 
@@ -203,6 +209,7 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_ph
             treerec::PhotosResult made = treerec::reconstruct_photos(photos, folder, pipeline, p_progress);
             r_details.photos = std::move(made.photos);
             r_details.photo_pairs = made.made.pairs;
+            r_details.sized_by_gps = made.sized_by_gps;
             return std::move(made.tree);
         };
         return task;

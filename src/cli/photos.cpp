@@ -62,7 +62,7 @@ std::vector<Option> all_options() {
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
         {"--known-length", "LIST",
-         "a length in cloud.ply that sets the scale: x,y,z,x,y,z,metres (photos have none)"}};
+         "a length in cloud.ply that sets the scale: x,y,z,x,y,z,metres (photos have none but their GPS)"}};
     for (const Option& option : reconstruct_command().options)
         for (const char* name : kShared)
             if (option.name == name) options.push_back(option);
@@ -154,6 +154,7 @@ void run_photos(const std::vector<std::string>& words) {
     details.scan_path = result.cloud;
     details.photos = result.photos;
     details.photo_pairs = result.made.pairs;
+    details.sized_by_gps = result.sized_by_gps;
     details.leaves = chosen_leaves(details.leaves, tree);
     exports.leaves = suited_leaves(details.leaves, tree);
     exports.textures = details.leaves;

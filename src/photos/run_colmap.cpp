@@ -149,6 +149,7 @@ ColmapRun tell(ColmapWork& work) {
         points.push_back(point.position);
     run.around = cameras_around(model, points);
     run.widest_gap = widest_gap_of(run.around);
+    run.gps = ask_gps(model, work.photos.path, points, progress);
     // Of each further model, what no other one has.
     std::vector<size_t> sizes;
     std::set<std::string> seen;

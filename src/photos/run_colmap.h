@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "photos/cameras_tell.h"
+#include "photos/gps_scale.h"
 #include "progress.h"
 
 namespace treerec {
@@ -51,6 +52,7 @@ struct ColmapRun {
     std::vector<CameraAround> around;     // those that are known, around what was photographed
     std::optional<CircleGap> widest_gap;  // between them
     std::vector<std::string> warnings;    // what could be done better, as sentences
+    GpsScale gps;                         // the model's unit, as far as the photos say where they were taken
 };
 
 // The absolute path of `out`, which is made, with colmap/ in it. Throws Error where it is the folder of the

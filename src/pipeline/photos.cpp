@@ -124,7 +124,15 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
     making.check();
-    result.tree = reconstruct_file(result.cloud, options.reconstruct, &growing);
+    ReconstructOptions reconstruct = options.reconstruct;
+    const GpsScale& gps = result.photos.gps;
+    const OrientOptions& orient = reconstruct.orient;
+    const bool has_scale = orient.metres_per_unit || orient.known_height || orient.known_length;
+    result.sized_by_gps = !has_scale && gps.usable();
+    if (result.sized_by_gps) reconstruct.orient.metres_per_unit = gps.metres_per_unit;
+    result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
+    if (!has_scale && gps.photos > 0)
+        result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
     result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());

@@ -23,6 +23,7 @@ struct PhotosResult {
     Reconstruction tree;  // with the warnings of all that was before it, the first ones first
     ColmapRun photos;
     MadeCloud made;
+    bool sized_by_gps = false;  // the scale is that of photos.gps
     std::string photos_folder;  // where those lie that were read: given, taken out of a film, converted
     std::string cloud;          // the file that the tree was made of, in `out`
 };
@@ -31,7 +32,8 @@ struct PhotosResult {
 // in out/frames (photos/film_frames.h). HEIC photos become JPEGs in out/photos (photos/heic_photos.h). Places
 // the cameras (photos/run_colmap.h), makes out/cloud.ply, with COLMAP's model beside it in out/sparse/0, and
 // a tree of that. What is there already from the same photos and options is taken: the tree alone may be made
-// again with a known length or height. Throws Error with a sentence, or Cancelled.
+// again with a known length or height. Where the options set no scale, the photos' GPS does if it is sure
+// enough (photos/gps_scale.h), and a warning says so. Throws Error with a sentence, or Cancelled.
 PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,
                                 const PhotosOptions& options, Progress* progress = nullptr);
 

@@ -107,9 +107,17 @@ Json photos_json(const ReportDetails& details) {
     if (run.widest_gap)
         gap = {
             {"degrees", run.widest_gap->degrees}, {"from", run.widest_gap->from}, {"to", run.widest_gap->to}};
-    return {{"photos", run.photos},  {"placed", run.registered},     {"missing", run.missing},
-            {"colmap", run.version}, {"pairs", details.photo_pairs}, {"widest_gap", gap},
-            {"cameras", cameras}};
+    Json gps;
+    if (run.gps.photos > 0)
+        gps = {{"photos", run.gps.photos},
+               {"fixes", run.gps.fixes},
+               {"kept", run.gps.kept},
+               {"metres_per_unit", run.gps.metres_per_unit},
+               {"relative_error", run.gps.relative_error}};
+    return {{"photos", run.photos},         {"placed", run.registered},
+            {"missing", run.missing},       {"colmap", run.version},
+            {"pairs", details.photo_pairs}, {"widest_gap", gap},
+            {"cameras", cameras},           {"gps", gps}};
 }
 
 // Paths may hold bytes that are no UTF-8; they must not stop the report.
@@ -173,6 +181,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["metres_per_unit"] = result.orient.metres_per_unit;
     json["scale_guessed"] = result.orient.scale_guessed;
     json["scale_unknown"] = result.orient.scale_unknown;
+    json["scale_from_gps"] = details.sized_by_gps;
     json["origin"] = vector_json(result.tree.frame().origin);
     Json trees = Json::array();
     for (const StandingTree& tree : result.clean.pick.trees)

@@ -262,6 +262,19 @@ const PATTERNS: PackedStringArray = [
 	),
 	"The photo '%s' could not be converted by %s and was left out (it cannot be read: %s).",
 	"So were %s more photos; photos.log names them.",
+	(
+		"The size comes from the photos' GPS: %s m high, give or take %s m. The tree's height or one"
+		+ " known length is better."
+	),
+	"The photos' GPS does not tell the size, since the photos do not tell which way is up.",
+	(
+		"The photos' GPS does not tell the size: of different places that they say they were taken at,"
+		+ " %s are needed, and there are %s."
+	),
+	(
+		"The photos' GPS does not tell the size: it is too vague for a circle as small as theirs, or its"
+		+ " places do not agree with the photos."
+	),
 	"None of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more. %s",
 	(
 		"Only %s of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more."
