@@ -224,14 +224,12 @@ std::map<std::string, PhotoFile> names_for(const PhotoFolder& photos) {
     return names;
 }
 
-// What is in the folder and shall not be: it is ours alone.
-void remove_others(const fs::path& folder, const json& done) {
-    std::vector<fs::path> others;
+// What was made here of photos that are gone; nothing that somebody else put there.
+void remove_gone(const fs::path& folder, const json& made, const json& now) {
     std::error_code failure;
-    for (fs::directory_iterator at(folder, failure), end; !failure && at != end; at.increment(failure))
-        if (!done.contains(utf8_of(at->path().filename()))) others.push_back(at->path());
-    for (const fs::path& other : others)
-        fs::remove(other, failure);
+    for (const auto& [name, ignored] : made.items())
+        if (!now.contains(name) && !path_of(name).has_parent_path())
+            fs::remove(folder / path_of(name), failure);
 }
 
 // Names that are no UTF-8 are possible on Linux.
@@ -305,7 +303,7 @@ ReadablePhotos readable_photos(const std::string& folder, const std::string& out
         result.warnings.push_back("So were " + std::to_string(broken - kMostNamed) +
                                   " more photos; photos.log names them.");
     result.warnings.insert(result.warnings.end(), photos.warnings.begin(), photos.warnings.end());
-    remove_others(made, now);
+    remove_gone(made, done, now);
     stage.finish(text_of(now));
     result.folder = utf8_of(made);
     return result;

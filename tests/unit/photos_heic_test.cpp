@@ -127,8 +127,10 @@ TEST_F(PhotosHeic, OnlyWhatChangedIsDoneAgain) {
     put("out/photos/IMG_5.jpg", "\xFF\xD8 cut off by a power cut");
     fs::remove(folder_ / "phone" / "IMG_6.HEIC");
     put("phone/IMG_9.heic", "photo 9");
+    put("out/photos/mine.jpg", "what I put there");
     EXPECT_EQ(convert().converted, 8U);
     EXPECT_EQ(calls(), 4U);
+    EXPECT_EQ(get("out/photos/mine.jpg"), "what I put there");
     EXPECT_TRUE(has(get("out/photos/IMG_2.jpg"), "another photo"));
     EXPECT_TRUE(has(get("out/photos/IMG_5.jpg"), "photo 5"));
     EXPECT_FALSE(made().contains("IMG_6.jpg")) << "A photo that is gone is still there.";
