@@ -202,7 +202,9 @@ std::string claim_folder(const std::string& out, const std::string& photos) {
     const fs::path work = whole / "colmap";
     const bool ours = fs::exists(work / "lock", failure) ||
                       (fs::is_directory(work, failure) && fs::is_empty(work, failure));
-    for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log"})
+    // With what 'treerec photos' puts beside it.
+    for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log", "tree.glb", "tree.txt",
+                             "report.json", "compare.png"})
         if (!ours && fs::exists(whole / name, failure))
             throw Error(
                 "'" + utf8_of(whole / name) +
