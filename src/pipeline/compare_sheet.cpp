@@ -46,6 +46,7 @@ std::vector<double> wood_in(const Tree& tree, const PinholeView& view) {
         const auto radius_of = [&](const DVec3& place, double radius) {
             return std::max(kLeastRadius, view.focal * radius / glm::dot(ahead, place - view.centre));
         };
+        const bool stands = tree.node(segment.child).parent == tree.root();
         const double first = radius_of(segment.from, segment.from_radius);
         const double last = radius_of(segment.to, segment.radius);
         const double most = std::max(first, last) + 1.0;
@@ -59,7 +60,10 @@ std::vector<double> wood_in(const Tree& tree, const PinholeView& view) {
         for (int y = top; y <= bottom; y++)
             for (int x = left; x <= right; x++) {
                 const DVec2 p(x + 0.5, y + 0.5);
-                const double t = square > 0.0 ? std::clamp(glm::dot(p - *from, way) / square, 0.0, 1.0) : 0.0;
+                const double along = square > 0.0 ? glm::dot(p - *from, way) / square : 0.0;
+                // Branches go on from one another by round ends; the foot is flat.
+                if (stands && along < 0.0) continue;
+                const double t = std::clamp(along, 0.0, 1.0);
                 const double beside = glm::length(p - *from - t * way) - (first + t * (last - first));
                 double& here = covered[static_cast<size_t>(y) * static_cast<size_t>(view.width) +
                                        static_cast<size_t>(x)];

@@ -71,12 +71,11 @@ TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
                 const uint8_t* plain = sheet.at(x, row * kHeight + y);
                 ASSERT_TRUE(plain[0] == 0 && plain[2] == 200) << x << " " << y;
                 const uint8_t* drawn = sheet.at(kWidth + x, row * kHeight + y);
-                // 10 pixels wide and 80 high; its ends are round.
-                const double beside = std::abs(x + 0.5 - kWidth / 2.0),
-                             above = std::abs(y + 0.5 - kHeight / 2.0);
-                if (beside < 4.0 && above < 40.0) {
+                // 10 pixels wide and 80 high; its upper end is round, and its foot flat.
+                const double beside = std::abs(x + 0.5 - kWidth / 2.0), below = y + 0.5 - kHeight / 2.0;
+                if (beside < 4.0 && std::abs(below) < 40.0) {
                     ASSERT_GT(drawn[0], 180) << x << " " << y;
-                } else if (beside > 6.0 || above > 46.0) {
+                } else if (beside > 6.0 || below < -46.0 || below > 41.0) {
                     ASSERT_TRUE(drawn[0] == 0 && drawn[2] == 100) << x << " " << y;
                 }
             }
