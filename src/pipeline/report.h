@@ -31,22 +31,25 @@ struct ReportDetails {
 //   points_read, points (after cleaning), leaf_points and leaf_share (of these), leaf_column (of the file,
 //   that told them; else null), foliage_cells, removed {step: points} up, up_detected, up_from_photos (whose
 //   cameras told it; else 0), tilt_degrees (of the sky from the axis `up`), metres_per_unit, scale_guessed,
-//   scale_unknown (guessed, and the scan tells nothing of its scale), scale_from_gps (whether the photos'
-//   places set it), origin [x y z in scan coordinates] trees [{foot [x y z in scan coordinates], height_m,
-//   points}] (largest first; empty where the scan was taken for one tree), tree_taken (its number in this
-//   list, from 1), spacing_m completed_branches, completed_length_m (option complete: what was added
-//   afterwards) voxel_m, points_are "surface", "solid" or "surface, probably" (of a flood alone) stages
-//   [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell) nodes, tips,
-//   branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than breast height, or
-//   without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3, measured_share (of the
-//   length), measured_volume_share, triangles, leaves fit {points, median_mm, mean_mm, p95_mm,
-//   explained_2cm}: the cleaned points and the bark (fidelity/score.h) fidelity {points, explained,
-//   median_mm, p95_mm, length_m, coverage, tolerance_m, R_s, R_s_strict, orders [{points .. coverage}]}: of
-//   the wood (fidelity/fidelity.h), from at most about 200000 points warnings [sentence] photos {photos,
-//   placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null where the photos
-//   were not taken around something), cameras [{name, degrees, away}] (in their order around what was
-//   photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo says where
-//   it was taken; photos/gps_scale.h)}: of a scan that was made of photos alone
+//   scale_unknown (guessed, and the scan tells nothing of its scale), scale_from_gps (the photos' places set
+//   it), origin [x y z in scan coordinates]
+//   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
+//   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
+//   completed_branches, completed_length_m (option complete: what was added afterwards)
+//   voxel_m, points_are "surface", "solid" or "surface, probably" (of a flood alone)
+//   stages [{name, ms, count}], total_ms, peak_mb (of the process; null where the system does not tell)
+//   nodes, tips, branches [{order, count, length_m}], height_m, dbh_m (null for a tree lower than breast
+//   height, or without wood there), stems, crown_radius_m, crown_base_m, length_m, volume_m3,
+//   measured_share (of the length), measured_volume_share, triangles, leaves
+//   fit {points, median_mm, mean_mm, p95_mm, explained_2cm}: the cleaned points and the bark
+//   (fidelity/score.h)
+//   fidelity {points, explained, median_mm, p95_mm, length_m, coverage, tolerance_m, R_s, R_s_strict,
+//   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
+//   warnings [sentence]
+//   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
+//   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
+//   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
+//   says where it was taken; photos/gps_scale.h)}: of a scan that was made of photos alone
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].
