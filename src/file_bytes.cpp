@@ -168,13 +168,16 @@ std::string utf8_of(const fs::path& path) {
     return {utf8.begin(), utf8.end()};
 }
 
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
 std::string extension_of(const std::string& path) {
     const size_t dot = path.find_last_of("./\\");
     if (dot == std::string::npos || path[dot] != '.') return {};
-    std::string extension = path.substr(dot + 1);
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return extension;
+    return lower_case(path.substr(dot + 1));
 }
 
 std::string stem_of(const std::string& path) {

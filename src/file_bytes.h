@@ -40,6 +40,8 @@ void make_folder(const std::string& path);
 std::filesystem::path path_of(const std::string& utf8);
 std::string utf8_of(const std::filesystem::path& path);
 
+// With the letters A to Z as a to z; all others stay, whatever the language.
+std::string lower_case(std::string text);
 // What follows the last dot of the file's name, in lower case: "ply". Empty without a dot.
 std::string extension_of(const std::string& path);
 // The file's name without folder and extension.

@@ -6,12 +6,12 @@
 #include <fstream>
 
 #include "file_bytes.h"
+#include "photos/jpeg_segments.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr size_t kHead = size_t{1} << 18U;  // bytes of a file, in which its EXIF record is as a rule
 constexpr std::string_view kExif("Exif\0\0", 6);
 
 enum Tag : uint32_t {
@@ -20,12 +20,10 @@ enum Tag : uint32_t {
     kLatitude = 2,
     kLongitudeRef = 3,
     kLongitude = 4,
-    kAltitudeRef = 5,
-    kAltitude = 6,
     kError = 31,
 };
 
-enum Type : uint32_t { kByte = 1, kAscii = 2, kLong = 4, kRational = 5 };
+enum Type : uint32_t { kLong = 4, kRational = 5 };
 
 // One value of a record: its type, how many there are, and where.
 struct Entry {
@@ -122,9 +120,6 @@ std::optional<PhotoPlace> place_in(std::string_view bytes) {
     PhotoPlace place;
     place.latitude = *latitude;
     place.longitude = *longitude;
-    if (const std::optional<Entry> entry = tiff.find(*record, kAltitude))
-        if (const std::optional<double> altitude = tiff.fraction(*entry, 0))
-            place.altitude = tiff.letter(tiff.find(*record, kAltitudeRef)) == '\1' ? -*altitude : *altitude;
     if (const std::optional<Entry> entry = tiff.find(*record, kError)) {
         const std::optional<double> error = tiff.fraction(*entry, 0);
         if (error && *error > 0.0) place.error = error;
@@ -134,32 +129,23 @@ std::optional<PhotoPlace> place_in(std::string_view bytes) {
 
 }  // namespace
 
-std::optional<PhotoPlace> parse_photo_place(std::string_view jpeg) {
-    if (!jpeg.starts_with("\xFF\xD8")) return {};
-    const auto byte = [&](size_t at) { return static_cast<unsigned char>(jpeg[at]); };
-    size_t at = 2;
-    while (at + 4 <= jpeg.size() && byte(at) == 0xFF) {
-        const unsigned marker = byte(at + 1);
-        if (marker == 0xFF) {  // filling
-            at++;
-            continue;
-        }
-        const size_t size = size_t{byte(at + 2)} << 8U | byte(at + 3);
-        // The picture begins, or ends.
-        if (marker == 0xDA || marker == 0xD9 || size < 2) break;
-        const std::string_view rest = jpeg.substr(at + 4, size - 2);
-        if (marker == 0xE1 && rest.starts_with(kExif)) return place_in(rest.substr(kExif.size()));
-        at += 2 + size;
-    }
-    return {};
+std::optional<PhotoPlace> read_photo_place(std::istream& jpeg) {
+    std::optional<PhotoPlace> place;
+    each_jpeg_segment(jpeg, [&](int marker, size_t size) {
+        if (marker != 0xE1) return true;
+        std::string segment(size, '\0');
+        jpeg.read(segment.data(), static_cast<std::streamsize>(size));
+        segment.resize(static_cast<size_t>(jpeg.gcount()));
+        if (!segment.starts_with(kExif)) return true;
+        place = place_in(std::string_view(segment).substr(kExif.size()));
+        return false;
+    });
+    return place;
 }
 
 std::optional<PhotoPlace> read_photo_place(const std::string& path) {
     std::ifstream in(path_of(path), std::ios::binary);
-    std::string bytes(kHead, '\0');
-    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<size_t>(in.gcount()));
-    return parse_photo_place(bytes);
+    return read_photo_place(in);
 }
 
 }  // namespace treerec

@@ -1,26 +1,24 @@
 // Where a photo says that it was taken: the EXIF record of a JPEG.
 #pragma once
 
+#include <istream>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace treerec {
 
 // On the WGS84 ellipsoid, as satellites tell it.
 struct PhotoPlace {
-    double latitude = 0.0;           // degrees, north of the equator, -90 to 90
-    double longitude = 0.0;          // degrees, east of Greenwich, -180 to 180
-    std::optional<double> altitude;  // metres above the sea
+    double latitude = 0.0;        // degrees, north of the equator, -90 to 90
+    double longitude = 0.0;       // degrees, east of Greenwich, -180 to 180
     std::optional<double> error;  // metres: how far off the horizontal place may be, as the camera estimates
 
     bool operator==(const PhotoPlace&) const = default;
 };
 
-// Reads a JPEG's GPS record (Exif 2.32, 4.6.6, tags 1 to 6 and 31). Nothing where there is none, or it is
+// Reads a JPEG's GPS record (Exif 2.32, 4.6.6, tags 1 to 4 and 31). Nothing where there is none, or it is
 // damaged, out of range, or the place in the Gulf of Guinea that cameras without a fix write: 0, 0.
-// jpeg: the file's bytes, or its first ones.
-std::optional<PhotoPlace> parse_photo_place(std::string_view jpeg);
+std::optional<PhotoPlace> read_photo_place(std::istream& jpeg);
 
 // The same of a file; nothing for one that cannot be read.
 std::optional<PhotoPlace> read_photo_place(const std::string& path);

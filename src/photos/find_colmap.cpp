@@ -51,10 +51,8 @@ std::vector<fs::path> usual_folders() {
         std::error_code failure;
         for (fs::directory_iterator at(path_of(above), failure), end; !failure && at != end;
              at.increment(failure)) {
-            std::string called = utf8_of(at->path().filename());
-            for (char& c : called)
-                if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-            if (called.starts_with("colmap")) versions.push_back(at->path());
+            if (lower_case(utf8_of(at->path().filename())).starts_with("colmap"))
+                versions.push_back(at->path());
         }
         std::sort(versions.rbegin(), versions.rend());
         folders.insert(folders.end(), versions.begin(), versions.end());
@@ -74,7 +72,7 @@ std::vector<fs::path> usual_folders() {
     return folders;
 }
 
-std::optional<fs::path> find_program(const std::string& asked) {
+std::optional<fs::path> find_colmap_program(const std::string& asked) {
     if (!asked.empty()) {
         if (const auto found = program_at(path_of(asked))) return found;
         // A bare word is looked for as a shell would.
@@ -198,7 +196,7 @@ ChildCommand Colmap::call(const std::string& command) const {
 
 Colmap find_colmap(const std::string& asked, const Progress* progress) {
     const std::string wanted = asked.empty() ? environment_value("COLMAP") : asked;
-    const std::optional<fs::path> found = find_program(wanted);
+    const std::optional<fs::path> found = find_colmap_program(wanted);
     if (!found && !wanted.empty())
         throw Error("There is no program COLMAP at '" + wanted + "'. " + how_to_install());
     if (!found)

@@ -201,12 +201,6 @@ class Conversion {
     Progress* progress_;
 };
 
-std::string lower_case(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
 // Which photo becomes which file: by the file's name.
 std::map<std::string, PhotoFile> names_for(const PhotoFolder& photos) {
     std::map<std::string, PhotoFile> names;

@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "file_bytes.h"
+#include "photos/jpeg_segments.h"
 
 namespace treerec {
 
@@ -45,24 +46,17 @@ int big_endian(const unsigned char* bytes, int count) {
 
 // Width and height as a JPEG's frame header says; 0 where there is none.
 std::pair<int, int> jpeg_size(std::ifstream& in) {
-    in.seekg(2);
-    unsigned char head[9];
-    while (in.read(reinterpret_cast<char*>(head), 4)) {
-        if (head[0] != 0xFF) break;
-        const int marker = head[1], size = big_endian(head + 2, 2);
+    std::pair<int, int> found{0, 0};
+    in.seekg(0);
+    each_jpeg_segment(in, [&](int marker, size_t) {
         // A frame header: all of this row but tables of Huffman codes, an extension, and arithmetic ones.
-        if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
-            if (!in.read(reinterpret_cast<char*>(head), 5)) break;
-            return {big_endian(head + 3, 2), big_endian(head + 1, 2)};
-        }
-        if (marker == 0xFF) {  // filling
-            in.seekg(-3, std::ios::cur);
-            continue;
-        }
-        if (marker == 0xDA || size < 2) break;
-        in.seekg(size - 2, std::ios::cur);
-    }
-    return {0, 0};
+        if (marker < 0xC0 || marker > 0xCF || marker == 0xC4 || marker == 0xC8 || marker == 0xCC) return true;
+        unsigned char head[5];
+        if (in.read(reinterpret_cast<char*>(head), 5))
+            found = {big_endian(head + 3, 2), big_endian(head + 1, 2)};
+        return false;
+    });
+    return found;
 }
 
 // What COLMAP's list of pictures, a text of lines, can't hold.
@@ -74,8 +68,7 @@ std::string how_to_convert(size_t apples, const std::string& folder) {
     return std::to_string(apples) + (apples == 1 ? " picture in '" : " pictures in '") + folder + "' " +
            (apples == 1 ? "is" : "are") +
            " HEIC, as phones save them, which COLMAP does not read. They are converted to JPEG where one of "
-           "the "
-           "programs heif-dec, heif-convert, sips (a part of macOS) or magick is there: " +
+           "the programs heif-dec, heif-convert, sips (a part of macOS) or magick is there: " +
            kInstall + ". Or set the camera to 'most compatible'.";
 }
 

@@ -64,4 +64,12 @@ Image reduced(const Image& picture, int times) {
     return small;
 }
 
+double level_between(const Image& picture, double x, double y, int channel) {
+    const int left = static_cast<int>(x), top = static_cast<int>(y);
+    const int right = std::min(left + 1, picture.width - 1), below = std::min(top + 1, picture.height - 1);
+    const double s = x - left, t = y - top;
+    return (1 - t) * ((1 - s) * picture.at(left, top)[channel] + s * picture.at(right, top)[channel]) +
+           t * ((1 - s) * picture.at(left, below)[channel] + s * picture.at(right, below)[channel]);
+}
+
 }  // namespace treerec

@@ -19,4 +19,8 @@ Image read_photo(const std::string& path);
 // Each pixel the mean of times x times ones; what is left over at the right and below goes. times: 1 or more.
 Image reduced(const Image& picture, int times);
 
+// A channel of the picture between the middles of four pixels: x, y in pixels from the middle of the upper
+// left one, inside of the picture or at its border.
+double level_between(const Image& picture, double x, double y, int channel);
+
 }  // namespace treerec

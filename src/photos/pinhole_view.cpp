@@ -13,20 +13,6 @@ namespace {
 
 constexpr size_t kRows = 16;  // that a thread takes at a time
 
-// The picture at a place in pixels from its upper left corner, between the middles of its pixels.
-void sample(const Image& picture, const DVec2& at, uint8_t* into) {
-    const double x = std::clamp(at.x - 0.5, 0.0, picture.width - 1.0);
-    const double y = std::clamp(at.y - 0.5, 0.0, picture.height - 1.0);
-    const int left = static_cast<int>(x), top = static_cast<int>(y);
-    const int right = std::min(left + 1, picture.width - 1), below = std::min(top + 1, picture.height - 1);
-    const double u = x - left, v = y - top;
-    for (int k = 0; k < picture.channels; k++) {
-        const double upper = picture.at(left, top)[k] * (1.0 - u) + picture.at(right, top)[k] * u;
-        const double lower = picture.at(left, below)[k] * (1.0 - u) + picture.at(right, below)[k] * u;
-        into[k] = static_cast<uint8_t>(std::lround(upper * (1.0 - v) + lower * v));
-    }
-}
-
 }  // namespace
 
 std::optional<DVec2> PinholeView::project(const DVec3& place) const {
@@ -79,7 +65,11 @@ Image undistorted(const Image& picture, const Camera& camera, const PinholeView&
                 const auto at = camera.project({ray.x, ray.y, 1.0});
                 if (!at || !(at->x >= 0.0 && at->y >= 0.0 && at->x < camera.width && at->y < camera.height))
                     continue;
-                sample(source, *at * scale, seen.at(x, y));
+                const DVec2 place =
+                    glm::clamp(*at * scale - 0.5, DVec2(0.0), DVec2(source.width - 1.0, source.height - 1.0));
+                for (int k = 0; k < seen.channels; k++)
+                    seen.at(x, y)[k] =
+                        static_cast<uint8_t>(std::lround(level_between(source, place.x, place.y, k)));
             }
     });
     return seen;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "photos/photo_picture.h"
+
 namespace treerec {
 
 namespace {
@@ -77,14 +79,11 @@ RectifiedView view_of(const LoadedPhoto& photo, const RectifiedPair& pair) {
             if (!falls) continue;
             const double u = falls->x * photo.scale - 0.5, v = falls->y * photo.scale - 0.5;
             if (!(u >= 0.0 && v >= 0.0 && u < picture.width - 1 && v < picture.height - 1)) continue;
-            const int left = static_cast<int>(u), top = static_cast<int>(v);
-            const double s = u - left, t = v - top;
             const size_t i =
                 static_cast<size_t>(y) * static_cast<size_t>(pair.width) + static_cast<size_t>(x);
             std::array<double, 3> sum{};
             for (size_t k = 0; k < 3; k++)
-                sum[k] = (1 - t) * ((1 - s) * picture.at(left, top)[k] + s * picture.at(left + 1, top)[k]) +
-                         t * ((1 - s) * picture.at(left, top + 1)[k] + s * picture.at(left + 1, top + 1)[k]);
+                sum[k] = level_between(picture, u, v, static_cast<int>(k));
             for (size_t k = 0; k < 3; k++)
                 view.colours[i][k] = static_cast<uint8_t>(std::lround(sum[k]));
             // Rec. 601's luma.

@@ -55,13 +55,13 @@ std::vector<uint8_t> find_beside(const std::vector<Vec3>& points, const Ground& 
     const bool tall = std::any_of(things.begin(), things.end(), [&](const Thing& thing) {
         return thing.stands(ground) && thing.top >= kLow * height;
     });
-    double nearest = std::numeric_limits<double>::max();
+    double nearest = tall ? 0.0 : std::numeric_limits<double>::max();
     for (const Thing& thing : things)
-        if (!tall && thing.stands(ground)) nearest = std::min(nearest, away(thing));
+        if (thing.stands(ground)) nearest = std::min(nearest, away(thing));
     std::vector<uint8_t> leaves(things.size());
     for (size_t t = 0; t < things.size(); t++)
         leaves[t] = things[t].stands(ground) && things[t].top < kLow * height &&
-                    away(things[t]) > std::max(kBeside * height, tall ? 0.0 : nearest);
+                    away(things[t]) > std::max(kBeside * height, nearest);
     for (size_t i = 0; i < points.size(); i++)
         goes[i] = leaves[label[i]];
     return goes;

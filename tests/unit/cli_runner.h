@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "cases.h"
+#include "progress.h"
 
 #ifndef _WIN32
 #include <sys/wait.h>
@@ -24,6 +26,16 @@ struct Outcome {
     int code = -1;
     std::string out;
     std::string error;
+};
+
+// Cancelled after a while.
+class StopAfter : public Progress {
+  public:
+    explicit StopAfter(std::chrono::milliseconds time) : until_(std::chrono::steady_clock::now() + time) {}
+    bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
+
+  private:
+    std::chrono::steady_clock::time_point until_;
 };
 
 // Each test gets a folder of its own, with an empty folder "out" in it.

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,10 +26,6 @@ class ExifWriter {
                                      {2, 5, 3, angle(place.latitude)},
                                      {3, 2, 2, place.longitude < 0.0 ? "W" : "E"},
                                      {4, 5, 3, angle(place.longitude)}};
-        if (place.altitude) {
-            fields.push_back({5, 1, 1, std::string(1, *place.altitude < 0.0 ? '\1' : '\0')});
-            fields.push_back({6, 5, 1, fraction(std::abs(*place.altitude), 1000)});
-        }
         if (place.error) fields.push_back({31, 5, 1, fraction(*place.error, 1000)});
         constexpr uint32_t kRecord = 26;
         std::string bytes = (big_ ? "MM" : "II") + number(42, 2) + number(8, 4) + number(1, 2) +
@@ -73,6 +71,11 @@ inline std::string with_exif(const std::string& jpeg, const std::string& tiff) {
     const size_t size = record.size() + 2;
     return jpeg.substr(0, 2) + "\xFF\xE1" + static_cast<char>(size >> 8U) + static_cast<char>(size & 255U) +
            record + jpeg.substr(2);
+}
+
+inline std::optional<PhotoPlace> place_in_jpeg(const std::string& bytes) {
+    std::istringstream jpeg(bytes);
+    return read_photo_place(jpeg);
 }
 
 }  // namespace treerec::test

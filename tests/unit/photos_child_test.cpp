@@ -15,16 +15,8 @@ namespace treerec {
 namespace {
 
 using test::InFolder;
+using test::StopAfter;
 using namespace std::chrono_literals;
-
-class StopAfter : public Progress {
-  public:
-    explicit StopAfter(std::chrono::milliseconds time) : until_(std::chrono::steady_clock::now() + time) {}
-    bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
-
-  private:
-    std::chrono::steady_clock::time_point until_;
-};
 
 class ChildProcess : public InFolder {
   protected:

@@ -38,15 +38,6 @@ cat "$CONVERTER_LOG.jpg" "$from" >"$to"
 printf '\377\331' >>"$to"
 )sh";
 
-class StopAfter : public Progress {
-  public:
-    explicit StopAfter(std::chrono::milliseconds time) : until_(std::chrono::steady_clock::now() + time) {}
-    bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
-
-  private:
-    std::chrono::steady_clock::time_point until_;
-};
-
 class PhotosHeic : public test::InFolder {
   protected:
     void SetUp() override {
@@ -229,7 +220,7 @@ TEST_F(PhotosHeic, HostileNamesAreNames) {
 
 TEST_F(PhotosHeic, IsCancelledAtAnyMomentAndGoesOn) {
     put("phone/IMG_5.HEIC", "hanged");
-    StopAfter stop(700ms);
+    test::StopAfter stop(700ms);
     const auto start = std::chrono::steady_clock::now();
     EXPECT_THROW(convert(&stop), Cancelled);
     EXPECT_LT(std::chrono::steady_clock::now() - start, 10s);
