@@ -25,6 +25,8 @@ constexpr double kInFront = 0.8;       // of the cameras
 constexpr double kNearCameras = 0.25;  // share of the cameras
 constexpr double kReach = 0.85;        // of their distance from the subject
 constexpr double kOutermost = 0.02;    // share of the points that says nothing of the scene's reach
+constexpr double kOneSide = 120.0;     // degrees of the circle
+constexpr double kOneWay = 30.0;       // degrees between two cameras, where there is no subject
 
 // A camera's axes in the model's coordinates: right, down and ahead in the picture as it is stored.
 struct Pose {
@@ -201,6 +203,30 @@ std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras) {
         if (gap > widest.degrees) widest = {gap, cameras[i].name, cameras[next].name};
     }
     return widest;
+}
+
+std::optional<double> one_sided_arc(const PhotoModel& model, std::span<const DVec3> points) {
+    const auto less_than = [](double arc, double least) {
+        return arc < least ? std::optional(arc) : std::nullopt;
+    };
+    if (const std::optional<CircleGap> gap = widest_gap_of(cameras_around(model, points)))
+        return less_than(360.0 - gap->degrees, kOneSide);
+    if (points.empty() || model.photos.empty()) return std::nullopt;
+    const std::optional<DVec3> subject = subject_of(model);
+    DVec3 middle = subject.value_or(DVec3(0.0));
+    for (int axis = 0; axis < 3 && !subject; axis++) {
+        std::vector<double> places;
+        places.reserve(points.size());
+        for (const DVec3& p : points)
+            places.push_back(p[axis]);
+        middle[axis] = quantile(places, 0.5);
+    }
+    const std::vector<Pose> poses = poses_of(model);
+    double widest = 0.0;
+    for (size_t i = 0; i < poses.size(); i++)
+        for (size_t j = 0; j < i; j++)
+            widest = std::max(widest, degrees_between(poses[i].centre - middle, poses[j].centre - middle));
+    return less_than(widest, subject ? kOneSide : kOneWay);
 }
 
 double degrees_between(const DVec3& a, const DVec3& b) {

@@ -42,6 +42,12 @@ struct CircleGap {
 // cameras: in their order around. Nothing for fewer than two.
 std::optional<CircleGap> widest_gap_of(std::span<const CameraAround> cameras);
 
+// Degrees, where photos look at a scene from one side: a wall or a piece of bark looks no different to them
+// from a tree. That is where they go around less than a third of the circle; where they have no subject, as
+// in a flight, where no two of them see the middle of the points from directions 30 degrees apart. Nothing
+// where they go further around. points: of the scene.
+std::optional<double> one_sided_arc(const PhotoModel& model, std::span<const DVec3> points);
+
 // Degrees between two directions, of any length.
 double degrees_between(const DVec3& a, const DVec3& b);
 

@@ -74,6 +74,7 @@ PhotosTell ask_photos(const std::string& path, const PointCloud& cloud, Progress
                 seen.push_back(cloud.frame.to_scan(DVec3(p)));
             const std::optional<DVec3> sky = sky_of(model, seen);
             told.subject = subject_of(model);
+            told.one_sided = one_sided_arc(model, seen);
             if (!sky) continue;
             told.photos = model.photos.size();
             told.sky = *sky;

@@ -16,6 +16,7 @@ struct PhotosTell {
     DVec3 sky{0.0};                   // the way up in scan coordinates, where `photos` is not 0
     std::optional<DVec3> subject;     // the place that they were taken of, in scan coordinates
     std::optional<SubjectStem> stem;  // what they show there, where that is a stem without a crown
+    std::optional<double> one_sided;  // photos/cameras_tell.h, one_sided_arc()
     std::vector<std::string> warnings;
 };
 

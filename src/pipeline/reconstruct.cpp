@@ -87,6 +87,14 @@ void let_photos_tell(const std::string& path, PointCloud& cloud, ReconstructOpti
     if (options.orient.up) return;
     const PhotosTell told = ask_photos(path, cloud, progress);
     append(warnings, told.warnings);
+    const PickOptions& pick = options.clean.pick;
+    const bool shown = !pick.enabled || pick.number > 1 || pick.position;
+    if (told.one_sided && !told.stem && !shown)
+        throw Error(
+            "The photos look at one side: they go " + std::to_string(std::lround(*told.one_sided)) +
+            " of the 360 degrees around what they show, and from there a tree looks no different from a "
+            "wall. Walk around the tree, or a third of the way at least. If there is a tree in their "
+            "cloud, tell where it stands.");
     if (told.photos > 0) {
         ScanFrame frame;
         frame.set_sky(told.sky);

@@ -5,6 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <sstream>
 
+#include "error.h"
 #include "photos/cameras_tell.h"
 #include "pipeline/ask_photos.h"
 #include "pipeline/reconstruct.h"
@@ -34,6 +35,7 @@ Photo take_photo(const DVec3& centre, const DVec3& ahead, const DVec3& sky, doub
 
 struct Orbit {
     int photos = 30;
+    double arc = 360.0;  // degrees from the first to where the next would be
     double lying = 0.0;  // share of the photos that are stored turned by a quarter
     double roll = 0.05;  // radians, standard deviation
     double pitch = 0.3;
@@ -45,7 +47,7 @@ PhotoModel take_orbit(Random& random, const DVec3& subject, const DVec3& sky, do
     const DVec3 side = any_perpendicular(sky), other = glm::cross(sky, side);
     PhotoModel model;
     for (int i = 0; i < orbit.photos; i++) {
-        const double angle = 2.0 * kPi * i / orbit.photos;
+        const double angle = glm::radians(orbit.arc) * i / orbit.photos;
         const DVec3 out = std::cos(angle) * side + std::sin(angle) * other;
         const DVec3 centre = subject + radius * out + random.normal() * 0.1 * radius * sky;
         const DVec3 aim =
@@ -108,6 +110,38 @@ TEST(PhotosTell, NothingWhereTheyCanNotKnow) {
     EXPECT_LT(degrees_between(*sky_of(around, {}), sky), 1.0);
 }
 
+TEST(PhotosTell, ThatTheyLookAtOneSide) {
+    Random random(4);
+    for (int round = 0; round < 50; round++) {
+        const DVec3 sky = random.direction(), subject = 10.0 * random.direction();
+        std::vector<DVec3> points;
+        for (int i = 0; i < 100; i++)
+            points.push_back(subject + random.uniform(-1.5, 6.0) * sky + random.direction());
+        Orbit orbit;
+        orbit.pitch = 0.05;
+        for (const double arc : {15.0, 45.0, 80.0, 150.0, 180.0, 360.0}) {
+            orbit.arc = arc;
+            const auto told = one_sided_arc(take_orbit(random, subject, sky, 4.0, orbit), points);
+            ASSERT_EQ(told.has_value(), arc < 120.0) << arc << " in round " << round;
+            EXPECT_LT(told.value_or(0.0), 1.5 * arc + 20.0) << arc << " in round " << round;
+        }
+    }
+    // A flight over a plot is none, though all its photos look down.
+    PhotoModel flight, pass;
+    std::vector<DVec3> ground;
+    for (int i = 0; i < 40; i++) {
+        const DVec3 place(random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0), 30.0);
+        ground.emplace_back(place.x, place.y, 0.0);
+        flight.photos.push_back(take_photo(place, {0.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, 0.0));
+        pass.photos.push_back(
+            take_photo(0.2 * place + DVec3(0.0, 0.0, 24.0), {0.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, 0.0));
+    }
+    EXPECT_FALSE(one_sided_arc(flight, ground));
+    EXPECT_TRUE(one_sided_arc(pass, ground));
+    EXPECT_FALSE(one_sided_arc({}, ground));
+    EXPECT_FALSE(one_sided_arc(pass, {}));
+}
+
 TEST(PhotosTell, TheSkyOfRealPhotos) {
     const std::string folder = scan_test::scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
@@ -128,7 +162,19 @@ TEST(PhotosTell, TheSkyOfRealPhotos) {
     EXPECT_EQ(lying, 19);
     EXPECT_EQ(level, 4);
     // All from one side.
-    EXPECT_FALSE(sky_of(read_photo_model(folder + "../colmap_sparse/fern_20"), {}));
+    const PhotoModel fern = read_photo_model(folder + "../colmap_sparse/fern_20");
+    EXPECT_FALSE(sky_of(fern, {}));
+    // What becomes no tree: a plant before a wall, and a piece of bark.
+    const auto points_of = [&](const std::string& name) {
+        std::vector<DVec3> points;
+        const PointCloud cloud = read_cloud(folder + "../colmap_sparse/" + name + "/points3D.bin");
+        for (const Vec3& p : cloud.positions)
+            points.push_back(cloud.frame.to_scan(DVec3(p)));
+        return points;
+    };
+    EXPECT_NEAR(one_sided_arc(fern, points_of("fern_20")).value_or(0.0), 19.0, 2.0);
+    EXPECT_NEAR(one_sided_arc(mixed, points_of("monstree_23")).value_or(0.0), 114.0, 2.0);
+    EXPECT_FALSE(one_sided_arc(orbit, points_of("treehill_71")));
 }
 
 // The 71 photos of a trunk in a round bench: it alone is the tree, where its limbs were the bench's and the
@@ -188,12 +234,13 @@ class PhotosBeside : public ::testing::Test {
     }
 
     // points, subject: metres, Y up. Photos are taken around the subject.
-    void put_scene(const std::vector<Vec3>& points, const DVec3& subject, double radius) {
+    void put_scene(const std::vector<Vec3>& points, const DVec3& subject, double radius,
+                   const Orbit& orbit = {}) {
         Random random(3);
         cloud_ = {};
         for (const Vec3& p : points)
             cloud_.positions.emplace_back(turned_.to_scan(DVec3(p)));
-        const PhotoModel model = take_orbit(random, turned_.to_scan(subject), sky_, radius, {});
+        const PhotoModel model = take_orbit(random, turned_.to_scan(subject), sky_, radius, orbit);
         std::ostringstream images, places;
         images.precision(17);
         places.precision(17);
@@ -277,6 +324,29 @@ TEST_F(PhotosBeside, TellWhichTreeTheyWereTakenOf) {
         const PointCloud again = load_scan(folder_.file("dense/fused.ply"), {}, made.tree.frame(), 5000);
         EXPECT_GT(score_scan(made.tree, again).explained_2cm, 0.8);
     }
+}
+
+TEST_F(PhotosBeside, OfOneSideNeedToldWhereATreeStands) {
+    Orbit orbit;
+    orbit.arc = 60.0;
+    put_scene(scan_of(5.0, 3), {0.0, 1.6, 0.0}, 6.0, orbit);
+    const std::string path = folder_.file("dense/fused.ply");
+    try {
+        reconstruct_file(path, {});
+        FAIL() << "A wall would have become a tree, too.";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(" of the 360 degrees around"), std::string::npos)
+            << error.what();
+    }
+    ReconstructOptions options;
+    options.clean.pick.position = turned_.to_scan({0.0, 0.0, 0.0});
+    const Reconstruction made = reconstruct_file(path, options);
+    EXPECT_NEAR(made.measured.height, 5.0, 0.6);
+    EXPECT_FALSE(load_scan(path, options, made.tree.frame(), 5000).empty());
+    // Half a circle shows a tree.
+    orbit.arc = 180.0;
+    put_scene(scan_of(5.0, 3), {0.0, 1.6, 0.0}, 6.0, orbit);
+    EXPECT_NEAR(reconstruct_file(path, {}).measured.height, 5.0, 0.6);
 }
 
 TEST_F(PhotosBeside, GiveWayToTheUser) {

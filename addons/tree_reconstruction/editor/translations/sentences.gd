@@ -239,6 +239,11 @@ const PATTERNS: PackedStringArray = [
 		"The circle of photos around the tree is open for %s degrees, between %s and %s: what is seen"
 		+ " from there alone is missing. Add photos there, one every 10 to 15 degrees."
 	),
+	(
+		"The photos look at one side: they go %s of the 360 degrees around what they show, and from"
+		+ " there a tree looks no different from a wall. Walk around the tree, or a third of the way"
+		+ " at least. If there is a tree in their cloud, tell where it stands."
+	),
 	"%s of the photos could not be read; open them, and save them again.",
 	(
 		"The film '%s' shows no walk around a tree: too little moves in it. Walk all the way around,"
