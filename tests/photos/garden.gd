@@ -86,6 +86,8 @@ func _photograph() -> void:
 		_camera.look_at_from_position(at, aim)
 		_camera.rotate_object_local(Vector3.BACK, _random.randfn(0.0, deg_to_rad(1.5)))
 		_material.set_shader_parameter(&"exposure", pow(2.0, _random.randf_range(-STOPS, STOPS)))
+		# Leafy scenes take minutes to draw: once a photo.
+		_scene.render_target_update_mode = SubViewport.UPDATE_ONCE
 		# The second picture shows what the first viewport drew for this place.
 		for frame: int in 3:
 			await RenderingServer.frame_post_draw
@@ -140,7 +142,7 @@ func _build(tree: TreeReconstruction, size: Vector2i) -> void:
 	_scene.size = size
 	_scene.own_world_3d = true
 	_scene.msaa_3d = Viewport.MSAA_4X
-	_scene.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	_scene.render_target_update_mode = SubViewport.UPDATE_DISABLED
 	root.add_child(_scene)
 	_camera.fov = FOV
 	_camera.keep_aspect = Camera3D.KEEP_WIDTH
