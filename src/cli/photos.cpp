@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/print_outline.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
 #include "exchange/material_textures.h"
@@ -59,6 +60,11 @@ std::vector<Option> all_options() {
          "tracked from photo to photo) or both"},
         {"--show-matches", "A,B", "nothing but OUT/matches_A_B.png: what is tracked from photo A to photo B"},
         {"--time", "TIME", "how much to find in each photo: quick, normal or best (default normal)"},
+        {"--hold-out", "N",
+         "every N-th photo, by name, places its camera and nothing else, so that it can judge the tree"},
+        {"--masks", "FOLDER",
+         "white-on-black pictures of the tree's outline, PHOTO.png, of the photos that are held out or\n"
+         "else of all: how well the tree has it is told"},
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
         {"--known-length", "LIST",
@@ -124,6 +130,8 @@ void run_photos(const std::vector<std::string>& words) {
     options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
     options.cloud = cloud_options_of(options.colmap.effort);
     options.cloud.dense = !arguments.has("--sparse");
+    options.cloud.hold_out = arguments.whole("--hold-out", 0, 2, 1000);
+    const std::string masks = arguments.text("--masks", "");
     options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
     options.reconstruct = reconstruct_options_from(arguments);
     options.reconstruct.score_points = ReconstructOptions{}.score_points;
@@ -169,6 +177,11 @@ void run_photos(const std::vector<std::string>& words) {
         exporter.write(path);
     details.triangles = exporter.triangles();
     details.leaf_count = exporter.leaves();
+    if (!masks.empty()) {
+        progress.update(0.96, "Outline");
+        details.outline = judge_outline(tree, result.photos.model, masks, options.cloud.hold_out,
+                                        exports.leaves, exports.textures, exports.seed, &progress);
+    }
     outs.push_back(utf8_of(path_of(out) / "report.json"));
     write_file(outs.back(), report_json(tree, details));
     progress.update(0.98, "Comparing");
@@ -180,6 +193,7 @@ void run_photos(const std::vector<std::string>& words) {
         std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     if (quiet) return;
     print_photos(result);
+    if (details.outline) print_outline(details.outline->shapes);
     print_summary(tree, outs,
                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }

@@ -4,10 +4,13 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/print_outline.h"
+#include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
 #include "exchange/tree_files.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/fidelity.h"
+#include "fidelity/photo_overlap.h"
 #include "fidelity/score.h"
 #include "fidelity/unexplained.h"
 #include "scan/read_cloud.h"
@@ -17,6 +20,8 @@ namespace treerec {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kOutlinePixels = 1024;
 
 Json agreements_json(const std::vector<Agreement>& agreements, const char* threshold) {
     Json json = Json::array();
@@ -80,6 +85,7 @@ struct ScanReport {
     std::vector<UnexplainedCluster> unexplained;
     std::vector<DoubtfulBranch> doubtful;
     std::optional<PhotoFidelity> photos;
+    std::optional<OutlineOverlap> outline;
     double noise = 0.0;
 };
 
@@ -101,7 +107,12 @@ void print_json(const ScanReport& report, const Tree& tree) {
     if (report.photos) {
         fidelity["I"] = report.photos->information;
         fidelity["R_3d"] = report.photos->reconstruction;
+        fidelity["R_3d_seen"] = report.photos->seen;
         fidelity["Q"] = modelling_fidelity(*report.photos, report.fidelity);
+        const Overlap& outline = report.outline->mean;
+        fidelity["recall"] = outline.recall;
+        fidelity["precision"] = outline.precision;
+        fidelity["iou"] = outline.iou;
         for (const PhotoHits& photo : report.photos->photos)
             fidelity["photos"].push_back(
                 {{"name", photo.name}, {"inside", photo.inside}, {"outside", photo.outside}});
@@ -165,6 +176,7 @@ void print_text(const ScanReport& report, const Tree& tree) {
         std::printf("I %.3f (%zu photos), R_3d %.3f, Q = I R_3d R_s = %.3f\n", report.photos->information,
                     report.photos->photos.size(), report.photos->reconstruction,
                     modelling_fidelity(*report.photos, fidelity));
+    if (report.outline) print_outline(*report.outline);
     for (size_t order = 0; order < fidelity.by_order.size(); order++)
         print_part(order == 0 ? "trunk" : ("order " + std::to_string(order)).c_str(),
                    fidelity.by_order[order]);
@@ -208,6 +220,9 @@ const Command& score_command() {
          {"--levels", "N", "lightened to a half, a quarter and so on as well (default 1: the tree alone)"},
          {"--photos", "FOLDER", "a COLMAP model in the scan's coordinates, for I, R_3d and Q; with --masks"},
          {"--masks", "FOLDER", "white-on-black pictures of the tree's outline in these photos: PHOTO.png"},
+         {"--every", "N", "every N-th photo of the model alone, by name: those that '--hold-out N' held out"},
+         {"--leaves", "PRESET", "the tree's leaves, for its outline in the photos (default none)"},
+         {"--view-weight", "W", "a/b: how much less each further photo tells, 0 to 1, for I (default 0.8)"},
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
          {"--tree", "N", "which tree of a model's file with several, in its order (default: the largest)"},
          {"--reference-tree", "N", "likewise of a reference's file"},
@@ -245,6 +260,10 @@ void run_score(const std::vector<std::string>& words) {
     if (photos.empty() != masks.empty())
         throw UsageError(
             "--photos and --masks belong together: R_3d needs the outline of the tree in each photo.");
+    const size_t every = arguments.whole("--every", 0, 2, 1000);
+    const double weight = arguments.number("--view-weight", kInformationRatio, 0.0, 1.0);
+    const std::string leaves = arguments.text("--leaves", "none");
+    const LeafRules rules = as_usage([&] { return leaf_preset(leaves); });
     const Tree tree = read_scaled(arguments, model, "--tree", scale);
     TerminalProgress progress(arguments.has("--quiet") || as_json);
     if (is_skeleton_file(reference)) {
@@ -257,7 +276,15 @@ void run_score(const std::vector<std::string>& words) {
         const PointCloud cloud = read_cloud(reference, read_options_from(arguments), nullptr, &reading);
         ScanReport report;
         report.noise = noise;
-        if (!photos.empty()) report.photos = measure_photos(cloud, photos, masks, &progress);
+        if (!photos.empty()) {
+            PhotoModel model_of = read_photo_model(photos, &reading);
+            if (every > 0) model_of = held_out(model_of, every);
+            const std::vector<Image> pictures = read_masks(masks, model_of, &progress);
+            report.photos = measure_photos(cloud, model_of, pictures, weight, &progress);
+            const std::vector<OutlinePart> parts = outline_parts(tree, rules, leaves, 1, {}, &progress);
+            report.outline =
+                measure_overlap(parts, tree.frame(), model_of, pictures, kOutlinePixels, &progress);
+        }
         SubProgress scoring(&progress, 0.3, 0.6);
         report.score = score_scan(tree, cloud, noise, &scoring);
         report.fidelity = measure_fidelity(tree, cloud, options, &progress);

@@ -50,8 +50,23 @@ Image read_mask(const std::string& path) {
 
 }  // namespace
 
-double photo_information(size_t photos) {
-    return 1.0 - portable::pow(kInformationRatio, static_cast<double>(photos));
+double photo_information(size_t photos, double ratio) {
+    return 1.0 - portable::pow(ratio, static_cast<double>(photos));
+}
+
+void check_masks(const PhotoModel& model, const std::vector<Image>& masks) {
+    if (model.photos.empty()) throw Error("There are no photos to compare with.");
+    if (masks.size() != model.photos.size())
+        throw Error("There are " + std::to_string(model.photos.size()) + " photos, but " +
+                    std::to_string(masks.size()) + " masks: each photo needs one.");
+    for (size_t i = 0; i < masks.size(); i++) {
+        const Photo& photo = model.photos[i];
+        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+        if (masks[i].width != camera.width || masks[i].height != camera.height || masks[i].channels != 1)
+            throw Error("The mask of " + quote_word(photo.name) + " has " +
+                        size_text(masks[i].width, masks[i].height) + " pixels, but the photo has " +
+                        size_text(camera.width, camera.height) + ": they must be the same.");
+    }
 }
 
 std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model, const Progress* progress) {
@@ -85,53 +100,53 @@ std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model
 }
 
 PhotoFidelity measure_photos(const PointCloud& cloud, const PhotoModel& model,
-                             const std::vector<Image>& masks, const Progress* progress) {
+                             const std::vector<Image>& masks, double ratio, const Progress* progress) {
     if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to see in the photos.");
-    if (model.photos.empty()) throw Error("There are no photos to compare the cloud with.");
-    if (masks.size() != model.photos.size())
-        throw Error("There are " + std::to_string(model.photos.size()) + " photos, but " +
-                    std::to_string(masks.size()) + " masks: each photo needs one.");
+    check_masks(model, masks);
     PhotoFidelity result;
     for (size_t i = 0; i < masks.size(); i++) {
         const Photo& photo = model.photos[i];
         const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-        if (masks[i].width != camera.width || masks[i].height != camera.height || masks[i].channels != 1)
-            throw Error("The mask of " + quote_word(photo.name) + " has " +
-                        size_text(masks[i].width, masks[i].height) + " pixels, but the photo has " +
-                        size_text(camera.width, camera.height) + ": they must be the same.");
-    }
-    for (size_t i = 0; i < masks.size(); i++) {
-        const Photo& photo = model.photos[i];
-        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-        std::vector<size_t> hits((cloud.size() + kChunk - 1) / kChunk, 0);
+        struct Hits {
+            size_t inside = 0, seen = 0;
+        };
+        std::vector<Hits> hits((cloud.size() + kChunk - 1) / kChunk);
         parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
             if (progress) progress->check();
-            size_t inside = 0;
+            Hits here;
             for (size_t k = begin; k < end; k++) {
                 const DVec3 world = cloud.frame.to_scan(DVec3(cloud.positions[k]));
                 const std::optional<DVec2> at = camera.project(photo.to_camera(world));
                 if (!at || !(at->x >= 0.0 && at->y >= 0.0 && at->x < camera.width && at->y < camera.height))
                     continue;
-                inside += *masks[i].at(static_cast<int>(at->x), static_cast<int>(at->y)) != 0;
+                here.seen++;
+                here.inside += *masks[i].at(static_cast<int>(at->x), static_cast<int>(at->y)) != 0;
             }
-            hits[begin / kChunk] = inside;
+            hits[begin / kChunk] = here;
         });
-        PhotoHits photo_hits{photo.name, 0, 0, 0.0};
-        for (size_t chunk : hits)
-            photo_hits.inside += chunk;
+        PhotoHits photo_hits;
+        photo_hits.name = photo.name;
+        size_t seen = 0;
+        for (const Hits& chunk : hits) {
+            photo_hits.inside += chunk.inside;
+            seen += chunk.seen;
+        }
         photo_hits.outside = cloud.size() - photo_hits.inside;
-        photo_hits.share = static_cast<double>(photo_hits.inside) / static_cast<double>(cloud.size());
+        photo_hits.unseen = cloud.size() - seen;
+        const auto inside = static_cast<double>(photo_hits.inside);
+        photo_hits.share = inside / static_cast<double>(cloud.size());
         result.reconstruction += photo_hits.share / static_cast<double>(masks.size());
+        if (seen > 0) result.seen += inside / static_cast<double>(seen) / static_cast<double>(masks.size());
         result.photos.push_back(std::move(photo_hits));
     }
-    result.information = photo_information(masks.size());
+    result.information = photo_information(masks.size(), ratio);
     return result;
 }
 
 PhotoFidelity measure_photos(const PointCloud& cloud, const std::string& model, const std::string& masks,
                              const Progress* progress) {
     const PhotoModel photos = read_photo_model(model);
-    return measure_photos(cloud, photos, read_masks(masks, photos, progress), progress);
+    return measure_photos(cloud, photos, read_masks(masks, photos, progress), kInformationRatio, progress);
 }
 
 }  // namespace treerec

@@ -1,7 +1,6 @@
 #include "fidelity/silhouette.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "error.h"
+#include "fidelity/sample_mask.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 
@@ -16,91 +16,29 @@ namespace treerec {
 
 namespace {
 
-constexpr int kSamples = 4;  // across a pixel and down it
+constexpr int kSamples = SampleMask::kSamples;
 
 // One view's picture plane: x to the right, y up, in metres.
 struct View {
     double right_x = 1.0, right_z = 0.0;
     DVec2 least{0.0};
     double sample = 1.0;        // metres between two samples
-    int width = 0, height = 0;  // in samples, whole pixels
+    int width = 0, height = 0;  // in pixels
 
     DVec2 project(const Vec3& p) const { return {right_x * p.x + right_z * p.z, p.y}; }
 };
 
-class Mask {
-  public:
-    explicit Mask(const View& view)
-        : view_(view),
-          words_((static_cast<size_t>(view.width) + 63) / 64),
-          bits_(words_ * static_cast<size_t>(view.height), 0) {}
-
-    void draw(const Mesh& mesh, const Progress* progress) {
-        for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-            if (progress && i % 65536 == 0) progress->check();
-            DVec2 corners[3];
-            for (int k = 0; k < 3; k++)
-                corners[k] =
-                    (view_.project(mesh.positions[mesh.indices[i + k]]) - view_.least) / view_.sample;
-            fill(corners);
-        }
+SampleMask draw(const View& view, const Mesh& mesh, const Progress* progress) {
+    SampleMask mask(view.width, view.height);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        if (progress && i % 65536 == 0) progress->check();
+        DVec2 corners[3];
+        for (int k = 0; k < 3; k++)
+            corners[k] = (view.project(mesh.positions[mesh.indices[i + k]]) - view.least) / view.sample;
+        mask.fill(corners);
     }
-
-    // How many samples of pixel (x, y) are covered.
-    int covered(int x, int y) const {
-        int count = 0;
-        for (int row = kSamples * y; row < kSamples * (y + 1); row++)
-            count += std::popcount(bits_[words_ * static_cast<size_t>(row) + static_cast<size_t>(x / 16)] >>
-                                       (kSamples * (x % 16)) &
-                                   0xFU);
-        return count;
-    }
-
-  private:
-    // Sets the samples whose centres lie in the triangle, row by row.
-    void fill(const DVec2 (&corners)[3]) {
-        const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-        const int first = std::max(static_cast<int>(std::ceil(low - 0.5)), 0);
-        const int last = std::min(static_cast<int>(std::floor(high - 0.5)), view_.height - 1);
-        for (int row = first; row <= last; row++) {
-            const double y = row + 0.5;
-            double from = INFINITY, to = -INFINITY;
-            for (int k = 0; k < 3; k++) {
-                const DVec2 &a = corners[k], &b = corners[(k + 1) % 3];
-                if ((a.y < y && b.y < y) || (a.y > y && b.y > y)) continue;
-                if (a.y == b.y) {
-                    from = std::min({from, a.x, b.x});
-                    to = std::max({to, a.x, b.x});
-                    continue;
-                }
-                const double x = a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
-                from = std::min(from, x);
-                to = std::max(to, x);
-            }
-            const int begin = std::max(static_cast<int>(std::ceil(from - 0.5)), 0);
-            const int end = std::min(static_cast<int>(std::floor(to - 0.5)), view_.width - 1);
-            if (begin <= end) set(row, begin, end);
-        }
-    }
-
-    void set(int row, int begin, int end) {
-        uint64_t* words = &bits_[words_ * static_cast<size_t>(row)];
-        const int first = begin / 64, last = end / 64;
-        const uint64_t head = ~uint64_t{0} << (begin % 64), tail = ~uint64_t{0} >> (63 - end % 64);
-        if (first == last) {
-            words[first] |= head & tail;
-            return;
-        }
-        words[first] |= head;
-        for (int i = first + 1; i < last; i++)
-            words[i] = ~uint64_t{0};
-        words[last] |= tail;
-    }
-
-    const View& view_;
-    size_t words_;
-    std::vector<uint64_t> bits_;
-};
+    return mask;
+}
 
 std::array<View, 4> views_of(const Mesh& before, const Mesh& after, int pixels) {
     std::array<View, 4> views;
@@ -127,8 +65,8 @@ std::array<View, 4> views_of(const Mesh& before, const Mesh& after, int pixels) 
         const double pixel = longest > 0.0 ? longest / pixels : 1.0;
         const DVec2 size = (most[v] - view.least) / pixel;
         view.sample = pixel / kSamples;
-        view.width = kSamples * std::clamp(static_cast<int>(std::ceil(size.x)), 1, pixels);
-        view.height = kSamples * std::clamp(static_cast<int>(std::ceil(size.y)), 1, pixels);
+        view.width = std::clamp(static_cast<int>(std::ceil(size.x)), 1, pixels);
+        view.height = std::clamp(static_cast<int>(std::ceil(size.y)), 1, pixels);
     }
     return views;
 }
@@ -165,11 +103,10 @@ SilhouetteChange compare_silhouettes(const Mesh& before, const Mesh& after, int 
     SilhouetteChange change;
     parallel_for(views.size(), 1, [&](size_t begin, size_t end) {
         for (size_t v = begin; v < end; v++) {
-            Mask first(views[v]), second(views[v]);
-            first.draw(before, progress);
-            second.draw(after, progress);
+            const SampleMask first = draw(views[v], before, progress);
+            const SampleMask second = draw(views[v], after, progress);
             SilhouetteView& view = change.views[v];
-            const int width = views[v].width / kSamples, height = views[v].height / kSamples;
+            const int width = views[v].width, height = views[v].height;
             int64_t covered_before = 0, covered_after = 0, differing = 0;
             for (int y = 0; y < height; y++)
                 for (int x = 0; x < width; x++) {

@@ -289,6 +289,20 @@ PhotoModel parse_photo_model(std::string_view cameras, std::string_view images, 
     return model;
 }
 
+PhotoModel held_out(const PhotoModel& model, size_t every) {
+    PhotoModel held{model.cameras, {}};
+    for (size_t i = 0; i < model.photos.size(); i++)
+        if (every > 0 && (i + 1) % every == 0) held.photos.push_back(model.photos[i]);
+    return held;
+}
+
+PhotoModel without_held_out(const PhotoModel& model, size_t every) {
+    PhotoModel left{model.cameras, {}};
+    for (size_t i = 0; i < model.photos.size(); i++)
+        if (every == 0 || (i + 1) % every != 0) left.photos.push_back(model.photos[i]);
+    return left;
+}
+
 PhotoModel read_photo_model(const std::string& folder, Progress* progress) {
     for (const bool text : {false, true}) {
         const std::string ending = text ? ".txt" : ".bin";

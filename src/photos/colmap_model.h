@@ -59,6 +59,11 @@ struct PhotoModel {
     std::vector<Photo> photos;  // by name
 };
 
+// To judge a result by photos that it was not made of, every n-th is held out, in the order of their names;
+// every = 0 holds none out.
+PhotoModel held_out(const PhotoModel& model, size_t every);
+PhotoModel without_held_out(const PhotoModel& model, size_t every);
+
 // Reads cameras.bin and images.bin, or else cameras.txt and images.txt, of a folder. Throws Error with a
 // sentence where they are missing, damaged, or name a camera model that is not known here, or Cancelled.
 PhotoModel read_photo_model(const std::string& folder, Progress* progress = nullptr);

@@ -14,6 +14,7 @@ namespace treerec {
 struct MakeCloudOptions {
     size_t least_track = 3;   // photos that saw a point that stays
     double most_error = 2.0;  // pixels: the reprojection error of a point that stays
+    size_t hold_out = 0;      // photos/colmap_model.h, held_out(): of these nothing but the cameras is used
     bool dense = true;  // match the photos pixel by pixel (photos/densify.h), else the model's own points
     DensifyOptions densify;
     CarveOptions carve;

@@ -28,6 +28,7 @@ std::string basis_of(const std::string& folder, const std::string& model, const 
                   options.least_track,
                   options.most_error,
                   options.dense,
+                  options.hold_out,
                   options.densify.megapixels,
                   options.densify.neighbours,
                   options.densify.agreeing,

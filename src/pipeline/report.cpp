@@ -120,6 +120,26 @@ Json photos_json(const ReportDetails& details) {
             {"cameras", cameras},           {"gps", gps}};
 }
 
+Json outline_json(const OutlineJudgement& outline, double r_s) {
+    const auto shares = [](const Overlap& overlap) {
+        return Json{{"recall", overlap.recall}, {"precision", overlap.precision}, {"iou", overlap.iou}};
+    };
+    Json json = {{"photos", outline.cloud.photos.size()},
+                 {"hold_out", outline.hold_out},
+                 {"I", outline.cloud.information},
+                 {"R_3d", outline.cloud.reconstruction},
+                 {"R_3d_seen", outline.cloud.seen},
+                 {"Q", outline.cloud.information * outline.cloud.reconstruction * r_s}};
+    json.update(shares(outline.shapes.mean));
+    json["by_photo"] = Json::array();
+    for (const PhotoOverlap& photo : outline.shapes.photos) {
+        Json entry = {{"name", photo.name}};
+        entry.update(shares(photo.overlap));
+        json["by_photo"].push_back(entry);
+    }
+    return json;
+}
+
 // Paths may hold bytes that are no UTF-8; they must not stop the report.
 std::string dump(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -221,6 +241,8 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["fidelity"] = fidelity_json(result);
     json["warnings"] = result.warnings;
     if (details.photos) json["photos"] = photos_json(details);
+    if (details.photos && details.outline)
+        json["photos"]["outline"] = outline_json(*details.outline, json["fidelity"]["R_s"].get<double>());
     return dump(json);
 }
 

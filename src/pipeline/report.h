@@ -7,6 +7,7 @@
 
 #include "exchange/tree_files.h"
 #include "photos/run_colmap.h"
+#include "pipeline/judge_outline.h"
 #include "pipeline/reconstruct.h"
 
 namespace treerec {
@@ -18,9 +19,10 @@ struct ReportDetails {
     uint64_t seed = 1;
     size_t triangles = 0;
     size_t leaf_count = 0;
-    std::optional<ColmapRun> photos = {};  // where the scan was made of some
-    size_t photo_pairs = 0;                // that were matched pixel by pixel
-    bool sized_by_gps = false;             // the scale is that of photos->gps
+    std::optional<ColmapRun> photos = {};          // where the scan was made of some
+    size_t photo_pairs = 0;                        // that were matched pixel by pixel
+    bool sized_by_gps = false;                     // the scale is that of photos->gps
+    std::optional<OutlineJudgement> outline = {};  // where there are masks of the photos
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
@@ -49,7 +51,10 @@ struct ReportDetails {
 //   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
 //   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
 //   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
-//   says where it was taken; photos/gps_scale.h)}: of a scan that was made of photos alone
+//   says where it was taken; photos/gps_scale.h), outline {photos (that judge), hold_out (every how many one;
+//   0: the tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), Q, recall, precision,
+//   iou, by_photo [{name, recall, precision, iou}]} (with masks alone)}: of a scan that was made of photos
+//   alone
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].

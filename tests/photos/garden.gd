@@ -3,11 +3,12 @@ extends SceneTree
 ## a folder of JPEGs, with the truth beside it. Needs a renderer:
 ##
 ##     godot --path project --script tests/photos/garden.gd -- TRUTH.txt FOLDER [--photos=40]
-##         [--leafy] [--width=1600] [--seed=1]
+##         [--leafy] [--width=1600] [--seed=1] [--masks]
 ##
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
 ## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
-## right, down and ahead) and the focal length in pixels.
+## right, down and ahead) and the focal length in pixels; with --masks, FOLDER/masks what is tree in
+## each, white on black, whatever stands before it.
 
 # The long side of a photo by its short one.
 const SHAPE: float = 1.5
@@ -17,6 +18,8 @@ const FOV: float = 50.0
 const DISTORTION: float = -0.03
 # How unlike each other the exposures are, in stops.
 const STOPS: float = 0.25
+# Of the sky behind a tree alone: no wood and no leaf has a hue near it.
+const KEY: Color = Color(1.0, 0.0, 1.0)
 # How much of a photo's height the tree takes.
 const FILLING: float = 0.8
 
@@ -93,6 +96,8 @@ func _photograph() -> void:
 			await RenderingServer.frame_post_draw
 		var name: String = "IMG_%04d.jpg" % (i + 101)
 		_lens.get_texture().get_image().save_jpg(folder.path_join("photos").path_join(name), 0.92)
+		if _options.has("masks"):
+			await _save_mask(folder.path_join("masks"), name)
 		cameras.append({"name": name, "centre": _z_up(at), "axes": _axes()})
 		print("%d of %d" % [i + 1, count])
 	var focal: float = width * 0.5 / tan(deg_to_rad(FOV) * 0.5)
@@ -105,6 +110,38 @@ func _photograph() -> void:
 	)
 	file.close()
 	quit(0)
+
+
+# The tree alone, before what no tree is like.
+func _save_mask(folder: String, name: String) -> void:
+	DirAccess.make_dir_recursive_absolute(folder)
+	var air: Environment = (_scene.get_node(^"Air") as WorldEnvironment).environment
+	var sky: Color = air.background_color
+	_show_things(false)
+	air.background_color = KEY
+	_material.set_shader_parameter(&"exposure", 1.0)
+	_scene.render_target_update_mode = SubViewport.UPDATE_ONCE
+	for frame: int in 3:
+		await RenderingServer.frame_post_draw
+	var drawn: Image = _lens.get_texture().get_image()
+	drawn.convert(Image.FORMAT_RGB8)
+	var bytes: PackedByteArray = drawn.get_data()
+	var mask: PackedByteArray = []
+	mask.resize(drawn.get_width() * drawn.get_height())
+	for i: int in mask.size():
+		var purple: int = mini(bytes[3 * i], bytes[3 * i + 2]) - bytes[3 * i + 1]
+		mask[i] = 0 if purple > 127 else 255
+	var size: Vector2i = drawn.get_size()
+	var picture: Image = Image.create_from_data(size.x, size.y, false, Image.FORMAT_L8, mask)
+	picture.save_png(folder.path_join(name + ".png"))
+	air.background_color = sky
+	_show_things(true)
+
+
+func _show_things(shown: bool) -> void:
+	for node: Node in _scene.get_children():
+		if node is MeshInstance3D:
+			(node as MeshInstance3D).visible = shown
 
 
 # Y up in the engine, Z up in the file.
@@ -165,6 +202,7 @@ func _build(tree: TreeReconstruction, size: Vector2i) -> void:
 
 func _add_light() -> void:
 	var world: WorldEnvironment = WorldEnvironment.new()
+	world.name = "Air"
 	world.environment = Environment.new()
 	world.environment.background_mode = Environment.BG_COLOR
 	# A grey day.
