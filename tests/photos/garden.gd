@@ -140,7 +140,7 @@ func _save_mask(folder: String, name: String) -> void:
 
 func _show_things(shown: bool) -> void:
 	for node: Node in _scene.get_children():
-		if node is MeshInstance3D:
+		if node is MeshInstance3D and node is not TreeInstance3D:
 			(node as MeshInstance3D).visible = shown
 
 
