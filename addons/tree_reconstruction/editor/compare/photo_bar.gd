@@ -66,8 +66,8 @@ func _init(session: Session) -> void:
 	_below.add_child(_folder)
 
 
-## Shows what [param source] has read, and what it lacks. [param note] is said where nothing is
-## wrong.
+## Shows what [param source] has read, and what it lacks. [param note] is said where nothing
+## else is wrong.
 func update(source: Source, note: String) -> void:
 	if not is_same(source.views, _listed):
 		_listed = source.views
@@ -81,16 +81,10 @@ func update(source: Source, note: String) -> void:
 	_modes.disabled = source.picture == null
 	_names.select(source.index)
 	_count.text = tr("%d of %d") % [source.index + 1, _listed.size()] if any else ""
-	var said: String = source.sentence
-	if said.is_empty():
-		said = tr("Reading…") if source.is_reading() else note
+	var said: String = note if source.sentence.is_empty() else source.sentence
+	_below.visible = not said.is_empty()
 	_message.text = said
 	_message.tooltip_text = said
-	var color: StringName = &"font_color"
-	if not source.sentence.is_empty():
-		_message.add_theme_color_override(color, get_theme_color(&"warning_color", &"Editor"))
-	else:
-		_message.remove_theme_color_override(color)
 	_folder.visible = source.lack != Source.Lack.NOTHING
 	if source.lack == Source.Lack.MODEL:
 		_folder.text = tr("Choose Cameras…")
@@ -174,6 +168,9 @@ func _make_button(id: StringName, tooltip: String, icon_name: String) -> Button:
 
 
 func _notification(what: int) -> void:
-	if what == NOTIFICATION_THEME_CHANGED and _close != null:
+	if what == NOTIFICATION_THEME_CHANGED and _folder != null:
+		_message.add_theme_color_override(
+			&"font_color", get_theme_color(&"warning_color", &"Editor")
+		)
 		for button: Button in [_previous, _next, _close]:
 			button.icon = Icons.find(self, button.get_meta(&"icon_name"))

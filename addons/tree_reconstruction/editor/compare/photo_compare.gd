@@ -15,7 +15,7 @@ const Bar: GDScript = preload("photo_bar.gd")
 
 var source: Source
 ## What lies over the viewport; [code]null[/code] while nothing is compared.
-var cover: VBoxContainer
+var cover: ColorRect
 var stage: Stage
 var bar: Bar
 
@@ -24,6 +24,8 @@ var press: Callable
 
 var _session: Session
 var _node: TreeInstance3D
+# What had the keyboard before.
+var _focused: WeakRef = weakref(null)
 # From where the user looked.
 var _from: Vector3
 var _chooser: EditorFileDialog
@@ -60,6 +62,9 @@ func leave() -> void:
 		return
 	_close_chooser()
 	source.close()
+	var focused: Control = _focused.get_ref() as Control
+	if stage.has_focus() and focused != null and focused.is_visible_in_tree():
+		focused.grab_focus()
 	cover.queue_free()
 	cover = null
 	stage = null
@@ -115,17 +120,20 @@ func _open(camera: Camera3D) -> void:
 	_node = _session.node
 	_from = camera.global_position
 	_session.hovered = TreeReconstruction.NO_NODE
-	stage = Stage.new()
+	stage = Stage.new(get_translation_domain())
 	bar = Bar.new(_session)
-	cover = VBoxContainer.new()
+	cover = ColorRect.new()
 	cover.name = &"PhotoCompare"
 	cover.set_translation_domain(get_translation_domain())
-	cover.mouse_filter = Control.MOUSE_FILTER_STOP
-	cover.add_theme_constant_override(&"separation", 0)
-	cover.add_child(bar)
+	cover.color = Stage.GROUND
+	var rows: VBoxContainer = VBoxContainer.new()
+	rows.add_theme_constant_override(&"separation", 0)
+	rows.add_child(bar)
 	stage.size_flags_vertical = Control.SIZE_EXPAND_FILL
 	stage.gui_input.connect(_on_stage_input)
-	cover.add_child(stage)
+	rows.add_child(stage)
+	cover.add_child(rows)
+	rows.set_anchors_and_offsets_preset(Control.PRESET_FULL_RECT)
 	bar.chosen.connect(source.choose)
 	bar.stepped.connect(_step)
 	bar.mode_chosen.connect(_on_mode_chosen)
@@ -140,10 +148,22 @@ func _open(camera: Camera3D) -> void:
 	stage.mode = _mode
 	stage.opacity = _opacity
 	bar.set_look(_mode, _opacity)
+	_focused = weakref(cover.get_viewport().gui_get_focus_owner())
 	stage.grab_focus()
 	_standing = {}
 	_shown = null
 	source.open(_session.tree)
+	(
+		_session
+		. say(
+			tr(
+				(
+					"This is seen from where the photo was taken. Escape leaves. Nothing in the scene is"
+					+ " changed, so there is nothing to undo."
+				)
+			)
+		)
+	)
 
 
 func _step(by: int) -> void:
@@ -163,9 +183,8 @@ func _on_source_changed() -> void:
 	if source.picture != _shown:
 		_shown = source.picture
 		stage.show_picture(_shown, source.picture_scale)
-	var note: String = tr(
-		"From where the photo was taken. Nothing in the scene is changed, so there is nothing to undo."
-	)
+	stage.waiting = source.is_reading() and _shown == null
+	var note: String = ""
 	if not PhotoCamera.is_even(_node.global_transform):
 		note = tr(
 			"The node is scaled unevenly, which no photo shows: the tree can't lie on its photos."
@@ -197,9 +216,13 @@ func _choose_folder() -> void:
 	_chooser = EditorFileDialog.new()
 	_chooser.set_translation_domain(get_translation_domain())
 	var for_model: bool = source.lack == Source.Lack.MODEL
-	_chooser.title = tr("Choose Cameras") if for_model else tr("Choose Photos")
 	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
+	# Which sets a title of its own.
 	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_DIR
+	_chooser.title = tr("Choose Cameras") if for_model else tr("Choose Photos")
+	var near: String = source.get_folder_to_begin()
+	if not near.is_empty():
+		_chooser.current_dir = near
 	_chooser.dir_selected.connect(source.take_folder)
 	cover.add_child(_chooser)
 	_chooser.popup_centered_clamped(Vector2i(900, 600))

@@ -1,7 +1,7 @@
 @tool
 extends RefCounted
-## The photos that the edited tree was made of: from where they were taken, and their pictures, which
-## are read on threads.
+## The photos that the edited tree was made of: from where they were taken, and their pictures,
+## which are read on threads.
 
 ## Views, picture or sentence are other ones now.
 signal changed
@@ -107,6 +107,13 @@ func take_folder(folder: String) -> void:
 	_folder = folder
 	sentence = ""
 	choose(index)
+
+
+## Where the user begins to look for what is lacking: beside the tree's cloud; nothing where that
+## isn't known.
+func get_folder_to_begin() -> String:
+	var folder: String = ProjectSettings.globalize_path(_get_source()).get_base_dir()
+	return folder if DirAccess.dir_exists_absolute(folder) else ""
 
 
 ## To be called once a frame: notes work that the user ended in the dock.

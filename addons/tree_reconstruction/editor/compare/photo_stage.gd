@@ -10,6 +10,8 @@ enum Mode { BEHIND, IN_FRONT, DIFFERENCE }
 
 const PhotoCamera: GDScript = preload("photo_camera.gd")
 const OVERLAY: Shader = preload("overlay.gdshader")
+## What is seen where there is nothing.
+const GROUND: Color = Color(0.13, 0.14, 0.15)
 ## The photo is drawn at most so many times as large as it is when all of it is seen.
 const MOST_ZOOM: float = 40.0
 const _STEP: float = 1.25
@@ -25,11 +27,17 @@ var opacity: float = 1.0:
 	set(value):
 		opacity = value
 		_update_overlay()
+## Whether a photo is on its way, which is said.
+var waiting: bool = false:
+	set(value):
+		waiting = value
+		_waiting.visible = value
 ## What sees the scene.
 var camera: Camera3D = Camera3D.new()
 
 var _viewport: SubViewport = SubViewport.new()
 var _overlay: ShaderMaterial = ShaderMaterial.new()
+var _waiting: Label = Label.new()
 var _view: Dictionary = {}
 var _picture: Texture2D
 # Pixels of the picture to one of the photo.
@@ -39,7 +47,8 @@ var _middle: Vector2
 var _zoom: float = 1.0
 
 
-func _init() -> void:
+func _init(domain: StringName) -> void:
+	set_translation_domain(domain)
 	name = &"PhotoStage"
 	focus_mode = Control.FOCUS_ALL
 	mouse_default_cursor_shape = Control.CURSOR_CROSS
@@ -50,6 +59,13 @@ func _init() -> void:
 	camera.cull_mask = _LAYERS
 	_viewport.add_child(camera)
 	add_child(_viewport)
+	_overlay.set_shader_parameter(&"ground", GROUND)
+	_waiting.text = tr("Reading…")
+	_waiting.visible = false
+	add_child(_waiting)
+	_waiting.set_anchors_and_offsets_preset(
+		Control.PRESET_CENTER_BOTTOM, Control.PRESET_MODE_MINSIZE, 12
+	)
 	_update_overlay()
 
 
@@ -70,8 +86,8 @@ func look_into(editor: SubViewport) -> void:
 	_overlay.set_shader_parameter(&"scene", _viewport.get_texture())
 
 
-## Stands where [param view] says, one of [method TreeReconstructor.load_photo_views]. All of another
-## photo is shown.
+## Stands where [param view] says, one of [method TreeReconstructor.load_photo_views]. All of
+## another photo is shown.
 func stand(view: Dictionary) -> void:
 	var other: bool = view["name"] != _view.get("name")
 	_view = view

@@ -96,8 +96,8 @@ func _open() -> void:
 	var index: int = _source().get(&"index")
 	var on: float = _share_on_wood(index, Vector2.ZERO)
 	var beside: float = _share_on_wood(index, Vector2(9.0, 0.0))
-	check(on > 0.8, "Only %.2f of the tree lies on the photo's." % on)
-	check(beside < on - 0.2, "%.2f lies on it where it was moved." % beside)
+	check(on > 0.7, "Only %.2f of the tree lies on the photo's." % on)
+	check(beside < on - 0.25, "%.2f lies on it where it was moved." % beside)
 	var camera: Camera3D = _stage().get(&"camera")
 	for i: int in PhotoModel.COUNT:
 		var pose: Transform3D = _source().get(&"views")[i]["transform"]
@@ -127,7 +127,7 @@ func _look_at_others() -> void:
 	await choose("photo_4.png")
 	await until(func() -> bool: return _source().get(&"index") == 4 and _is_seen(), "photo_4.png")
 	await user.frames(4)
-	check(_share_on_wood(4, Vector2.ZERO) > 0.8, "The tree is not on it.")
+	check(_share_on_wood(4, Vector2.ZERO) > 0.7, "The tree is not on it.")
 	await step("the photo lies before the tree, fades, or is compared with it")
 	for mode: int in [1, 2]:
 		await press(_part("Modes"))
@@ -161,7 +161,7 @@ func _go_nearer() -> void:
 	await user.frames(4)
 	check((_stage().call(&"get_shown") as Rect2).position.y < near.position.y, "It didn't move.")
 	await fine_picture("compare-near")
-	check(_share_on_wood(4, Vector2.ZERO) > 0.8, "The tree is not on the photo.")
+	check(_share_on_wood(4, Vector2.ZERO) > 0.7, "The tree is not on the photo.")
 	await user.click(middle(_stage()), User.LEFT, "", 2)
 	check_equal(_stage().call(&"get_shown"), whole, "what is seen after a double-click")
 
@@ -199,7 +199,8 @@ func _lack_photos() -> void:
 	check("photo_0.png" in message.text, "It says: " + message.text)
 	await picture("compare-lacks-photos")
 	await press(find_control("Button", "Choose Photos", _cover()))
-	await until(func() -> bool: return dialog("Choose Photos") != null, "a dialog opens")
+	if not await until(func() -> bool: return dialog("Choose Photos") != null, "a dialog opens"):
+		return
 	var chooser: EditorFileDialog = dialog("Choose Photos") as EditorFileDialog
 	chooser.hide()
 	chooser.dir_selected.emit(to)
@@ -209,6 +210,7 @@ func _lack_photos() -> void:
 	await until(func() -> bool: return _cover() == null, "the photos are gone")
 	if await _press_key():
 		await until(_is_seen, "the photo is seen the next time")
+		# Without a move of the mouse, the viewport has the keys again.
 		await user.key("Escape")
 
 
