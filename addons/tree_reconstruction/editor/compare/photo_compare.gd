@@ -73,6 +73,12 @@ func leave() -> void:
 	_shown = null
 
 
+## What is seen now of tree and photo.
+func get_picture() -> Image:
+	var window: Image = stage.get_viewport().get_texture().get_image()
+	return window.get_region(Rect2i(stage.get_global_rect()))
+
+
 ## Another node is edited, or none.
 func note_node() -> void:
 	if is_open() and _session.node != _node:

@@ -77,7 +77,10 @@ func _run_other(action: StringName, camera: Camera3D) -> void:
 			turntable.stop()
 			photos.toggle(camera)
 		&"screenshot":
-			screenshot.take(camera)
+			if photos.is_open():
+				screenshot.save(photos.get_picture())
+			else:
+				screenshot.take(camera)
 		&"view_selection":
 			turntable.stop()
 			photos.leave()

@@ -331,11 +331,11 @@ func _on_asked(action: StringName) -> void:
 	_actions.run(action, _get_camera())
 
 
-# Of our keys, those that show and hide what the photos are compared with, and the one that brought
-# the photos.
+# Of our keys, those that show and hide what the photos are compared with, keep a picture of it, or
+# end it.
 func _press_over_photos(event: InputEventKey) -> bool:
 	var action: StringName = _shortcuts.find(event)
-	if action not in [&"compare_photos", &"show_mesh", &"show_leaves"]:
+	if action not in [&"compare_photos", &"show_mesh", &"show_leaves", &"screenshot"]:
 		return false
 	_on_asked(action)
 	return true

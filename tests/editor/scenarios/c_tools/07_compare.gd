@@ -141,12 +141,28 @@ func _look_at_others() -> void:
 			var opacity: float = _stage().get(&"opacity")
 			check(absf(opacity - 0.5) < 0.1, "The photo is seen by %.2f." % opacity)
 		await fine_picture("compare-" + MODES[mode].to_lower().replace(" ", "-"))
+	await step("F9 keeps a picture of it, L shows and hides the leaves")
 	await user.move(middle(_stage()))
+	await user.key("F9")
+	await until(func() -> bool: return not _pictures().is_empty(), "a picture is saved")
+	for file: String in _pictures():
+		var kept: Image = Image.load_from_file("res://screenshots".path_join(file))
+		check_equal(kept.get_size(), Vector2i(_stage().size), "the picture's size")
+		DirAccess.remove_absolute("res://screenshots".path_join(file))
 	check(not _node.leaves or not session().get(&"view").leaves, "There are leaves.")
 	await user.key("l")
 	await until(func() -> bool: return session().get(&"view").leaves, "the leaves are shown")
 	await picture("compare-leaves")
 	await user.key("l")
+
+
+func _pictures() -> PackedStringArray:
+	var found: PackedStringArray = []
+	if DirAccess.dir_exists_absolute("res://screenshots"):
+		for file: String in DirAccess.get_files_at("res://screenshots"):
+			if file.ends_with(".png"):
+				found.append(file)
+	return found
 
 
 func _go_nearer() -> void:
