@@ -136,7 +136,7 @@ func _add_look(row: Container) -> void:
 		(
 			"Where the photo lies: behind the tree, or before it. The difference is dark where the"
 			+ " tree has the photo's colors, and bright where it has others, as where wood lies on"
-			+ " the photo's sky; beside the tree the photo is grey."
+			+ " the photo's sky; beside the tree the photo is dim."
 		)
 	)
 	_modes.item_selected.connect(mode_chosen.emit)
