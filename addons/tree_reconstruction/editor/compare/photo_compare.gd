@@ -159,17 +159,6 @@ func _open(camera: Camera3D) -> void:
 	_standing = {}
 	_shown = null
 	source.open(_session.tree)
-	(
-		_session
-		. say(
-			tr(
-				(
-					"This is seen from where the photo was taken. Escape leaves. Nothing in the scene is"
-					+ " changed, so there is nothing to undo."
-				)
-			)
-		)
-	)
 
 
 func _step(by: int) -> void:
@@ -184,6 +173,8 @@ func _on_source_changed() -> void:
 		source.choose(PhotoCamera.nearest(source.views, _node.global_transform, _from))
 		return
 	if source.index >= 0 and not is_same(source.views[source.index], _standing):
+		if _standing.is_empty():
+			_say_where()
 		_standing = source.views[source.index]
 		stage.stand(_standing)
 	if source.picture != _shown:
@@ -196,6 +187,16 @@ func _on_source_changed() -> void:
 			"The node is scaled unevenly, which no photo shows: the tree can't lie on its photos."
 		)
 	bar.update(source, note)
+
+
+func _say_where() -> void:
+	var sentence: String = tr(
+		(
+			"This is seen from where the photo was taken. Escape leaves. Nothing in the scene is"
+			+ " changed, so there is nothing to undo."
+		)
+	)
+	_session.say(sentence)
 
 
 func _on_mode_chosen(mode: Stage.Mode) -> void:
