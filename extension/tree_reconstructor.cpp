@@ -4,12 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <godot_cpp/classes/json.hpp>
-#include <godot_cpp/classes/project_settings.hpp>
 #include <godot_cpp/classes/time.hpp>
 #include <limits>
 #include <utility>
 
-#include "convert.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
@@ -18,53 +16,9 @@
 #include "pipeline/photos.h"
 #include "pipeline/report.h"
 #include "reconstruct_options.h"
+#include "tree_reconstructor_job.h"
 
 using namespace godot;
-
-// Passes the core's progress on.
-class TreeReconstructor::Listener : public treerec::Progress {
-  public:
-    explicit Listener(TreeReconstructor* p_owner) : owner_(p_owner) {}
-    void update(double p_fraction, const char* p_stage) override {
-        owner_->_report_progress(p_fraction, p_stage);
-    }
-    void count(size_t p_done, size_t p_all) override { owner_->_report_count(p_done, p_all); }
-    bool cancelled() const override { return owner_->cancelled_; }
-
-  private:
-    TreeReconstructor* owner_;
-};
-
-static std::string file_path(const String& p_path) {
-    return to_std(ProjectSettings::get_singleton()->globalize_path(p_path));
-}
-
-// One call at work. A cancel is for the call that is running, or else for the next one, and is over with it.
-class TreeReconstructor::Job {
-  public:
-    explicit Job(TreeReconstructor* p_owner) : owner_(p_owner), owns_(!p_owner->running_.exchange(true)) {
-        if (owns_) {
-            owner_->_fail("");
-        }
-    }
-    ~Job() {
-        if (owns_) {
-            owner_->cache_bytes_ = int64_t(owner_->cache_.bytes());
-            owner_->cancelled_ = false;
-            owner_->running_ = false;
-        }
-    }
-    Job(const Job&) = delete;
-    Job& operator=(const Job&) = delete;
-
-    bool is_alone() const { return owns_; }
-
-  private:
-    TreeReconstructor* owner_;
-    bool owns_;
-};
-
-#define BUSY "This TreeReconstructor is at work already. Make another one."
 
 void TreeReconstructor::_report_progress(double p_fraction, const char* p_stage) {
     constexpr int64_t kSignalEveryMs = 30;
@@ -467,6 +421,10 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_static_method("TreeReconstructor",
                                 D_METHOD("find_point", "points", "from", "way", "width", "spread"),
                                 &TreeReconstructor::find_point, DEFVAL(0.0), DEFVAL(0.0));
+    ClassDB::bind_method(D_METHOD("load_photo_views", "tree", "model"), &TreeReconstructor::load_photo_views,
+                         DEFVAL(""));
+    ClassDB::bind_method(D_METHOD("load_photo", "view", "folder", "longest"), &TreeReconstructor::load_photo,
+                         DEFVAL(2560));
     ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);
     ClassDB::bind_method(D_METHOD("get_progress"), &TreeReconstructor::get_progress);
     ClassDB::bind_method(D_METHOD("get_stage"), &TreeReconstructor::get_stage);

@@ -18,8 +18,8 @@
 #include "tree_reconstruction.h"
 
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
-// import_skeleton(), export_file() and save_html_report() may run on any thread, one at a time; the other
-// methods may be called from any other thread meanwhile.
+// load_photo_views(), load_photo(), import_skeleton(), export_file() and save_html_report() may run on any
+// thread, one at a time; the other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -38,6 +38,10 @@ class TreeReconstructor : public godot::RefCounted {
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
                              int p_levels = 1, bool p_pictures_beside = false);
     godot::Error save_html_report(const godot::String& p_path);
+    godot::TypedArray<godot::Dictionary> load_photo_views(const godot::Ref<TreeReconstruction>& p_tree,
+                                                          const godot::String& p_model = "");
+    godot::Dictionary load_photo(const godot::Dictionary& p_view, const godot::String& p_folder,
+                                 int64_t p_longest = 2560);
     static godot::TypedArray<godot::Dictionary> get_option_list();
     static godot::TypedArray<godot::Dictionary> get_photo_option_list();
 

@@ -99,14 +99,11 @@ void read_binary(const Source& camera_source, const Source& image_source, Camera
         const Lens& lens = lens_of(cameras, "", in.value<int32_t>());
         const auto width = static_cast<int64_t>(in.value<uint64_t>());
         const auto height = static_cast<int64_t>(in.value<uint64_t>());
-        Camera camera;
-        camera.model = lens.model;
+        std::array<double, 12> parameters{};
         for (int k = 0; k < lens.parameters; k++)
-            camera.parameters[static_cast<size_t>(k)] = in.value<double>();
-        check_camera(cameras, camera, width, height);
-        camera.width = static_cast<int>(width);
-        camera.height = static_cast<int>(height);
-        into.add(cameras, id, camera);
+            parameters[static_cast<size_t>(k)] = in.value<double>();
+        into.add(cameras, id,
+                 checked_camera(static_cast<int64_t>(lens.model), width, height, parameters, cameras));
     }
     BinaryReader image_in(images, image_source.bytes);
     const auto photos = image_in.value<uint64_t>();
@@ -301,6 +298,21 @@ PhotoModel without_held_out(const PhotoModel& model, size_t every) {
     for (size_t i = 0; i < model.photos.size(); i++)
         if (every == 0 || (i + 1) % every != 0) left.photos.push_back(model.photos[i]);
     return left;
+}
+
+Camera checked_camera(int64_t model, int64_t width, int64_t height, std::span<const double> parameters,
+                      const std::string& source) {
+    const Lens& lens = lens_of(source, "", model);
+    Camera camera;
+    camera.model = lens.model;
+    const size_t count = static_cast<size_t>(lens.parameters);
+    // Without them there is no focal length, which the check says.
+    if (parameters.size() >= count)
+        std::copy(parameters.begin(), parameters.begin() + lens.parameters, camera.parameters.begin());
+    check_camera(source, camera, width, height);
+    camera.width = static_cast<int>(width);
+    camera.height = static_cast<int>(height);
+    return camera;
 }
 
 PhotoModel read_photo_model(const std::string& folder, Progress* progress) {

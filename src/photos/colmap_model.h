@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +41,11 @@ struct Camera {
     // formula gives none.
     double focal_length() const;
 };
+
+// A camera from numbers that may be any: its model's number, pixels, and as many parameters as it has or
+// more. source: what sentences call their origin. Throws Error where they are none of a camera.
+Camera checked_camera(int64_t model, int64_t width, int64_t height, std::span<const double> parameters,
+                      const std::string& source);
 
 struct Photo {
     std::string name;                                    // as COLMAP wrote it, with / between folders

@@ -4,7 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
+
+#include "error.h"
+#include "exchange/material_textures.h"
+#include "file_bytes.h"
+#include "photos/shown_photo.h"
 
 namespace treerec {
 namespace {
@@ -108,6 +114,51 @@ TEST(PinholeView, ShowsNothingWhereThePhotoHasNone) {
     const Image seen = undistorted(white, bent, pinhole_view(turned_photo(), bent, {}));
     EXPECT_EQ(*seen.at(0, 0), 0);
     EXPECT_EQ(*seen.at(320, 240), 255);
+}
+
+// Grey, as a PNG of its own folder.
+std::string write_grey(const std::string& name, int width, int height) {
+    Image grey(width, height, 3);
+    std::fill(grey.pixels.begin(), grey.pixels.end(), uint8_t{128});
+    const std::string path = testing::TempDir() + name;
+    const std::vector<uint8_t> bytes = encode_png(grey);
+    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    return path;
+}
+
+TEST(ShownPhoto, IsTransparentWhereThePhotoShowsNothing) {
+    const Camera bent{LensModel::kSimpleRadial, 640, 480, {500, 320, 240, 0.3}};
+    const PinholeView view = pinhole_view(turned_photo(), bent, {});
+    // A smaller copy of the photo will do.
+    for (const int times : {1, 3}) {
+        const Image seen = shown_photo(write_grey("shown_photo.png", 640 / times, 480 / times), bent, view);
+        ASSERT_EQ(seen.channels, 4);
+        EXPECT_EQ(seen.at(0, 0)[3], 0);
+        for (int k = 0; k < 3; k++)
+            EXPECT_EQ(seen.at(320, 240)[k], 128);
+        EXPECT_EQ(seen.at(320, 240)[3], 255);
+    }
+}
+
+TEST(ShownPhoto, RefusesWhatIsNoPictureOfItsCamera) {
+    const Camera camera{LensModel::kSimplePinhole, 640, 480, {500, 320, 240}};
+    const PinholeView view = pinhole_view(turned_photo(), camera, {});
+    EXPECT_THROW(shown_photo(write_grey("turned.png", 480, 640), camera, view), Error);
+    EXPECT_THROW(shown_photo(write_grey("cropped.png", 600, 480), camera, view), Error);
+    EXPECT_THROW(shown_photo(testing::TempDir() + "no such photo.png", camera, view), Error);
+}
+
+TEST(CheckedCamera, TakesWhatIsOneAlone) {
+    const std::vector<double> parameters{500, 320, 240, 0.1};
+    const Camera camera = checked_camera(2, 640, 480, parameters, "a.jpg");
+    EXPECT_EQ(camera.model, LensModel::kSimpleRadial);
+    EXPECT_EQ(camera.parameters[3], 0.1);
+    EXPECT_THROW(checked_camera(7, 640, 480, parameters, "a.jpg"), Error);
+    EXPECT_THROW(checked_camera(2, 0, 480, parameters, "a.jpg"), Error);
+    EXPECT_THROW(checked_camera(2, 640, 1 << 20, parameters, "a.jpg"), Error);
+    EXPECT_THROW(checked_camera(4, 640, 480, parameters, "a.jpg"), Error);
+    const std::vector<double> endless{HUGE_VAL, 320, 240, 0.1};
+    EXPECT_THROW(checked_camera(2, 640, 480, endless, "a.jpg"), Error);
 }
 
 TEST(PinholeView, RefusesALensWithoutAMiddle) {

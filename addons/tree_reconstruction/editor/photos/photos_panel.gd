@@ -283,6 +283,9 @@ func say_where(path: String, is_in_scene: bool) -> void:
 	]
 	if not is_in_scene:
 		sentences.append(tr("Drag it from the FileSystem dock into a scene."))
+	sentences.append(
+		tr("Compare with Photos in the Tree menu above the 3D view lays it over its photos.")
+	)
 	sentences.append_array(making.get_warnings())
 	_say("\n".join(sentences), &"font_color")
 

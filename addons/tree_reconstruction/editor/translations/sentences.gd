@@ -246,6 +246,30 @@ const PATTERNS: PackedStringArray = [
 	),
 	"%s of the photos could not be read; open them, and save them again.",
 	(
+		"This tree does not say what it was made of, so it is not known from where it was photographed."
+		+ " Choose the folder of its COLMAP model."
+	),
+	(
+		"Beside '%s' there is no COLMAP model that would tell from where the tree was photographed."
+		+ " Choose the folder of the model."
+	),
+	(
+		"There is no COLMAP model with cameras in '%s': it needs cameras.bin and images.bin, or both as"
+		+ " .txt."
+	),
+	"The COLMAP model in '%s' has no photos.",
+	"The COLMAP model '%s' has a line that is no camera: %s.",
+	"The COLMAP model '%s' has a line that is no photo: %s.",
+	"The COLMAP model '%s' is cut off; copy it again.",
+	"The COLMAP model '%s' is damaged: it has a camera without a size or a focal length.",
+	"The COLMAP model '%s' is damaged: %s has a camera that is not there.",
+	"'%s' does not exist or cannot be reached.",
+	"'%s' is no photo that can be read here; save it as JPEG or PNG.",
+	(
+		"'%s' has %s x %s pixels, and its camera in the COLMAP model has %s x %s: it is another photo, or"
+		+ " was turned or cropped since."
+	),
+	(
 		"The film '%s' shows no walk around a tree: too little moves in it. Walk all the way around,"
 		+ " and film a minute or so."
 	),

@@ -8,6 +8,7 @@ const Shortcuts: GDScript = preload("shortcuts.gd")
 const CameraViews: GDScript = preload("camera_views.gd")
 const Turntable: GDScript = preload("turntable.gd")
 const Screenshot: GDScript = preload("screenshot.gd")
+const PhotoCompare: GDScript = preload("../compare/photo_compare.gd")
 
 ## What may be shown: the property of the view state, by the action that turns it on and off.
 const SHOWN: Dictionary[StringName, StringName] = {
@@ -34,6 +35,7 @@ const VIEWS: Array[StringName] = [
 var views: CameraViews
 var turntable: Turntable
 var screenshot: Screenshot
+var photos: PhotoCompare
 
 var _session: Session
 
@@ -44,6 +46,7 @@ func _init(session: Session) -> void:
 	views = CameraViews.new(session)
 	turntable = Turntable.new(session)
 	screenshot = Screenshot.new(session)
+	photos = PhotoCompare.new(session)
 
 
 ## Does it. [param camera] is that of the viewport in question.
@@ -55,6 +58,7 @@ func run(action: StringName, camera: Camera3D) -> void:
 		_session.view.set(property, not _session.view.get(property))
 	elif action in VIEWS:
 		turntable.stop()
+		photos.leave()
 		views.look(action, camera)
 	elif action.begins_with("tool_"):
 		_session.choose(StringName(action.trim_prefix("tool_")))
@@ -67,11 +71,19 @@ func _run_other(action: StringName, camera: Camera3D) -> void:
 		&"edit_skeleton":
 			_session.view.editing = not _session.view.editing
 		&"turntable":
+			photos.leave()
 			turntable.toggle(camera)
+		&"compare_photos":
+			turntable.stop()
+			photos.toggle(camera)
 		&"screenshot":
-			screenshot.take(camera)
+			if photos.is_open():
+				screenshot.save(photos.get_picture())
+			else:
+				screenshot.take(camera)
 		&"view_selection":
 			turntable.stop()
+			photos.leave()
 			if _session.selection.is_empty() or not _session.view.editing:
 				views.frame(camera)
 			else:

@@ -167,6 +167,7 @@ func _make_input() -> void:
 	_router = InputRouter.new(_session, _shortcuts)
 	_actions = Actions.new(_session)
 	_actions.views.set_sender(_send)
+	_actions.photos.press = _press_over_photos
 	_router.asked.connect(_on_asked)
 	_router.missed.connect(_give_back)
 	for id: StringName in _session.tools:
@@ -182,6 +183,8 @@ func _make_input() -> void:
 func _remove_input() -> void:
 	_transform_tools.bring_back()
 	_actions.turntable.stop()
+	_actions.photos.leave()
+	_actions.photos.press = Callable()
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.disconnect(_on_tool_wants)
 
@@ -215,6 +218,7 @@ func _update() -> void:
 	_wind_rest.update(is_instance_valid(_session.node) and _session.view.wind)
 	_actions.turntable.update(delta)
 	_actions.views.update(delta)
+	_actions.photos.update()
 	_strip.update(delta)
 	if _home_due:
 		_look_home()
@@ -233,6 +237,7 @@ func _let_hovered_go() -> void:
 
 func _on_node_changed() -> void:
 	_actions.turntable.stop()
+	_actions.photos.note_node()
 	for control: Control in [_strip, _menu, _toolbar]:
 		control.visible = _session.node != null
 	_home_due = _session.tree != null
@@ -242,6 +247,7 @@ func _on_node_changed() -> void:
 
 
 func _on_tree_changed() -> void:
+	_actions.photos.note_edit()
 	_skeleton.update_tree()
 	_axes.update()
 	_points.update()
@@ -316,12 +322,23 @@ func _get_camera() -> Camera3D:
 
 func _on_view_wanted(box: AABB) -> void:
 	_actions.turntable.stop()
+	_actions.photos.leave()
 	_actions.views.bring(box, _get_camera())
 
 
 # A method, since a function made where it is connected would keep all of this alive.
 func _on_asked(action: StringName) -> void:
 	_actions.run(action, _get_camera())
+
+
+# Of our keys, those that show and hide what the photos are compared with, keep a picture of it, or
+# end it.
+func _press_over_photos(event: InputEventKey) -> bool:
+	var action: StringName = _shortcuts.find(event)
+	if action not in [&"compare_photos", &"show_mesh", &"show_leaves", &"screenshot"]:
+		return false
+	_on_asked(action)
+	return true
 
 
 func _give_back(press: InputEventMouseButton, release: InputEventMouseButton) -> void:

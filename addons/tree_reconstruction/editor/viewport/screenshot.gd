@@ -27,7 +27,11 @@ static func add_setting(settings: EditorSettings) -> void:
 
 ## Saves the picture of the camera's viewport, and says where. Returns its path, or nothing.
 func take(camera: Camera3D) -> String:
-	var picture: Image = camera.get_viewport().get_texture().get_image()
+	return save(camera.get_viewport().get_texture().get_image())
+
+
+## Saves a picture, and says where. Returns its path, or nothing.
+func save(picture: Image) -> String:
 	if picture == null or picture.is_empty():
 		_session.say(tr("The viewport has no picture yet."), Session.Kind.WARNING)
 		return ""

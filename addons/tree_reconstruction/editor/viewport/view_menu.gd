@@ -109,6 +109,12 @@ func _fill() -> void:
 	_add(
 		&"turntable", tr("Turntable"), false, tr("Turns around the tree until you press anything.")
 	)
+	_add(
+		&"compare_photos",
+		tr("Compare with Photos"),
+		false,
+		tr("Stands where the photos were taken that the tree was made of. Nothing is changed.")
+	)
 	get_popup().add_separator()
 	_add(
 		&"screenshot",

@@ -12,6 +12,7 @@ var _files: RefCounted
 func run() -> void:
 	await _open()
 	await _make()
+	await _compare()
 	await _end()
 
 
@@ -82,11 +83,29 @@ func _make() -> void:
 	check_equal(log.count("Processed file [9/9]"), 1, "times that features were found")
 
 
-func _end() -> void:
-	await step("the tree goes with undo, and its file stays")
+func _compare() -> void:
+	await step("the tree is seen over its photos, by the menu above the view")
 	if _window() != null:
 		await press(_button("Close"))
 		await until(func() -> bool: return _window() == null, "the window closes")
+	await press(find_control("MenuButton", "What is shown of the tree"))
+	if not await choose("Compare with Photos"):
+		return
+	var base: Control = EditorInterface.get_base_control()
+	var found: Callable = func() -> Node: return base.find_child("PhotoCompare", true, false)
+	if not await until(func() -> bool: return found.call() != null, "the photos are there"):
+		return
+	var modes: BaseButton = base.find_child("Modes", true, false) as BaseButton
+	await until(func() -> bool: return not modes.disabled, "the photo is seen")
+	var message: Label = base.find_child("Message", true, false) as Label
+	check(not message.is_visible_in_tree(), "It says: " + message.text)
+	await picture("photos-compared-with")
+	await press(base.find_child("Leave", true, false) as Control)
+	await until(func() -> bool: return found.call() == null, "the photos are gone")
+
+
+func _end() -> void:
+	await step("the tree goes with undo, and its file stays")
 	var root: Node = EditorInterface.get_edited_scene_root()
 	await user.move(middle(view().get_parent() as Control))
 	await user.key("ctrl+z")
