@@ -1,7 +1,9 @@
 #include "pipeline/cleaned_cloud.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <system_error>
 #include <vector>
 
@@ -20,6 +22,19 @@ std::string_view cleaned_comment() {
     line.remove_prefix(std::string_view("comment ").size());
     line.remove_suffix(1);
     return line;
+}
+
+// Points in the foliage's cells are leaves.
+void label_foliage(PointCloud& cloud, const Foliage& foliage, const Progress& progress) {
+    constexpr size_t kAtOnce = 65536;
+    cloud.labels = {"leaf", true, std::vector<uint8_t>(cloud.size(), 1)};
+    const std::span<const Vec3> points(cloud.positions);
+    for (size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+        progress.check();
+        const size_t count = std::min(kAtOnce, points.size() - begin);
+        for (const int32_t i : points_outside(foliage, points.subspan(begin, count)))
+            cloud.labels.values[begin + static_cast<size_t>(i)] = 0;
+    }
 }
 
 }  // namespace
@@ -46,11 +61,7 @@ void save_cleaned_scan(const std::string& path, const std::string& scan, const R
         throw Error("'" + path + "' is the scan itself, which would be overwritten; choose another name.");
     SubProgress loading(progress, 0.0, kLoaded), writing(progress, kLoaded, 1.0);
     PointCloud cloud = load_scan(scan, options, frame, std::numeric_limits<size_t>::max(), &loading, cache);
-    if (!foliage.empty() && !cloud.labels.leaf_is_one) {
-        cloud.labels = {"leaf", true, std::vector<uint8_t>(cloud.size(), 1)};
-        for (const int32_t i : points_outside(foliage, cloud.positions))
-            cloud.labels.values[static_cast<size_t>(i)] = 0;
-    }
+    if (!foliage.empty() && !cloud.labels.leaf_is_one) label_foliage(cloud, foliage, writing);
     writing.update(0.0, "Writing");
     write_cleaned_cloud(path, cloud, &writing);
     writing.update(1.0, "Writing");
