@@ -1,11 +1,7 @@
 #include "tree_reconstructor.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <godot_cpp/classes/json.hpp>
 #include <godot_cpp/classes/time.hpp>
-#include <limits>
 #include <utility>
 
 #include "error.h"
@@ -170,39 +166,6 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_ph
     });
 }
 
-bool TreeReconstructor::load_cloud(const Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points) {
-    ERR_FAIL_COND_V_MSG(p_tree.is_null(), false, "There is no tree whose scan could be loaded.");
-    const Job job(this);
-    ERR_FAIL_COND_V_MSG(!job.is_alone(), false, BUSY);
-    try {
-        Listener listener(this);
-        listener.check();
-        {
-            const std::lock_guard lock(mutex_);
-            fraction_ = 0.0;
-            stage_.clear();
-        }
-        const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
-        const Dictionary provenance = p_tree->get_provenance();
-        const String source = provenance.get("source", "");
-        if (source.is_empty()) {
-            throw treerec::Error("This tree does not say which scan it was made from.");
-        }
-        const ParsedOptions options = parse_reconstruct_options(provenance.get("options", Dictionary()));
-        treerec::PointCloud cloud =
-            treerec::load_scan(file_path(source), options.pipeline, tree->frame(),
-                               size_t(std::max<int64_t>(p_maximum_points, 0)), &listener, &cache_);
-        listener.check();
-        const std::lock_guard lock(mutex_);
-        cloud_ = std::make_shared<treerec::PointCloud>(std::move(cloud));
-        fraction_ = 1.0;
-        return true;
-    } catch (const std::exception& error) {
-        _fail(error.what());
-        return false;
-    }
-}
-
 void TreeReconstructor::clear_cache() {
     const Job job(this);
     ERR_FAIL_COND_MSG(!job.is_alone(), BUSY);
@@ -298,42 +261,6 @@ TypedArray<Dictionary> TreeReconstructor::get_photo_option_list() {
     return list_photo_options();
 }
 
-// The front of a surface is where the first points are; of those the one nearest to the line is meant.
-int64_t TreeReconstructor::find_point(const PackedVector3Array& p_points, const Vector3& p_from,
-                                      const Vector3& p_way, double p_width, double p_spread) {
-    ERR_FAIL_COND_V_MSG(!p_way.is_finite() || !p_from.is_finite() || p_way == Vector3(), -1,
-                        "The line of sight needs a place and a direction.");
-    const Vector3 way = p_way.normalized();
-    const int64_t count = p_points.size();
-    const Vector3* points = p_points.ptr();
-    // Each point's way along the line, and how far off it is, in what is allowed there.
-    const auto seen = [&](int64_t p_index, double& r_along) {
-        const Vector3 from_eye = points[p_index] - p_from;
-        r_along = from_eye.dot(way);
-        const double allowed = p_width + p_spread * r_along;
-        return r_along > 0.0 && allowed > 0.0 ? double((from_eye - way * float(r_along)).length()) / allowed
-                                              : 2.0;
-    };
-    double first = std::numeric_limits<double>::infinity(), along = 0.0;
-    for (int64_t i = 0; i < count; i++) {
-        if (seen(i, along) <= 1.0) {
-            first = std::min(first, along);
-        }
-    }
-    // As deep as the circle that is looked at is wide.
-    const double last = first + 2.0 * (p_width + p_spread * first);
-    int64_t found = -1;
-    double best = 1.0;
-    for (int64_t i = 0; std::isfinite(first) && i < count; i++) {
-        const double off = seen(i, along);
-        if (off <= best && along <= last) {
-            best = off;
-            found = i;
-        }
-    }
-    return found;
-}
-
 void TreeReconstructor::cancel() {
     cancelled_ = true;
 }
@@ -368,29 +295,6 @@ Dictionary TreeReconstructor::get_report() const {
     return text.is_empty() ? Dictionary() : Dictionary(JSON::parse_string(text));
 }
 
-PackedVector3Array TreeReconstructor::get_cloud_points() const {
-    const std::lock_guard lock(mutex_);
-    PackedVector3Array points;
-    points.resize(int64_t(cloud_->size()));
-    static_assert(sizeof(treerec::Vec3) == sizeof(Vector3));
-    if (!cloud_->empty()) {
-        std::memcpy(static_cast<void*>(points.ptrw()), cloud_->positions.data(),
-                    cloud_->size() * sizeof(Vector3));
-    }
-    return points;
-}
-
-PackedColorArray TreeReconstructor::get_cloud_colors() const {
-    const std::lock_guard lock(mutex_);
-    PackedColorArray colors;
-    colors.resize(int64_t(cloud_->colors.size()));
-    Color* write = colors.ptrw();
-    for (const treerec::Color8& color : cloud_->colors) {
-        *write++ = Color(float(color[0]) / 255.0f, float(color[1]) / 255.0f, float(color[2]) / 255.0f);
-    }
-    return colors;
-}
-
 Ref<TreeReconstruction> TreeReconstructor::get_raw_skeleton() const {
     Ref<TreeReconstruction> skeleton;
     skeleton.instantiate();
@@ -406,6 +310,7 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::reconstruct_photos, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("load_cloud", "tree", "maximum_points"), &TreeReconstructor::load_cloud,
                          DEFVAL(500000));
+    ClassDB::bind_method(D_METHOD("save_cloud", "tree", "path"), &TreeReconstructor::save_cloud);
     ClassDB::bind_method(D_METHOD("clear_cache"), &TreeReconstructor::clear_cache);
     ClassDB::bind_method(D_METHOD("get_cache_size"), &TreeReconstructor::get_cache_size);
     ClassDB::bind_method(D_METHOD("import_skeleton", "path", "up_axis", "tree_number", "dialect"),

@@ -18,8 +18,8 @@
 #include "tree_reconstruction.h"
 
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
-// load_photo_views(), load_photo(), import_skeleton(), export_file() and save_html_report() may run on any
-// thread, one at a time; the other methods may be called from any other thread meanwhile.
+// save_cloud(), load_photo_views(), load_photo(), import_skeleton(), export_file() and save_html_report() may
+// run on any thread, one at a time; the other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -30,6 +30,7 @@ class TreeReconstructor : public godot::RefCounted {
                                                       const godot::String& p_folder,
                                                       const godot::Dictionary& p_options);
     bool load_cloud(const godot::Ref<TreeReconstruction>& p_tree, int64_t p_maximum_points);
+    godot::Error save_cloud(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path);
     void clear_cache();
     int64_t get_cache_size() const;
     godot::Ref<TreeReconstruction> import_skeleton(const godot::String& p_path,

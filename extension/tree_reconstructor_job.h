@@ -1,10 +1,12 @@
-// What the methods of TreeReconstructor that take long share.
+// What the methods of TreeReconstructor that take a while have in common.
 #pragma once
 
+#include <cstdint>
 #include <godot_cpp/classes/project_settings.hpp>
 #include <string>
 
 #include "convert.h"
+#include "progress.h"
 #include "tree_reconstructor.h"
 
 // Passes the core's progress on.
@@ -20,6 +22,10 @@ class TreeReconstructor::Listener : public treerec::Progress {
   private:
     TreeReconstructor* owner_;
 };
+
+inline std::string file_path(const godot::String& p_path) {
+    return to_std(godot::ProjectSettings::get_singleton()->globalize_path(p_path));
+}
 
 // One call at work. A cancel is for the call that is running, or else for the next one, and is over with it.
 class TreeReconstructor::Job {
@@ -47,7 +53,3 @@ class TreeReconstructor::Job {
 };
 
 #define BUSY "This TreeReconstructor is at work already. Make another one."
-
-inline std::string file_path(const godot::String& p_path) {
-    return to_std(godot::ProjectSettings::get_singleton()->globalize_path(p_path));
-}

@@ -34,6 +34,9 @@ std::optional<LStringDialect> told_dialect_from(const Arguments& arguments);
 // their first 4 kB: to be asked for what no -o names. what: "no report of a reconstruction".
 void require_own(const std::string& path, std::string_view mark, const std::string& what);
 
+// The same of a cleaned cloud; of text and LAS, which have no such line, none can be told to be ours.
+void require_own_cloud(const std::string& path);
+
 const Command& reconstruct_command();
 void run_reconstruct(const std::vector<std::string>& words);
 

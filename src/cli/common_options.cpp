@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
+#include "pipeline/cleaned_cloud.h"
 #include "pipeline/export.h"
 #include "scan/read_cloud.h"
 
@@ -54,6 +55,12 @@ void require_own(const std::string& path, std::string_view mark, const std::stri
     if (stream.bad() || (!begin.empty() && begin.find(mark) == std::string::npos))
         throw UsageError("'" + path + "' is there already and " + what +
                          "; it was left as it is. Name another file, or remove that one.");
+}
+
+void require_own_cloud(const std::string& path) {
+    require_own(path, kCleanedMark,
+                extension_of(path) == "ply" ? "no cloud that treerec has cleaned"
+                                            : "does not tell whether treerec has made it");
 }
 
 }  // namespace treerec

@@ -12,6 +12,7 @@
 #include "geometry/parallel.h"
 #include "photos/heic_photos.h"
 #include "photos/matches_picture.h"
+#include "pipeline/cleaned_cloud.h"
 #include "pipeline/compare_sheet.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
@@ -23,7 +24,8 @@ namespace treerec {
 namespace {
 
 // The options of 'reconstruct' that suit a cloud that is made here.
-constexpr const char* kShared[] = {"--seed",
+constexpr const char* kShared[] = {"--cloud",
+                                   "--seed",
                                    "--up",
                                    "--scale",
                                    "--height",
@@ -102,6 +104,24 @@ bool write_sheet(PhotosResult& result, const std::string& path, Progress& progre
     }
 }
 
+// Throws UsageError where the cleaned cloud can't be written to `path`, or would take the place of something
+// else in the folder `out`, which may not be there yet.
+void require_cloud_target(const std::string& path, const std::string& out) {
+    namespace fs = std::filesystem;
+    std::error_code failure;
+    const fs::path target = fs::weakly_canonical(path_of(path), failure);
+    const fs::path folder = fs::weakly_canonical(path_of(out), failure);
+    for (const char* name : {"cloud.ply", "tree.txt"})
+        if (target == folder / name)
+            throw UsageError("'" + path + "' is another file that this command writes; name --cloud's anew.");
+    const bool folder_comes = target.parent_path() == folder && !fs::exists(folder, failure);
+    as_usage([&] {
+        require_cloud_extension(path);
+        if (!folder_comes) require_writable(path);
+    });
+    require_own_cloud(path);
+}
+
 }  // namespace
 
 const Command& photos_command() {
@@ -143,6 +163,8 @@ void run_photos(const std::vector<std::string>& words) {
     exports.levels = levels_from(arguments);
     exports.pictures_beside = arguments.has("--pictures-beside");
     set_thread_count(options.colmap.threads);
+    const std::string cloud = arguments.text("--cloud", "");
+    if (arguments.has("--cloud")) require_cloud_target(cloud, out);
 
     const auto start = std::chrono::steady_clock::now();
     const bool quiet = arguments.has("--quiet");
@@ -175,6 +197,11 @@ void run_photos(const std::vector<std::string>& words) {
     exporter.prepare(outs);
     for (const std::string& path : outs)
         exporter.write(path);
+    if (arguments.has("--cloud")) {
+        label_found_leaves(tree);
+        write_cleaned_cloud(cloud, tree.cloud, &progress);
+        outs.push_back(cloud);
+    }
     details.triangles = exporter.triangles();
     details.leaf_count = exporter.leaves();
     if (!masks.empty()) {

@@ -13,6 +13,7 @@
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
+#include "pipeline/cleaned_cloud.h"
 #include "pipeline/export.h"
 #include "pipeline/html_report.h"
 #include "pipeline/reconstruct.h"
@@ -53,6 +54,9 @@ const Command& reconstruct_command() {
           "cylinders: the scan's own coordinates). More of them: -o A -o B",
           true},
          {"--report", "FILE", "stage times, counts, measurements and warnings as JSON"},
+         {"--cloud", "FILE",
+          "the cloud as it was cleaned, to lay over the scan: .ply, or .xyz .txt .asc .las (the\n"
+          "scan's own coordinates; a column leaf where leaves were told from wood)"},
          {"--html", "FILE", "a page to send to somebody: pictures, fidelity, tables (also -o FILE.html)"},
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
@@ -102,7 +106,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
                          "' is too much: one scan at a time, and each file to write behind a -o of its own.");
     const std::string scan = positional[0];
     std::vector<std::string> outs = arguments.all("-o");
-    const bool told = arguments.has("--report") || arguments.has("--html");
+    const bool told = arguments.has("--report") || arguments.has("--html") || arguments.has("--cloud");
     if (outs.empty() && !told) throw UsageError("Where to? Name at least one file to write with -o.");
     std::vector<std::string> pages = arguments.all("--html");
     std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
@@ -118,13 +122,18 @@ void run_reconstruct(const std::vector<std::string>& words) {
     // Before the long work, not after it.
     for (const std::string& out : outs)
         as_usage([&] { require_writable_format(out); });
-    const std::string report = arguments.text("--report", "");
+    const std::string report = arguments.text("--report", ""), cloud = arguments.text("--cloud", "");
     std::vector<std::string> targets = outs;
+    if (arguments.has("--cloud")) {
+        as_usage([&] { require_cloud_extension(cloud); });
+        targets.push_back(cloud);
+    }
     if (arguments.has("--report")) targets.push_back(report);
     targets.insert(targets.end(), pages.begin(), pages.end());
     for (const std::string& target : targets)
         require_safe_target(target, scan, targets);
     if (arguments.has("--report")) require_own(report, kReportMark, "no report of a reconstruction");
+    if (arguments.has("--cloud")) require_own_cloud(cloud);
     for (const std::string& page : arguments.all("--html"))
         require_own(page, kPageMark, "no page of a reconstruction");
 
@@ -138,9 +147,10 @@ void run_reconstruct(const std::vector<std::string>& words) {
     exports.textures = details.leaves;
     exports.foliage = result.foliage;
     TreeExporter exporter(result.tree, exports, &progress);
-    if (!outs.empty()) progress.update(0.9, "Writing");
+    if (!outs.empty() || arguments.has("--cloud")) progress.update(0.9, "Writing");
     exporter.prepare(outs);
     result.measured = exporter.measured();
+    label_found_leaves(result);
     // The file system takes what one core writes; the score keeps all others busy.
     parallel_for(2, 1, [&](size_t part, size_t) {
         if (part == 1) return score_reconstruction(result, options, &scoring);
@@ -148,6 +158,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
             progress.check();
             exporter.write(out);
         }
+        if (arguments.has("--cloud")) write_cleaned_cloud(cloud, result.cloud, &progress);
     });
     progress.check();
     if (arguments.has("--report")) {

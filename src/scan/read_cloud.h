@@ -59,8 +59,14 @@ PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes,
                             const ReadCloudOptions& options = {}, ReadCloudReport* report = nullptr);
 
 // Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
-// there are colours or normals), .las (1.2; without normals). Only PLY has the cloud's spacing. Scan
-// coordinates, axes and units, to 1e-8 of the cloud's extent. Writes beside and renames. Throws Error.
-void write_cloud(const std::string& path, const PointCloud& cloud);
+// there is more than places), .las (1.2; without normals and labels). Only PLY has the cloud's spacing, and
+// `comment`, one line without its end, in its header. Labels become a column "leaf" where 1 is one, else one
+// of their own name. Scan coordinates, axes and units, to 1e-8 of the cloud's extent. Writes beside and
+// renames. Throws Error, or Cancelled.
+void write_cloud(const std::string& path, const PointCloud& cloud, std::string_view comment = {},
+                 const Progress* progress = nullptr);
+
+// Throws Error if write_cloud() knows no such extension: to be asked before the long work.
+void require_cloud_extension(const std::string& path);
 
 }  // namespace treerec

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -33,7 +34,7 @@ class ByteWriter {
         at_ += text.size();
     }
     void skip(size_t count) { at_ += count; }
-    const std::string& bytes() const { return bytes_; }
+    std::string take() { return std::move(bytes_); }
 
   private:
     std::string bytes_;
@@ -59,8 +60,23 @@ int decimals_for(const Bounds& bounds) {
     return std::clamp(static_cast<int>(std::ceil(8.0 - portable::log10(extent))), 0, 15);
 }
 
-std::string to_ply(const PointCloud& cloud) {
+// Of a column that a reader takes for labels again (label_meaning()).
+std::string label_name(const PointLabels& labels) {
+    if (labels.leaf_is_one) return "leaf";
+    std::string name;
+    for (const char c : labels.column)
+        if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_') name += c;
+    return name.empty() ? "label" : name;
+}
+
+// Now and then, of many points.
+void check_at(size_t i, const Progress* progress) {
+    if (progress && i % 65536 == 0) progress->check();
+}
+
+std::string to_ply(const PointCloud& cloud, std::string_view comment, const Progress* progress) {
     std::string header = "ply\nformat binary_little_endian 1.0\n";
+    if (!comment.empty()) header.append("comment ").append(comment).append("\n");
     if (cloud.spacing > 0.0) {
         char number[32];
         const std::to_chars_result end = std::to_chars(number, number + sizeof number, cloud.spacing);
@@ -70,11 +86,14 @@ std::string to_ply(const PointCloud& cloud) {
               "\nproperty double x\nproperty double y\nproperty double z\n";
     if (cloud.has_normals()) header += "property float nx\nproperty float ny\nproperty float nz\n";
     if (cloud.has_colors()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    if (!cloud.labels.empty()) header.append("property uchar ").append(label_name(cloud.labels)).append("\n");
     header += "end_header\n";
-    const size_t stride = 24U + (cloud.has_normals() ? 12U : 0U) + (cloud.has_colors() ? 3U : 0U);
+    const size_t stride = 24U + (cloud.has_normals() ? 12U : 0U) + (cloud.has_colors() ? 3U : 0U) +
+                          (cloud.labels.empty() ? 0U : 1U);
     ByteWriter writer(header.size() + stride * cloud.size());
     writer.put_text(header);
     for (size_t i = 0; i < cloud.size(); i++) {
+        check_at(i, progress);
         const DVec3 p = scan_position(cloud, i);
         for (int k = 0; k < 3; k++)
             writer.put(p[k]);
@@ -86,17 +105,19 @@ std::string to_ply(const PointCloud& cloud) {
         if (cloud.has_colors())
             for (const uint8_t channel : cloud.colors[i])
                 writer.put(channel);
+        if (!cloud.labels.empty()) writer.put(cloud.labels.values[i]);
     }
-    return writer.bytes();
+    return writer.take();
 }
 
-std::string to_text(const PointCloud& cloud) {
+std::string to_text(const PointCloud& cloud, const Progress* progress) {
     std::string text;
     // Bare x y z needs no header, and many programs trip over one.
-    if (cloud.has_colors() || cloud.has_normals()) {
+    if (cloud.has_colors() || cloud.has_normals() || !cloud.labels.empty()) {
         text = "//X Y Z";
         if (cloud.has_colors()) text += " R G B";
         if (cloud.has_normals()) text += " Nx Ny Nz";
+        if (!cloud.labels.empty()) text.append(" ").append(label_name(cloud.labels));
         text += '\n';
     }
     const int decimals = decimals_for(scan_bounds(cloud));
@@ -109,6 +130,7 @@ std::string to_text(const PointCloud& cloud) {
     };
     text.reserve(text.size() + cloud.size() * 48);
     for (size_t i = 0; i < cloud.size(); i++) {
+        check_at(i, progress);
         const DVec3 p = scan_position(cloud, i);
         for (int k = 0; k < 3; k++)
             put(p[k], decimals, ' ');
@@ -120,13 +142,14 @@ std::string to_text(const PointCloud& cloud) {
             for (int k = 0; k < 3; k++)
                 put(n[k], 7, ' ');
         }
+        if (!cloud.labels.empty()) put(cloud.labels.values[i], 0, ' ');
         text.back() = '\n';
     }
     return text;
 }
 
 // LAS 1.2, point format 0 or 2: ASPRS, "LAS Specification, version 1.2", 2008.
-std::string to_las(const PointCloud& cloud) {
+std::string to_las(const PointCloud& cloud, const Progress* progress) {
     constexpr size_t kHeader = 227;
     if (cloud.size() > 0xFFFFFFFFU) throw Error("LAS 1.2 holds no more than 4294967295 points; write PLY.");
     const size_t stride = cloud.has_colors() ? 26 : 20;
@@ -161,6 +184,7 @@ std::string to_las(const PointCloud& cloud) {
         writer.put(bounds.min[k]);
     }
     for (size_t i = 0; i < cloud.size(); i++) {
+        check_at(i, progress);
         const DVec3 steps = glm::round((scan_position(cloud, i) - offset) / scale);
         for (int k = 0; k < 3; k++)
             writer.put(static_cast<int32_t>(std::clamp(steps[k], -2147483647.0, 2147483647.0)));
@@ -171,12 +195,25 @@ std::string to_las(const PointCloud& cloud) {
             for (const uint8_t channel : cloud.colors[i])
                 writer.put(static_cast<uint16_t>(channel * 257));
     }
-    return writer.bytes();
+    return writer.take();
+}
+
+constexpr const char* kKinds = "use the extension .ply, .las, .xyz, .txt or .asc.";
+
+bool is_text(const std::string& extension) {
+    return extension == "xyz" || extension == "txt" || extension == "asc";
 }
 
 }  // namespace
 
-void write_cloud(const std::string& path, const PointCloud& cloud) {
+void require_cloud_extension(const std::string& path) {
+    const std::string extension = extension_of(path);
+    if (extension != "ply" && extension != "las" && !is_text(extension))
+        throw Error("'" + path + "' is no name for a point cloud: " + kKinds);
+}
+
+void write_cloud(const std::string& path, const PointCloud& cloud, std::string_view comment,
+                 const Progress* progress) {
     if (cloud.empty()) throw Error("'" + path + "' was not written: the cloud has no points.");
     const auto finite = [&](const Vec3& v) { return is_finite(DVec3(v)); };
     if (!std::all_of(cloud.positions.begin(), cloud.positions.end(), finite) ||
@@ -185,13 +222,13 @@ void write_cloud(const std::string& path, const PointCloud& cloud) {
         throw Error("'" + path + "' was not written: a point of the cloud has no place, or no normal.");
     const std::string extension = extension_of(path);
     if (extension == "ply") {
-        write_file(path, to_ply(cloud));
+        write_file(path, to_ply(cloud, comment, progress), progress);
     } else if (extension == "las") {
-        write_file(path, to_las(cloud));
-    } else if (extension == "xyz" || extension == "txt" || extension == "asc") {
-        write_file(path, to_text(cloud));
+        write_file(path, to_las(cloud, progress), progress);
+    } else if (is_text(extension)) {
+        write_file(path, to_text(cloud, progress), progress);
     } else {
-        throw Error("'" + path + "' was not written: use the extension .ply, .las, .xyz, .txt or .asc.");
+        throw Error("'" + path + "' was not written: " + kKinds);
     }
 }
 

@@ -82,8 +82,65 @@ func _gate(command: String) -> String:
 	return colmap.get_base_dir().path_join("wait_in_" + command)
 
 
+## Has the photos say by GPS where the model's cameras stood, if its unit were [param unit] metres.
+func tell_places(unit: float) -> void:
+	for i: int in COUNT - 1:
+		var path: String = photos.path_join(_name(i))
+		var jpeg: PackedByteArray = FileAccess.get_file_as_bytes(path)
+		# The model's z is down, so that north is -y.
+		var east: float = _centre(i).x * unit
+		var north: float = -_centre(i).y * unit
+		var latitude: float = 52.0 + north / 111200.0
+		var longitude: float = 13.0 + east / (111200.0 * cos(deg_to_rad(52.0)))
+		var record: PackedByteArray = _exif(latitude, longitude)
+		var segment: StreamPeerBuffer = StreamPeerBuffer.new()
+		segment.big_endian = true
+		segment.put_u16(0xFFE1)
+		segment.put_u16(record.size() + 2)
+		segment.put_data(record)
+		write(path, jpeg.slice(0, 2) + segment.data_array + jpeg.slice(2))
+
+
+# A record of TIFF with nothing but a place, in degrees north and east.
+static func _exif(latitude: float, longitude: float) -> PackedByteArray:
+	var record: StreamPeerBuffer = StreamPeerBuffer.new()
+	record.put_data("Exif".to_ascii_buffer())
+	record.put_u16(0)
+	record.put_data("II".to_ascii_buffer())
+	record.put_u16(42)
+	record.put_u32(8)
+	# The first directory points at that of the place, at 26; its fields' values are at 80 and 104.
+	record.put_u16(1)
+	_put_field(record, [0x8825, 4, 1, 26])
+	record.put_u32(0)
+	record.put_u16(4)
+	for value: Array in [[1, 2, 2, 0x4E], [2, 5, 3, 80], [3, 2, 2, 0x45], [4, 5, 3, 104]]:
+		_put_field(record, value)
+	record.put_u32(0)
+	for degrees: float in [latitude, longitude]:
+		record.put_u32(roundi(degrees * 1e7))
+		record.put_u32(10000000)
+		for _zero: int in 2:
+			record.put_u32(0)
+			record.put_u32(1)
+	return record.data_array
+
+
+# A field's number, its type, how many values it has, and the value, or where these are.
+static func _put_field(record: StreamPeerBuffer, field: Array) -> void:
+	record.put_u16(field[0])
+	record.put_u16(field[1])
+	record.put_u32(field[2])
+	record.put_u32(field[3])
+
+
 static func _name(i: int) -> String:
 	return "photo %d.jpg" % i
+
+
+# Where a photo was taken from.
+static func _centre(i: int) -> Vector3:
+	return Vector3(5.0, 0.0, 0.0).rotated(Vector3.BACK, 1.5 * PI * i / (COUNT - 1))
 
 
 # A tree of 3 boughs and 3 units; the photos are taken from around it, but for a quarter.
@@ -101,9 +158,7 @@ func _write_model(folder: String) -> void:
 	var images: StreamPeerBuffer = StreamPeerBuffer.new()
 	images.put_u64(COUNT - 1)
 	for i: int in COUNT - 1:
-		var centre: Vector3 = Vector3(5.0, 0.0, 0.0).rotated(
-			Vector3.BACK, 1.5 * PI * i / (COUNT - 1)
-		)
+		var centre: Vector3 = _centre(i)
 		# Rows are what is right, down and ahead.
 		var ahead: Vector3 = -centre.normalized()
 		var down: Vector3 = Vector3.BACK

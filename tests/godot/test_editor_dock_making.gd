@@ -188,6 +188,32 @@ func test_every_format_is_written_or_says_why_not() -> void:
 	_end()
 
 
+func test_the_cleaned_cloud_is_saved() -> void:
+	_begin(grown_tree(6))
+	check(_exports().cloud_button.disabled, "A tree of no scan has a cloud to save.")
+	_end()
+	_begin(_scanned())
+	check(not _exports().cloud_button.disabled, "The cloud can't be saved.")
+	var path: String = folder.path_join("clean.ply")
+	_exports().save_cloud_to(path)
+	var job: Session.Jobs.Job = _session.jobs.get_running()[0]
+	check(job.measured and "clean.ply" in job.title, job.title)
+	await _finish()
+	check(FileAccess.file_exists(path), _said[-1])
+	check(path in _said[-1], _said[-1])
+	var scan: String = _session.tree.provenance["source"]
+	_exports().save_cloud_to(scan)
+	await _finish()
+	check("the scan itself" in _said[-1], _said[-1])
+	var cancelled: String = folder.path_join("cancelled.ply")
+	_exports().save_cloud_to(cancelled)
+	_session.jobs.cancel(_session.jobs.get_running()[0])
+	await _finish()
+	check(not FileAccess.file_exists(cancelled), "A cancelled one is there.")
+	check(not _undo.has_undo(), "There is a step for it.")
+	_end()
+
+
 func test_edits_are_saved_as_text() -> void:
 	_begin(grown_tree(6))
 	check(_exports().log_button.disabled, "No edits can be saved.")

@@ -10,6 +10,7 @@
 #include "photos/photo_picture.h"
 #include "photos_standin.h"
 #include "photos_warps.h"
+#include "scan/read_cloud.h"
 
 namespace treerec {
 namespace {
@@ -69,6 +70,36 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     // What lies there is a scan.
     EXPECT_EQ(run("reconstruct out -o out/again.txt").code, 0);
     EXPECT_EQ(run("reconstruct out/sparse/0 -o out/sparse.txt").code, 0);
+}
+
+TEST_F(PhotosCli, TheCleanedCloudLiesInTheCloudOfThePhotos) {
+    // The folder comes with the run.
+    fs::remove_all(folder_ / "out");
+    const Outcome outcome = run("photos photos -o out --cloud out/clean.ply --quiet");
+    ASSERT_EQ(outcome.code, 0) << outcome.error;
+    const PointCloud all = read_cloud(path("out/cloud.ply")), clean = read_cloud(path("out/clean.ply"));
+    EXPECT_LE(clean.size(), all.size());
+    EXPECT_GT(clean.size(), all.size() / 2);
+    EXPECT_EQ(clean.spacing, all.spacing);
+    EXPECT_TRUE(clean.has_colors());
+    size_t at = 0;
+    const auto place = [](const PointCloud& cloud, size_t i) {
+        return cloud.frame.to_scan(DVec3(cloud.positions[i]));
+    };
+    for (size_t i = 0; i < clean.size(); i++, at++) {
+        while (at < all.size() && glm::length(place(all, at) - place(clean, i)) > 1e-5)
+            at++;
+        ASSERT_LT(at, all.size()) << i << " is no point of the photos";
+    }
+    // Again, and over nothing else.
+    EXPECT_EQ(run("photos photos -o out --cloud out/clean.ply --quiet").code, 0);
+    const std::string cloud = get("out/cloud.ply");
+    for (const char* name : {"out/cloud.ply", "out/../out/cloud.ply", "out/tree.txt", "out/clean.glb"})
+        EXPECT_EQ(run("photos photos -o out --quiet --cloud " + std::string(name)).code, 2) << name;
+    EXPECT_EQ(get("out/cloud.ply"), cloud);
+    put("mine.ply", cloud);
+    EXPECT_EQ(run("photos photos -o out --quiet --cloud mine.ply").code, 2);
+    EXPECT_EQ(get("mine.ply"), cloud);
 }
 
 TEST_F(PhotosCli, WrongWordsAreTold) {

@@ -5,6 +5,7 @@ extends "section.gd"
 const Files := preload("files.gd")
 const Impostor := preload("impostor.gd")
 const _FORMATS: PackedStringArray = ["glb", "gltf", "obj", "ply", "txt", "csv", "lstring"]
+const _CLOUD_FORMATS: PackedStringArray = ["ply", "xyz", "txt", "asc", "las"]
 
 var levels: SpinBox
 var form: OptionButton
@@ -15,6 +16,7 @@ var bake: Button
 var meshes: Button
 var impostor: Impostor
 var export_button: Button
+var cloud_button: Button
 var log_button: Button
 
 var _files: Files = Files.new()
@@ -45,6 +47,17 @@ func export_to(path: String) -> void:
 		tr("Writing %s") % path.get_file(),
 		_export.bind(worker, session.tree, path, int(levels.value), pictures.button_pressed),
 		_on_exported.bind(worker, path),
+		worker
+	)
+
+
+## Writes the scan of the tree as it is after cleaning, in the scan's own coordinates.
+func save_cloud_to(path: String) -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	session.jobs.start(
+		tr("Writing %s") % path.get_file(),
+		_save_cloud.bind(worker, session.tree, path),
+		_on_cloud_saved.bind(worker, path),
 		worker
 	)
 
@@ -128,17 +141,29 @@ func _build() -> void:
 		&"ExternalLink"
 	)
 	export_button.pressed.connect(_on_export_pressed)
+	cloud_button = Widgets.button(
+		"Save cleaned cloud…",
+		(
+			"Writes the scan without ground, neighbours and stray points, in its own coordinates,"
+			+ " to be laid over it in CloudCompare or MeshLab."
+		),
+		&"PointMesh"
+	)
+	cloud_button.pressed.connect(_on_cloud_pressed)
 	log_button = Widgets.button(
 		"Save edits…", "Writes all edits as text. It can be done again on another tree.", &"Script"
 	)
 	log_button.pressed.connect(_on_log_pressed)
-	body.add_child(buttons([bake, meshes, impostor.button, export_button, log_button]))
+	body.add_child(
+		buttons([bake, meshes, impostor.button, export_button, cloud_button, log_button])
+	)
 
 
 func _refresh() -> void:
 	var empty: bool = session.tree == null or session.tree.is_empty()
 	for button: Button in [bake, meshes, impostor.button, export_button]:
 		button.disabled = empty
+	cloud_button.disabled = empty or session.tree.provenance.get("source", "") == ""
 	log_button.disabled = empty or session.tree.edit_log.is_empty()
 
 
@@ -218,6 +243,22 @@ func _on_exported(
 		session.say(worker.get_error_message(), session.Kind.ERROR)
 
 
+static func _save_cloud(
+	_job: Session.Jobs.Job, worker: TreeReconstructor, tree: TreeReconstruction, path: String
+) -> Error:
+	return worker.save_cloud(tree, path)
+
+
+func _on_cloud_saved(
+	error: Error, _job: Session.Jobs.Job, worker: TreeReconstructor, path: String
+) -> void:
+	if error == OK:
+		session.say(tr("The cleaned cloud is in %s.") % path)
+		Files.tell_editor(path)
+	else:
+		session.say(worker.get_error_message(), session.Kind.ERROR)
+
+
 func _tell(path: String, error: Error) -> void:
 	if error == OK:
 		session.say(tr("The tree is in %s.") % path)
@@ -251,6 +292,21 @@ func _on_export_pressed() -> void:
 	for extension: String in _FORMATS:
 		filters.append("*.%s" % extension)
 	_files.ask(tr("Export Tree"), Files.beside(session.tree, "glb"), filters, export_to, true)
+
+
+# Beside the project: inside of it the cloud would be imported as one more scan.
+func _on_cloud_pressed() -> void:
+	var filters: PackedStringArray = []
+	for extension: String in _CLOUD_FORMATS:
+		filters.append("*.%s" % extension)
+	var source: String = session.tree.provenance.get("source", "")
+	_files.ask(
+		tr("Save Cleaned Cloud"),
+		Files.outside(source.get_file().get_basename() + "_cleaned.ply"),
+		filters,
+		save_cloud_to,
+		true
+	)
 
 
 func _on_log_pressed() -> void:

@@ -54,6 +54,15 @@ static func beside(tree: TreeReconstruction, extension: String) -> String:
 	return "res://tree." + extension
 
 
+## A path for a file of this name where the editor doesn't import it: in the user's documents, or
+## else in the project's user folder.
+static func outside(file: String) -> String:
+	var folder: String = OS.get_system_dir(OS.SYSTEM_DIR_DOCUMENTS)
+	if folder.is_empty() or not DirAccess.dir_exists_absolute(folder):
+		folder = OS.get_user_data_dir()
+	return folder.path_join(file)
+
+
 ## Tells the editor of a new file of the project.
 static func tell_editor(path: String) -> void:
 	if Engine.is_editor_hint() and path.begins_with("res://"):

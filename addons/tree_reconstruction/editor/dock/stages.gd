@@ -18,6 +18,8 @@ const _FROM_SCAN: Array[StringName] = [SCAN, CLEAN, SKELETON]
 const _SCAN_OPTIONS: PackedStringArray = [
 	"up", "scale", "known_height", "known_length", "columns", "classes"
 ]
+# Each tells the size. The reconstruction takes one of them.
+const _SIZES: PackedStringArray = ["scale", "known_height", "known_length"]
 const _CLEAN_OPTIONS: PackedStringArray = [
 	"remove_extreme_colors",
 	"white_above",
@@ -60,10 +62,20 @@ func run_from(stage: StringName) -> void:
 		return
 	var options: Dictionary = session.tree.provenance.get("options", {}).duplicate()
 	for each: StringName in _FROM_SCAN.slice(_FROM_SCAN.find(stage)):
-		options.merge(rows[each].get_changed(), true)
+		var changed: Dictionary = rows[each].get_changed()
+		_give_way(options, changed)
+		options.merge(changed, true)
 		rows[each].set_running(true)
 	_sentence.visible = false
 	rerun.start(options)
+
+
+# What the tree had its size from, as from the photos' GPS, goes where the user tells it now.
+static func _give_way(options: Dictionary, changed: Dictionary) -> void:
+	for name: String in _SIZES:
+		if changed.get(name):
+			for other: String in _SIZES:
+				options.erase(other)
 
 
 # A tool asks for it; an option that is [code]null[/code] goes back to its default.

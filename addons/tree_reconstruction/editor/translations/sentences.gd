@@ -56,6 +56,13 @@ const PATTERNS: PackedStringArray = [
 	),
 	"The tree is not as it was before this edit, so the edit cannot be done again.",
 	"The tree is not as this edit left it, so the edit cannot be undone.",
+	# Of files that are written.
+	"'%s' is no name for a point cloud: use the extension .ply, .las, .xyz, .txt or .asc.",
+	"'%s' is the scan itself, which would be overwritten; choose another name.",
+	"'%s' cannot be written: there is no folder '%s'.",
+	"'%s' cannot be written; check its name and that its folder is yours to write.",
+	"'%s' could not be written; check the disk's free space and the rights.",
+	"This tree does not say which scan it was made from.",
 	# In them.
 	"%s branch",
 	"%s branches",

@@ -94,6 +94,42 @@ func run() -> void:
 		check_equal(ResourceLoader.get_dependencies(path), PackedStringArray(), "what it needs")
 	await save_scene()
 
+	await _save_cleaned_cloud()
+
+
+func _save_cleaned_cloud() -> void:
+	await step(
+		"the cleaned cloud is saved outside of the project, and a file that is there asked for"
+	)
+	var cleaned: String = OS.get_environment("TREE_EDITOR_TEST").path_join("cleaned.ply")
+	for time: int in 2:
+		var modified: int = FileAccess.get_modified_time(cleaned)
+		await press(find_control("Button", "Save cleaned cloud", _dock))
+		var asks: Callable = func() -> bool: return dialog("Save Cleaned Cloud") != null
+		if not await until(asks, "a dialog asks"):
+			return
+		await user.key("ctrl+a")
+		await user.type(cleaned)
+		await picture("dock-cleaned-cloud")
+		await user.key("Return")
+		if time == 1:
+			if not await until(
+				func() -> bool: return dialog("already exists") != null,
+				"it asks before it writes over the file"
+			):
+				return
+			check_equal(FileAccess.get_modified_time(cleaned), modified, "the file meanwhile")
+			await picture("dock-cleaned-cloud-again")
+			await user.key("Escape")
+			await user.key("Escape")
+		elif not await until(
+			func() -> bool: return FileAccess.file_exists(cleaned), "the cloud is there"
+		):
+			return
+	var head: String = FileAccess.get_file_as_bytes(cleaned).slice(0, 100).get_string_from_ascii()
+	check("comment cleaned by treerec" in head, head)
+	await picture("dock-cleaned-cloud-saved")
+
 
 # Opens a section of the dock, and folds all others.
 func _open(id: StringName) -> void:
