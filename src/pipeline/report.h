@@ -6,6 +6,7 @@
 #include <string>
 
 #include "exchange/tree_files.h"
+#include "photos/bark_picture.h"
 #include "photos/run_colmap.h"
 #include "pipeline/reconstruct.h"
 
@@ -21,6 +22,7 @@ struct ReportDetails {
     std::optional<ColmapRun> photos = {};  // where the scan was made of some
     size_t photo_pairs = 0;                // that were matched pixel by pixel
     bool sized_by_gps = false;             // the scale is that of photos->gps
+    std::optional<PhotoBark> bark = {};    // where it was looked for in the photos
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
@@ -50,6 +52,8 @@ struct ReportDetails {
 //   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
 //   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
 //   says where it was taken; photos/gps_scale.h)}: of a scan that was made of photos alone
+//   bark {from "photos" or "drawn", why_drawn (a sentence, or null), photos, pixel_mm, detail_mm (null where
+//   no photo shows any), area_m2}: where it was looked for in photos (photos/bark_picture.h)
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].
