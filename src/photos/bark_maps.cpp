@@ -26,6 +26,9 @@ constexpr double kMostChange = 5.0;  // of light that is taken off
 constexpr double kRelief = 0.008;    // metres from the deepest cracks to the crests
 constexpr double kFine = 0.0012;     // metres: what is finer is grain of the photo
 constexpr double kCoarse = 0.045;    // metres: slower changes are no relief
+constexpr double kGrain = 0.6;       // of the photos' detail
+constexpr double kCoarser = 1.5;     // than a pixel
+constexpr double kNoiseRelief = 0.15, kNoiseTone = 0.32;
 constexpr size_t kRows = 16;
 
 // IEC 61966-2-1.
@@ -69,6 +72,28 @@ void run_mean(const float* from, float* to, int count, size_t step, int radius, 
 int radius_of(double deviation) {
     return std::max(
         0, static_cast<int>(std::lround(0.5 * (std::sqrt(4.0 * deviation * deviation + 1.0) - 1.0))));
+}
+
+// Noise from the photos' detail down to a pixel: bark does not end at their resolution.
+void roughen(Image& albedo, Field& relief, const DVec2& metres, double detail) {
+    const auto cells = [&](int pixels, double size) {
+        return std::max(4, static_cast<int>(std::lround(pixels * size / detail)));
+    };
+    const int across = cells(albedo.width, metres.x), along = cells(albedo.height, metres.y);
+    int octaves = 1;
+    while ((across << octaves) < albedo.width && octaves < 4)
+        octaves++;
+    parallel_for(static_cast<size_t>(albedo.height), kRows, [&](size_t begin, size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++)
+            for (int x = 0; x < albedo.width; x++) {
+                const DVec2 p((x + 0.5) / albedo.width, (y + 0.5) / albedo.height);
+                const double tone = texture::fractal(p, across, along, octaves, 1);
+                relief.at(x, y) =
+                    static_cast<float>(clamp01(static_cast<double>(relief.at(x, y)) + kNoiseRelief * tone));
+                for (int c = 0; c < 3; c++)
+                    albedo.at(x, y)[c] = to_byte(albedo.at(x, y)[c] / 255.0 * (1.0 + kNoiseTone * tone));
+            }
+    });
 }
 
 }  // namespace
@@ -188,7 +213,7 @@ std::vector<float> faults_of(const Image& picture, const std::vector<uint8_t>& s
     return faults;
 }
 
-BarkTextures maps_of(Image albedo, const DVec2& metres, double finest) {
+BarkTextures maps_of(Image albedo, const DVec2& metres, double detail) {
     const int width = albedo.width, height = albedo.height;
     const std::array<float, 256> linear = linear_table();
     std::array<double, 256> lightness{};  // a perceptual one: cracks are a few dark levels
@@ -203,7 +228,7 @@ BarkTextures maps_of(Image albedo, const DVec2& metres, double finest) {
     }
     // Relief is what changes at the scale of cracks and plates; coarser relief counts more, as it is deeper.
     Field relief(width, height);
-    const Field fine = blurred(light, std::max(kFine, finest) / metres, true);
+    const Field fine = blurred(light, std::max(kFine, kGrain * detail) / metres, true);
     double share = 0.5;
     for (double scale = kCoarse; scale > 0.006; scale *= 0.5, share *= 0.7) {
         const Field around = blurred(light, scale / metres, true);
@@ -215,6 +240,7 @@ BarkTextures maps_of(Image albedo, const DVec2& metres, double finest) {
     const double high = std::max(low + 1e-3, static_cast<double>(quantile(sorted, 0.98)));
     for (float& value : relief.values)
         value = static_cast<float>(clamp01(0.06 + 0.88 * (static_cast<double>(value) - low) / (high - low)));
+    if (detail > kCoarser * metres.x) roughen(albedo, relief, metres, detail);
     BarkTextures textures{std::move(albedo), Image(width, height, 3), Image(width, height, 3)};
     parallel_for(static_cast<size_t>(height), kRows, [&](size_t begin, size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++)

@@ -42,7 +42,8 @@ void take_light_off(Image& picture, const std::vector<uint8_t>& seen, const DVec
 std::vector<float> faults_of(const Image& picture, const std::vector<uint8_t>& seen, const DVec2& deviation);
 
 // Normal, occlusion and roughness of colours that repeat both ways, in the manner of make_bark_textures().
-// metres: what a pixel is wide and high. finest: metres; what is finer is the photos' grain, and no relief.
-BarkTextures maps_of(Image albedo, const DVec2& metres, double finest);
+// metres: what a pixel is wide and high. detail: metres; what is finer in the photos is grain, and no relief.
+// Where that is coarser than the pictures' pixels, noise takes its place in colour and relief.
+BarkTextures maps_of(Image albedo, const DVec2& metres, double detail);
 
 }  // namespace treerec

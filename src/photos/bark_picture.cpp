@@ -16,11 +16,10 @@ namespace {
 constexpr int kSize = 512;             // pixels
 constexpr int kFineSize = 1024;        // pixels
 constexpr double kFinePixel = 0.0012;  // metres on the bark
-constexpr double kMostTexels = 8e6;  // of the chart
+constexpr double kMostTexels = 8e6;    // of the chart
 constexpr double kLongest = 3.0;       // metres of trunk that are looked at
 constexpr double kShading = 0.12;      // metres: what changes more slowly is light, not bark
 constexpr double kEvenColour = 0.6;    // of the colour's slow changes
-constexpr double kGrain = 0.6;         // of the photos' pixels on the bark
 constexpr double kPatch = 0.04;        // metres: of what is compared to be bark
 constexpr double kSurveyEnd = 0.1, kGatherEnd = 0.75;
 
@@ -112,7 +111,7 @@ PhotoBark bark_of_photos(const Tree& tree, const PhotoModel& model, const std::s
     // What is left of slow changes would show as a pattern where the picture repeats.
     const std::vector<uint8_t> all(static_cast<size_t>(size) * static_cast<size_t>(size), 1);
     take_light_off(albedo, all, kShading / texel, kEvenColour, true);
-    bark.textures = maps_of(std::move(albedo), texel, kGrain * bark.detail);
+    bark.textures = maps_of(std::move(albedo), texel, bark.detail);
     return bark;
 }
 

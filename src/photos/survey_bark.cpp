@@ -25,11 +25,18 @@ struct WoodDepth {
     PinholeView view;
     std::vector<float> depth;
 
-    bool hides(const DVec2& at, double scale, double far) const {
-        const int x = static_cast<int>(at.x * scale), y = static_cast<int>(at.y * scale);
-        if (x < 0 || y < 0 || x >= view.width || y >= view.height) return false;
-        return depth[static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x)] <
-               far / kBefore;
+    // Whether there is anything before a square of the photo. at, reach: its middle and half its edge, in
+    // pixels of the view. far: along the axis.
+    bool hides(const DVec2& at, double reach, double far) const {
+        for (int k = 0; k < 9; k++) {
+            const int x = static_cast<int>(std::floor(at.x + reach * (k % 3 - 1)));
+            const int y = static_cast<int>(std::floor(at.y + reach * (k / 3 - 1)));
+            if (x < 0 || y < 0 || x >= view.width || y >= view.height) continue;
+            if (depth[static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x)] <
+                far / kBefore)
+                return true;
+        }
+        return false;
     }
 
     // A ball before or behind others.
@@ -177,7 +184,8 @@ BarkSurvey survey_bark(const Tree& tree, const TrunkChart& chart, const PhotoMod
                              at->y <= camera.height - margin))
                     continue;
                 const auto straight = view.project(spots[i]->place);
-                if (!straight || wood.hides(*straight, scale, far)) continue;
+                if (!straight || wood.hides(*straight * scale, 0.5 * survey.cell / pixel * scale + 0.5, far))
+                    continue;
                 std::vector<Glimpse>& known = survey.glimpses[i];
                 const Glimpse glimpse{p, cosine / pixel, pixel};
                 auto place = known.begin();

@@ -27,6 +27,8 @@ constexpr double kFocal = 700.0;
 constexpr double kRadius = 0.25;
 constexpr double kHeightOfStem = 3.0;
 constexpr double kAway = 1.5;
+constexpr double kBench = 0.45;  // metres: the radius of one that goes around the stem
+constexpr double kBenchLow = 0.95, kBenchHigh = 1.05;
 
 // Rough at all scales, as bark is, with cracks up and down.
 DVec3 bark_at(const DVec3& place) {
@@ -88,6 +90,11 @@ class PhotoBarkTest : public ::testing::Test {
                     const double a = way.x * way.x + way.z * way.z, b = centre.x * way.x + centre.z * way.z;
                     const double root = b * b - a * (away * away - kRadius * kRadius);
                     if (root > 0.0) colour = bark_at(centre + way * ((-b - std::sqrt(root)) / a));
+                    const double wide = b * b - a * (away * away - kBench * kBench);
+                    if (has_bench_ && wide > 0.0) {
+                        const double up = (centre + way * ((-b - std::sqrt(wide)) / a)).y;
+                        if (up > kBenchLow && up < kBenchHigh) colour = DVec3(0.9, 0.1, 0.1);
+                    }
                     if (change) colour = change(x, y, colour);
                     for (int c = 0; c < 3; c++)
                         picture.at(x, y)[c] = texture::to_byte(colour[c]);
@@ -104,9 +111,10 @@ class PhotoBarkTest : public ::testing::Test {
             add(360.0 * i / count, away, {}, blur);
     }
 
-    SeenBark gather(const DVec2& texel) {
+    SeenBark gather(const DVec2& texel, const SeenThings& things = {}) {
         chart_ = chart_trunk(tree_, 3.0);
-        return gather_bark(chart_, survey_bark(tree_, chart_, model_), texel, tree_.frame(), model_, folder_);
+        return gather_bark(chart_, survey_bark(tree_, chart_, model_, things), texel, tree_.frame(), model_,
+                           folder_);
     }
 
     // What is to be seen on the chart, by texel, over what is there.
@@ -166,6 +174,7 @@ class PhotoBarkTest : public ::testing::Test {
         }
     }
 
+    bool has_bench_ = false;
     std::string folder_;
     PhotoModel model_;
     Tree tree_;
@@ -173,6 +182,13 @@ class PhotoBarkTest : public ::testing::Test {
 };
 
 constexpr double kTexel = 0.002;
+
+size_t red_texels(const SeenBark& bark) {
+    size_t red = 0;
+    for (size_t i = 0; i < bark.seen.size(); i++)
+        red += bark.seen[i] && bark.colours.pixels[3 * i] > 150 && bark.colours.pixels[3 * i + 1] < 60;
+    return red;
+}
 
 TEST_F(PhotoBarkTest, ComesBackWithTheColoursThatItHas) {
     add_circle(12);
@@ -227,10 +243,25 @@ TEST_F(PhotoBarkTest, WhatStandsBeforeTheTrunkInOnePhotoIsLeftOut) {
             return i == 3 && y > 250 && y < 420 ? DVec3(0.9, 0.1, 0.1) : colour;
         });
     const SeenBark bark = gather(DVec2(kTexel));
-    size_t red = 0;
-    for (size_t i = 0; i < bark.seen.size(); i++)
-        red += bark.seen[i] && bark.colours.pixels[3 * i] > 200 && bark.colours.pixels[3 * i + 1] < 60;
-    EXPECT_EQ(red, 0U);
+    EXPECT_EQ(red_texels(bark), 0U);
+}
+
+TEST_F(PhotoBarkTest, WhatStandsBeforeTheTrunkInAllPhotosIsLeftOutWhereItHasPoints) {
+    has_bench_ = true;
+    add_circle(16);
+    const SeenBark without = gather(DVec2(kTexel));
+    SeenThings things{{}, 0.02};
+    for (int i = 0; i < 3000; i++) {
+        // Evenly over the bench, and over the trunk, which hides nothing.
+        const double share = (i + 0.5) / 3000, angle = 2.39996 * i;
+        const DVec3 out(std::cos(angle), 0.0, std::sin(angle));
+        things.places.push_back(kBench * out + DVec3(0.0, kBenchLow + (kBenchHigh - kBenchLow) * share, 0.0));
+        things.places.push_back(kRadius * out + DVec3(0.0, kHeightOfStem * share, 0.0));
+    }
+    const SeenBark with = gather(DVec2(kTexel), things);
+    EXPECT_GT(red_texels(without), 500U);
+    EXPECT_LT(red_texels(with), red_texels(without) / 20);
+    EXPECT_GT(with.area, 0.6 * without.area);
 }
 
 // The mean difference between lines of pixels `a` and `b`, rows or columns.
