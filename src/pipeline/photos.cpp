@@ -94,6 +94,16 @@ SeenThings things_of(const PhotosResult& result, Progress* progress) {
     return things;
 }
 
+PhotoBark look_at_bark(const PhotosResult& result, Progress* progress) {
+    if (result.made.pairs > 0)
+        return bark_of_photos(result.tree.tree, read_photo_model(result.photos.model, progress),
+                              result.photos_folder, things_of(result, progress), {}, progress);
+    PhotoBark none;
+    none.why_not =
+        "The photos were not matched pixel by pixel, so that it is not known what stands before the trunk.";
+    return none;
+}
+
 // Its pictures, or none: not those of another time either.
 void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder) {
     const bool made = bark && bark->textures;
@@ -172,9 +182,7 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
     if (!has_scale && gps.photos > 0)
         result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
-    if (options.bark)
-        result.bark = bark_of_photos(result.tree.tree, read_photo_model(result.photos.model, &looking),
-                                     folder, things_of(result, &looking), {}, &looking);
+    if (options.bark) result.bark = look_at_bark(result, &looking);
     write_bark(result.bark, utf8_of(path_of(out) / "bark"));
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());

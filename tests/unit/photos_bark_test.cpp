@@ -17,6 +17,7 @@
 #include "photos/bark_maps.h"
 #include "photos/quilt.h"
 #include "photos/seen_bark.h"
+#include "pipeline/export.h"
 
 namespace treerec {
 namespace {
@@ -340,6 +341,24 @@ TEST_F(PhotoBarkTest, TellsWhyPhotosAreNotEnough) {
     write_file(folder_ + "/" + model_.photos[0].name, "no picture");
     EXPECT_NE(why().find("can be read"), std::string::npos) << why();
     EXPECT_NE(bark_of_photos(Tree(), model_, folder_).why_not.find("no piece of trunk"), std::string::npos);
+}
+
+TEST(PhotoBark, IsWhatTheTreesFileCarries) {
+    const BarkTextures bark = make_bark_textures("birch", 64, 5);
+    const std::string path = utf8_of(std::filesystem::temp_directory_path() / "treerec_bark_of_its_own.glb");
+    Tree tree;
+    tree.add_child(tree.add_root({0.0, 0.0, 0.0}, 0.1), {0.0, 3.0, 0.0}, 0.05);
+    ExportOptions options;
+    options.bark = encode_bark(bark);
+    TreeExporter(tree, options).write(path);
+    const FileBytes written = read_file(path);
+    for (const Image* picture : {&bark.albedo, &bark.normal, &bark.roughness}) {
+        const std::vector<uint8_t> png = encode_png(*picture);
+        EXPECT_NE(
+            written.view().find(std::string_view(reinterpret_cast<const char*>(png.data()), png.size())),
+            std::string_view::npos);
+    }
+    std::filesystem::remove(path_of(path));
 }
 
 TEST(Quilt, UsesNoFaultyPixelAndTellsWhereThereIsNoRoom) {
