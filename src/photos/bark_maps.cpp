@@ -75,7 +75,7 @@ int radius_of(double deviation) {
 }
 
 // Noise from the photos' detail down to a pixel: bark does not end at their resolution.
-void roughen(Image& albedo, Field& relief, const DVec2& metres, double detail) {
+void roughen(Image& albedo, PixelField& relief, const DVec2& metres, double detail) {
     const auto cells = [&](int pixels, double size) {
         return std::max(4, static_cast<int>(std::lround(pixels * size / detail)));
     };
@@ -98,8 +98,8 @@ void roughen(Image& albedo, Field& relief, const DVec2& metres, double detail) {
 
 }  // namespace
 
-Field blurred(const Field& field, const DVec2& deviation, bool wraps) {
-    Field here = field, there(field.width, field.height);
+PixelField blurred(const PixelField& field, const DVec2& deviation, bool wraps) {
+    PixelField here = field, there(field.width, field.height);
     const int across = std::min(radius_of(deviation.x), field.width / 2);
     const int along = std::min(radius_of(deviation.y), field.height / 2);
     for (int pass = 0; pass < 3; pass++) {
@@ -121,8 +121,8 @@ Field blurred(const Field& field, const DVec2& deviation, bool wraps) {
 void take_light_off(Image& picture, const std::vector<uint8_t>& seen, const DVec2& deviation, double colour,
                     bool wraps) {
     const std::array<float, 256> linear = linear_table();
-    Field there(picture.width, picture.height);
-    std::array<Field, 4> lights{there, there, there, there};  // luminance, and the three channels
+    PixelField there(picture.width, picture.height);
+    std::array<PixelField, 4> lights{there, there, there, there};  // luminance, and the three channels
     std::array<double, 4> means{};
     size_t count = 0;
     std::vector<float> sorted;
@@ -147,8 +147,8 @@ void take_light_off(Image& picture, const std::vector<uint8_t>& seen, const DVec
     }
     for (double& mean : means)
         mean /= static_cast<double>(count);
-    const Field share = blurred(there, deviation, wraps);
-    for (Field& light : lights)
+    const PixelField share = blurred(there, deviation, wraps);
+    for (PixelField& light : lights)
         light = blurred(light, deviation, wraps);
     const double raised = std::clamp(means[0], kDarkest, kLightest) / std::max(means[0], 1e-6);
     parallel_for(static_cast<size_t>(picture.height), kRows, [&](size_t begin, size_t end) {
@@ -171,8 +171,8 @@ void take_light_off(Image& picture, const std::vector<uint8_t>& seen, const DVec
 
 std::vector<float> faults_of(const Image& picture, const std::vector<uint8_t>& seen, const DVec2& deviation) {
     const size_t count = seen.size();
-    Field there(picture.width, picture.height), detail(picture.width, picture.height);
-    std::array<Field, 3> colours{there, there, there};
+    PixelField there(picture.width, picture.height), detail(picture.width, picture.height);
+    std::array<PixelField, 3> colours{there, there, there};
     for (size_t i = 0; i < count; i++) {
         if (!seen[i]) continue;
         there.values[i] = 1.0f;
@@ -184,11 +184,11 @@ std::vector<float> faults_of(const Image& picture, const std::vector<uint8_t>& s
         const size_t x = i % static_cast<size_t>(picture.width);
         if (x > 0 && seen[i - 1]) detail.values[i] = static_cast<float>(std::abs(level[1] - level[-2]));
     }
-    const Field share = blurred(there, deviation, false);
+    const PixelField share = blurred(there, deviation, false);
     std::vector<float> faults(count, 1.0f);
     std::vector<double> unlike(count, 0.0);
-    const auto look = [&](const Field& of, bool low_only) {
-        const Field around = blurred(of, deviation, false);
+    const auto look = [&](const PixelField& of, bool low_only) {
+        const PixelField around = blurred(of, deviation, false);
         std::vector<float> values;
         for (size_t i = 0; i < count; i++)
             if (seen[i] && share.values[i] > 0.0f) values.push_back(around.values[i] / share.values[i]);
@@ -205,7 +205,7 @@ std::vector<float> faults_of(const Image& picture, const std::vector<uint8_t>& s
             unlike[i] += off * off;
         }
     };
-    for (const Field& colour : colours)
+    for (const PixelField& colour : colours)
         look(colour, false);
     look(detail, true);
     for (size_t i = 0; i < count; i++)
@@ -220,18 +220,18 @@ BarkTextures maps_of(Image albedo, const DVec2& metres, double detail) {
     for (int i = 0; i < 256; i++)
         lightness[static_cast<size_t>(i)] =
             portable::cbrt(static_cast<double>(linear[static_cast<size_t>(i)]));
-    Field light(width, height);
+    PixelField light(width, height);
     for (size_t i = 0; i < light.values.size(); i++) {
         const uint8_t* level = albedo.pixels.data() + 3 * i;
         light.values[i] =
             static_cast<float>(luminance({lightness[level[0]], lightness[level[1]], lightness[level[2]]}));
     }
     // Relief is what changes at the scale of cracks and plates; coarser relief counts more, as it is deeper.
-    Field relief(width, height);
-    const Field fine = blurred(light, std::max(kFine, kGrain * detail) / metres, true);
+    PixelField relief(width, height);
+    const PixelField fine = blurred(light, std::max(kFine, kGrain * detail) / metres, true);
     double share = 0.5;
     for (double scale = kCoarse; scale > 0.006; scale *= 0.5, share *= 0.7) {
-        const Field around = blurred(light, scale / metres, true);
+        const PixelField around = blurred(light, scale / metres, true);
         for (size_t i = 0; i < relief.values.size(); i++)
             relief.values[i] += static_cast<float>(share) * (fine.values[i] - around.values[i]);
     }

@@ -10,12 +10,12 @@
 namespace treerec {
 
 // Numbers by pixel, rows from the top.
-struct Field {
+struct PixelField {
     int width = 0;
     int height = 0;
     std::vector<float> values;
 
-    Field(int w, int h, float value = 0.0f)
+    PixelField(int w, int h, float value = 0.0f)
         : width(w), height(h), values(static_cast<size_t>(w) * static_cast<size_t>(h), value) {}
     float& at(int x, int y) {
         return values[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
@@ -27,7 +27,7 @@ struct Field {
 
 // About what a Gaussian of these standard deviations (pixels) gives: three running means. wraps: the picture
 // repeats; else it ends at its borders.
-Field blurred(const Field& field, const DVec2& deviation, bool wraps);
+PixelField blurred(const PixelField& field, const DVec2& deviation, bool wraps);
 
 // Divides the light's slow changes out of the colours: the luminance, as linear light, of what is about
 // `deviation` pixels around is the same everywhere then, and the middle colour is kept. Where that is darker

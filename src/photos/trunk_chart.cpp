@@ -70,7 +70,7 @@ Section between(const std::vector<Section>& sections, double along) {
 
 double TrunkChart::mean_radius() const {
     double sum = 0.0;
-    for (const StemRing& ring : rings_)
+    for (const ChartRing& ring : rings_)
         sum += ring.radius;
     return rings_.empty() ? 0.0 : sum / static_cast<double>(rings_.size());
 }
@@ -80,7 +80,7 @@ std::optional<TrunkChart::Spot> TrunkChart::at(double around, double along) cons
     // They are evenly apart.
     const double step = length() / static_cast<double>(rings_.size() - 1);
     const size_t i = std::min(static_cast<size_t>(along / step), rings_.size() - 2);
-    const StemRing &lower = rings_[i], &upper = rings_[i + 1];
+    const ChartRing &lower = rings_[i], &upper = rings_[i + 1];
     const double t = std::clamp((along - lower.along) / step, 0.0, 1.0);
     const double radius = lower.radius + t * (upper.radius - lower.radius);
     const double angle = around / radius;
@@ -94,7 +94,7 @@ std::optional<TrunkChart::Spot> TrunkChart::at(double around, double along) cons
 
 double TrunkChart::beside(const DVec3& place) const {
     double least = std::numeric_limits<double>::max(), beside = least;
-    for (const StemRing& ring : rings_) {
+    for (const ChartRing& ring : rings_) {
         const DVec3 off = place - ring.centre;
         const double ahead = glm::dot(off, ring.ahead);
         if (std::abs(ahead) >= least) continue;
@@ -133,7 +133,7 @@ TrunkChart chart_trunk(const Tree& tree, double longest) {
     const int count = std::clamp(static_cast<int>((to - from) / (0.25 * usual)), 2, 400);
     for (int i = 0; i <= count; i++) {
         const double along = from + (to - from) * i / count;
-        StemRing ring;
+        ChartRing ring;
         double weights = 0.0, radius = 0.0;
         DVec3 centre(0.0);
         for (int k = -2; k <= 2; k++) {
@@ -151,9 +151,9 @@ TrunkChart chart_trunk(const Tree& tree, double longest) {
     }
     DVec3 side(1.0, 0.0, 0.0);
     for (size_t i = 0; i < chart.rings_.size(); i++) {
-        StemRing& ring = chart.rings_[i];
-        const StemRing& before = chart.rings_[i > 0 ? i - 1 : 0];
-        const StemRing& after = chart.rings_[std::min(i + 1, chart.rings_.size() - 1)];
+        ChartRing& ring = chart.rings_[i];
+        const ChartRing& before = chart.rings_[i > 0 ? i - 1 : 0];
+        const ChartRing& after = chart.rings_[std::min(i + 1, chart.rings_.size() - 1)];
         const DVec3 way = after.centre - before.centre;
         ring.ahead = glm::dot(way, way) > 0.0 ? glm::normalize(way) : DVec3(0.0, 1.0, 0.0);
         if (i == 0 && std::abs(ring.ahead.x) > 0.9) side = DVec3(0.0, 0.0, 1.0);

@@ -10,7 +10,7 @@
 namespace treerec {
 
 // A section of the stem, in the tree's space (metres, Y up).
-struct StemRing {
+struct ChartRing {
     DVec3 centre{0.0};
     double radius = 0.0;          // metres
     double along = 0.0;           // metres along the axis from the clear part's lower end
@@ -43,7 +43,7 @@ class TrunkChart {
   private:
     friend TrunkChart chart_trunk(const Tree& tree, double longest);
 
-    std::vector<StemRing> rings_;  // from below, at least two, or none
+    std::vector<ChartRing> rings_;  // from below, at least two, or none
     std::vector<NodeId> stem_;
     double half_width_ = 0.0;
 };

@@ -165,7 +165,7 @@ class PhotoBarkTest : public ::testing::Test {
 
     static void soften(Image& picture, double deviation) {
         for (int c = 0; c < 3; c++) {
-            Field field(picture.width, picture.height);
+            PixelField field(picture.width, picture.height);
             for (size_t i = 0; i < field.values.size(); i++)
                 field.values[i] = picture.pixels[3 * i + static_cast<size_t>(c)];
             field = blurred(field, DVec2(deviation), true);
