@@ -67,6 +67,9 @@ std::vector<Option> all_options() {
         {"--masks", "FOLDER",
          "white-on-black pictures of the tree's outline, PHOTO.png, of the photos that are held out or\n"
          "else of all: how well the tree has it is told"},
+        {"--bark", "FROM",
+         "photos takes the bark's pictures out of the photos, into OUT/bark, where these are good enough;\n"
+         "drawn takes those of --leaves (default photos)"},
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
         {"--known-length", "LIST",
@@ -86,6 +89,12 @@ void print_photos(const PhotosResult& result) {
         std::printf("; %zu points, of %zu pairs of photos\n", result.made.points, result.made.pairs);
     else
         std::printf("; %zu points\n", result.made.points);
+    if (!result.bark) return;
+    if (result.bark->textures)
+        std::printf("bark from %zu photos, with pixels of %.1f mm\n", result.bark->photos,
+                    1000.0 * result.bark->pixel);
+    else
+        std::printf("bark drawn: %s\n", result.bark->why_not.c_str());
 }
 
 // The tree over some of its photos. Whether there is one: it is no reason for a tree to fail.
@@ -152,6 +161,10 @@ void run_photos(const std::vector<std::string>& words) {
     options.cloud.dense = !arguments.has("--sparse");
     options.cloud.hold_out = arguments.whole("--hold-out", 0, 2, 1000);
     const std::string masks = arguments.text("--masks", "");
+    const std::string bark = arguments.text("--bark", "photos");
+    if (bark != "photos" && bark != "drawn")
+        throw UsageError("--bark is photos or drawn, not '" + bark + "'.");
+    options.bark = bark == "photos";
     options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
     options.reconstruct = reconstruct_options_from(arguments);
     options.reconstruct.score_points = ReconstructOptions{}.score_points;
@@ -185,10 +198,12 @@ void run_photos(const std::vector<std::string>& words) {
     details.photos = result.photos;
     details.photo_pairs = result.made.pairs;
     details.sized_by_gps = result.sized_by_gps;
+    details.bark = result.bark;
     details.leaves = chosen_leaves(details.leaves, tree);
     exports.leaves = suited_leaves(details.leaves, tree);
     exports.textures = details.leaves;
     exports.foliage = tree.foliage;
+    if (result.bark && result.bark->textures) exports.bark = encode_bark(*result.bark->textures);
     TreeExporter exporter(tree.tree, exports, &progress);
     progress.update(0.95, "Writing");
     std::vector<std::string> outs;
@@ -214,6 +229,9 @@ void run_photos(const std::vector<std::string>& words) {
     progress.update(0.98, "Comparing");
     if (write_sheet(result, utf8_of(path_of(out) / "compare.png"), progress))
         outs.push_back(utf8_of(path_of(out) / "compare.png"));
+    if (result.bark && result.bark->textures)
+        for (const char* name : {"albedo.png", "normal.png", "roughness.png"})
+            outs.push_back(utf8_of(path_of(out) / "bark" / name));
     outs.push_back(result.cloud);
     progress.clear();
     for (const std::string& warning : tree.warnings)

@@ -6,7 +6,6 @@
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
-#include "mesh/textures.h"
 
 #define STBI_WRITE_NO_STDIO
 #define STB_IMAGE_WRITE_STATIC
@@ -51,6 +50,22 @@ std::vector<uint8_t> encode_png(const Image& image) {
     return png;
 }
 
+namespace {
+
+std::vector<NamedPicture> encode_all(std::span<const char* const> names,
+                                     std::span<const Image* const> images) {
+    std::vector<NamedPicture> pictures(names.size());
+    parallel_for(pictures.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            auto png = std::make_shared<const std::vector<uint8_t>>(encode_png(*images[i]));
+            pictures[i] = {names[i], {reinterpret_cast<const char*>(png->data()), png->size()}, png};
+        }
+    });
+    return pictures;
+}
+
+}  // namespace
+
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed) {
     const BarkTextures bark = make_bark_textures(preset, size, seed);
     const LeafTextures leaf = make_leaf_textures(preset, size, seed);
@@ -58,14 +73,13 @@ std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uin
     const Image grey = channel_of(bark.roughness, 1);
     const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey,
                              &leaf.albedo, &leaf.normal, &blade.albedo,   &blade.normal};
-    std::vector<NamedPicture> pictures(std::size(kNames));
-    parallel_for(pictures.size(), 1, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; i++) {
-            auto png = std::make_shared<const std::vector<uint8_t>>(encode_png(*images[i]));
-            pictures[i] = {kNames[i], {reinterpret_cast<const char*>(png->data()), png->size()}, png};
-        }
-    });
-    return pictures;
+    return encode_all(kNames, images);
+}
+
+std::vector<NamedPicture> encode_bark(const BarkTextures& bark) {
+    const Image grey = channel_of(bark.roughness, 1);
+    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey};
+    return encode_all(std::span(kNames).first(std::size(images)), images);
 }
 
 void set_ready_pictures(std::span<const ReadyPicture> pictures) {

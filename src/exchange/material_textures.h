@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/image.h"
+#include "mesh/textures.h"
 
 namespace treerec {
 
@@ -46,6 +47,9 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kT
 
 // The same bytes, always drawn anew; it takes about a second.
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed);
+
+// The four pictures of a bark, with these names.
+std::vector<NamedPicture> encode_bark(const BarkTextures& bark);
 
 // Those that one tree needs: the leaf's are of a spray or, with `blade`, of one leaf.
 std::vector<NamedPicture> pictures_of_leaves(std::vector<NamedPicture> pictures, bool blade);

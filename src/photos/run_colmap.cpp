@@ -204,7 +204,7 @@ std::string claim_folder(const std::string& out, const std::string& photos) {
                       (fs::is_directory(work, failure) && fs::is_empty(work, failure));
     // With what 'treerec photos' puts beside it.
     for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log", "tree.glb", "tree.txt",
-                             "report.json", "compare.png"})
+                             "report.json", "compare.png", "bark"})
         if (!ours && fs::exists(whole / name, failure))
             throw Error(
                 "'" + utf8_of(whole / name) +

@@ -185,6 +185,9 @@ std::vector<NamedPicture> TreeExporter::pictures_for(size_t kind) const {
     // The bark is the tree's own.
     if (kind > 0)
         std::erase_if(pictures, [](const NamedPicture& picture) { return picture.name.starts_with("bark"); });
+    for (NamedPicture& picture : pictures)
+        for (const NamedPicture& own : options_.bark)
+            if (own.name == picture.name) picture = own;
     return pictures;
 }
 

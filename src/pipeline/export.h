@@ -22,6 +22,8 @@ struct ExportOptions {
     Foliage foliage = {};              // what the scan saw of them
     int levels = 1;                    // of detail in .glb and .gltf files, 1..kMostLevels
     bool pictures_beside = false;      // of a .glb: in a folder, as those of a .gltf are
+    // The tree's own bark (encode_bark()), instead of the preset's.
+    std::vector<NamedPicture> bark = {};
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The

@@ -1,13 +1,18 @@
 #include "pipeline/photos.h"
 
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "error.h"
+#include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "photos/film_frames.h"
 #include "photos/heic_photos.h"
 #include "photos/photo_folder.h"
 #include "photos/run_stage.h"
+#include "scan/read_cloud.h"
 
 namespace treerec {
 
@@ -17,7 +22,8 @@ constexpr const char* kMethod = "points 5";  // another number where another clo
 constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
-constexpr double kCloudEnd = 0.95;
+constexpr double kCloudEnd = 0.93;
+constexpr double kTreeEnd = 0.97;
 
 using json = nlohmann::json;
 
@@ -77,6 +83,49 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
     return made;
 }
 
+// All that the cloud has, what was cleaned away of it too.
+SeenThings things_of(const PhotosResult& result, Progress* progress) {
+    const ScanFrame& frame = result.tree.tree.frame();
+    const PointCloud cloud = read_cloud(result.cloud);
+    if (progress) progress->check();
+    SeenThings things{{}, result.made.cell * frame.metres_per_unit};
+    things.places.reserve(cloud.size());
+    for (const Vec3& position : cloud.positions)
+        things.places.push_back(frame.to_tree(cloud.frame.to_scan(DVec3(position))));
+    return things;
+}
+
+PhotoBark look_at_bark(const PhotosResult& result, Progress* progress) {
+    if (result.made.pairs > 0)
+        return bark_of_photos(result.tree.tree, read_photo_model(result.photos.model, progress),
+                              result.photos_folder, things_of(result, progress), {}, progress);
+    PhotoBark none;
+    none.why_not =
+        "The photos were not matched pixel by pixel, so that it is not known what stands before the trunk.";
+    return none;
+}
+
+// Its pictures, or none: not those of another time either.
+void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder) {
+    const bool made = bark && bark->textures;
+    if (made) make_folder(folder);
+    for (const auto& [name, picture] : std::initializer_list<std::pair<const char*, Image BarkTextures::*>>{
+             {"albedo.png", &BarkTextures::albedo},
+             {"normal.png", &BarkTextures::normal},
+             {"roughness.png", &BarkTextures::roughness}}) {
+        const std::filesystem::path path = path_of(folder) / name;
+        std::error_code failure;
+        if (!made) {
+            std::filesystem::remove(path, failure);
+            if (failure) throw Error("'" + utf8_of(path) + "', of another time, can't be deleted.");
+            continue;
+        }
+        const std::vector<uint8_t> bytes = encode_png((*bark->textures).*picture);
+        write_file(utf8_of(path),
+                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    }
+}
+
 }  // namespace
 
 MakeCloudOptions cloud_options_of(PhotoEffort effort) {
@@ -117,7 +166,7 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
         left_out = readable.warnings;
     }
     SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
-        growing(progress, kCloudEnd, 1.0);
+        growing(progress, kCloudEnd, kTreeEnd), looking(progress, kTreeEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
     result.photos_folder = folder;
     result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
@@ -134,6 +183,8 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
     if (!has_scale && gps.photos > 0)
         result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
+    if (options.bark) result.bark = look_at_bark(result, &looking);
+    write_bark(result.bark, utf8_of(path_of(out) / "bark"));
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());
     result.tree.warnings.insert(result.tree.warnings.begin(), before.begin(), before.end());

@@ -1,8 +1,10 @@
 // The whole way from a folder of photos to a tree: what the program and the editor both run.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "photos/bark_picture.h"
 #include "photos/make_cloud.h"
 #include "photos/run_colmap.h"
 #include "pipeline/reconstruct.h"
@@ -14,6 +16,7 @@ struct PhotosOptions {
     ColmapOptions colmap;
     MakeCloudOptions cloud;
     ReconstructOptions reconstruct;  // a known length is one in the cloud's coordinates
+    bool bark = false;               // take the bark's pictures out of the photos, where they are good enough
 };
 
 // How finely photos are matched.
@@ -23,9 +26,10 @@ struct PhotosResult {
     Reconstruction tree;  // with the warnings of all that was before it, the first ones first
     ColmapRun photos;
     MadeCloud made;
-    bool sized_by_gps = false;  // the scale is that of photos.gps
-    std::string photos_folder;  // where those lie that were read: given, taken out of a film, converted
-    std::string cloud;          // the file that the tree was made of, in `out`
+    bool sized_by_gps = false;      // the scale is that of photos.gps
+    std::string photos_folder;      // where those lie that were read: given, taken out of a film, converted
+    std::string cloud;              // the file that the tree was made of, in `out`
+    std::optional<PhotoBark> bark;  // where the options ask for it
 };
 
 // photos: their folder, or a film of a walk around the tree, or a folder with one, whose frames become photos
@@ -33,7 +37,9 @@ struct PhotosResult {
 // the cameras (photos/run_colmap.h), makes out/cloud.ply, with COLMAP's model beside it in out/sparse/0, and
 // a tree of that. What is there already from the same photos and options is taken: the tree alone may be made
 // again with a known length or height. Where the options set no scale, the photos' GPS does if it is sure
-// enough (photos/gps_scale.h), and a warning says so. Throws Error with a sentence, or Cancelled.
+// enough (photos/gps_scale.h), and a warning says so. The bark's pictures, where the photos give any
+// (photos/bark_picture.h), go to out/bark/albedo.png, normal.png and roughness.png. Throws Error with a
+// sentence, or Cancelled.
 PhotosResult reconstruct_photos(const std::string& photos, const std::string& out,
                                 const PhotosOptions& options, Progress* progress = nullptr);
 

@@ -98,6 +98,16 @@ Json fidelity_json(const Reconstruction& result) {
     return json;
 }
 
+Json bark_json(const PhotoBark& bark) {
+    const auto millimetres = [](double metres) { return metres > 0.0 ? Json(1000.0 * metres) : Json(); };
+    return {{"from", bark.textures ? "photos" : "drawn"},
+            {"why_drawn", bark.textures ? Json() : Json(bark.why_not)},
+            {"photos", bark.photos},
+            {"pixel_mm", millimetres(bark.pixel)},
+            {"detail_mm", millimetres(bark.detail)},
+            {"area_m2", bark.area}};
+}
+
 Json photos_json(const ReportDetails& details) {
     const ColmapRun& run = *details.photos;
     Json cameras = Json::array();
@@ -243,6 +253,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     if (details.photos) json["photos"] = photos_json(details);
     if (details.photos && details.outline)
         json["photos"]["outline"] = outline_json(*details.outline, json["fidelity"]["R_s"].get<double>());
+    if (details.bark) json["bark"] = bark_json(*details.bark);
     return dump(json);
 }
 

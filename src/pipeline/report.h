@@ -6,6 +6,7 @@
 #include <string>
 
 #include "exchange/tree_files.h"
+#include "photos/bark_picture.h"
 #include "photos/run_colmap.h"
 #include "pipeline/judge_outline.h"
 #include "pipeline/reconstruct.h"
@@ -23,6 +24,7 @@ struct ReportDetails {
     size_t photo_pairs = 0;                        // that were matched pixel by pixel
     bool sized_by_gps = false;                     // the scale is that of photos->gps
     std::optional<OutlineJudgement> outline = {};  // where there are masks of the photos
+    std::optional<PhotoBark> bark = {};            // where it was looked for in the photos
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
@@ -55,6 +57,8 @@ struct ReportDetails {
 //   0: the tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), Q, recall, precision,
 //   iou, by_photo [{name, recall, precision, iou}]} (with masks alone)}: of a scan that was made of photos
 //   alone
+//   bark {from "photos" or "drawn", why_drawn (a sentence, or null), photos, pixel_mm, detail_mm (null where
+//   no photo shows any), area_m2}: where it was looked for in photos (photos/bark_picture.h)
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].

@@ -59,6 +59,10 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     EXPECT_TRUE(has(outcome.error, "Features\n")) << outcome.error;
     EXPECT_TRUE(has(get("out/report.json"), "\"up_from_photos\": 9")) << get("out/report.json");
     EXPECT_FALSE(has(outcome.error, "scale")) << outcome.error;
+    // They are no pictures, and nothing in them was matched; what was made at another time is not left there.
+    EXPECT_TRUE(has(outcome.out, "bark drawn: The photos were not matched")) << outcome.out;
+    EXPECT_TRUE(has(get("out/report.json"), "\"from\": \"drawn\"")) << get("out/report.json");
+    put("out/bark/albedo.png", "old");
     // The tree alone is made again, and without a length its sizes are relative.
     calls();
     const std::string first = get("out/cloud.ply");
@@ -66,6 +70,7 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     EXPECT_EQ(again.code, 0) << again.error;
     EXPECT_EQ(commands(calls()), "");
     EXPECT_EQ(get("out/cloud.ply"), first);
+    EXPECT_FALSE(fs::exists(folder_ / "out/bark/albedo.png"));
     EXPECT_TRUE(has(again.error, "scale")) << again.error;
     // What lies there is a scan.
     EXPECT_EQ(run("reconstruct out -o out/again.txt").code, 0);
@@ -109,6 +114,7 @@ TEST_F(PhotosCli, WrongWordsAreTold) {
     EXPECT_EQ(run("photos photos -o out --order often").code, 2);
     EXPECT_EQ(run("photos photos -o out --time never").code, 2);
     EXPECT_EQ(run("photos photos -o out --matcher surf").code, 2);
+    EXPECT_EQ(run("photos photos -o out --bark birch").code, 2);
     EXPECT_EQ(run("photos photos -o out --show-matches a.jpg").code, 1);
     EXPECT_EQ(run("photos photos -o out --show-matches a.jpg,b.jpg").code, 1) << "they are no pictures";
     EXPECT_EQ(run("photos photos -o out --known-length 1,2").code, 2);
