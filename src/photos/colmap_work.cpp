@@ -39,6 +39,13 @@ void ColmapWork::set_threads(ColmapCall& call, const OptionNames& names) const {
     if (options.threads > 0) job.set(call.places, call.command, names, std::to_string(options.threads));
 }
 
+void ColmapWork::set_one_camera(ColmapCall& call) const {
+    job.set(call.settings, call.command, {"--ImageReader.single_camera"}, "1");
+    // What one term of distortion leaves over goes into the focal length and so into the size of all that
+    // stands nearer than the cameras' circle; many photos of one camera tell two terms.
+    job.set(call.settings, call.command, {"--ImageReader.camera_model"}, "RADIAL");
+}
+
 ColmapEnd ColmapWork::run_on_either(const ColmapCall& call, const OptionNames& use_gpu,
                                     const std::function<void()>& begin_anew,
                                     const std::function<void(const std::string&)>& on_line) const {

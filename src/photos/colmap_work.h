@@ -42,6 +42,8 @@ struct ColmapWork {
     // Whether neighbours by name alone are compared.
     bool in_sequence() const;
     void set_threads(ColmapCall& call, const OptionNames& names) const;
+    // Of a call that reads the photos: all were taken by one camera.
+    void set_one_camera(ColmapCall& call) const;
     // Throws Error.
     void remove_database(const std::string& name) const;
     // Runs a call on the graphics card where COLMAP can, and where that fails, without.

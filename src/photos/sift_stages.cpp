@@ -66,7 +66,7 @@ std::string find_features(ColmapWork& work) {
     const Effort effort = effort_of(work.options.effort);
     ColmapCall call{"feature_extractor", {}, {}};
     const bool one_camera = work.photos.one_size();
-    if (one_camera) work.job.set(call.settings, call.command, {"--ImageReader.single_camera"}, "1");
+    if (one_camera) work.set_one_camera(call);
     work.job.set(call.settings, call.command,
                  {"--FeatureExtraction.max_image_size", "--SiftExtraction.max_image_size"},
                  std::to_string(effort.pixels));

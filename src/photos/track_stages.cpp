@@ -229,8 +229,7 @@ std::string matches_text(const ColmapWork& work, const FeatureTracks& tracks) {
 
 std::vector<ColmapCall> importing_calls(const ColmapWork& work, const std::string& part) {
     ColmapCall features{"feature_importer", {}, {}}, matches{"matches_importer", {}, {}};
-    if (work.photos.one_size())
-        work.job.set(features.settings, features.command, {"--ImageReader.single_camera"}, "1");
+    if (work.photos.one_size()) work.set_one_camera(features);
     features.places = {"--database_path",   part,
                        "--image_path",      work.photos.path,
                        "--image_list_path", work.at("tracked.txt"),

@@ -74,6 +74,7 @@ TEST_F(RunColmap, GivesEachVersionItsOwnOptions) {
         EXPECT_EQ(value_of(told[0], extraction + ".use_gpu"), "0");
         EXPECT_EQ(value_of(told[0], extraction + ".max_image_size"), "1600");
         EXPECT_EQ(value_of(told[0], "--ImageReader.single_camera"), "1");
+        EXPECT_EQ(value_of(told[0], "--ImageReader.camera_model"), "RADIAL");
         EXPECT_EQ(value_of(told[1], (version == "4" ? "--FeatureMatching" : "--SiftMatching") +
                                         std::string(".use_gpu")),
                   "0");
@@ -142,7 +143,9 @@ TEST_F(RunColmap, OtherOptionsDoAgainWhatTheyChange) {
 TEST_F(RunColmap, PhotosOfSeveralSizesHaveCamerasOfTheirOwn) {
     put("photos/a.jpg", test::tiny_jpeg(480, 640));
     run();
-    EXPECT_EQ(value_of(calls()[0], "--ImageReader.single_camera"), "");
+    const std::vector<Words> told = calls();
+    EXPECT_EQ(value_of(told[0], "--ImageReader.single_camera"), "");
+    EXPECT_EQ(value_of(told[0], "--ImageReader.camera_model"), "");
 }
 
 TEST_F(RunColmap, ManyPhotosAreMatchedInSequence) {

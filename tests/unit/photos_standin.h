@@ -30,9 +30,9 @@ case "$STANDIN_VERSION" in 4*) sift=FeatureExtraction match=FeatureMatching size
 common="--database_path"
 known() {
     case $1 in
-    feature_extractor) echo "$common --image_path --image_list_path --ImageReader.single_camera --ImageReader.existing_camera_id
+    feature_extractor) echo "$common --image_path --image_list_path --ImageReader.single_camera --ImageReader.camera_model --ImageReader.existing_camera_id
         --$sift.use_gpu --$sift.num_threads --$size.max_image_size --SiftExtraction.max_num_features" ;;
-    feature_importer) echo "$common --image_path --image_list_path --import_path --ImageReader.single_camera" ;;
+    feature_importer) echo "$common --image_path --image_list_path --import_path --ImageReader.single_camera --ImageReader.camera_model" ;;
     exhaustive_matcher) echo "$common --$match.use_gpu --$match.num_threads --ExhaustiveMatching.block_size" ;;
     sequential_matcher) echo "$common --$match.use_gpu --$match.num_threads --SequentialMatching.overlap" ;;
     matches_importer) echo "$common --$match.use_gpu --$match.num_threads --match_list_path --match_type" ;;

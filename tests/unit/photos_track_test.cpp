@@ -93,6 +93,7 @@ TEST_F(PhotosTrack, ReachesColmapWithoutSift) {
         const std::vector<Words> told = calls();
         ASSERT_EQ(commands(told), "feature_importer matches_importer mapper");
         EXPECT_EQ(value_of(told[0], "--ImageReader.single_camera"), "1");
+        EXPECT_EQ(value_of(told[0], "--ImageReader.camera_model"), "RADIAL");
         EXPECT_EQ(value_of(told[1], "--match_type"), "raw");
         EXPECT_EQ(value_of(told[0], "--database_path"), value_of(told[2], "--database_path"));
     }
@@ -222,7 +223,9 @@ TEST_F(PhotosTrack, PhotosThatShowNothingAreLeftOut) {
         EXPECT_FALSE(fs::exists(path(name))) << name;
     ASSERT_FALSE(result.warnings.empty());
     EXPECT_TRUE(has(result.warnings[0], "could not be read")) << result.warnings[0];
-    EXPECT_EQ(value_of(calls()[0], "--ImageReader.single_camera"), "");
+    const std::vector<Words> told = calls();
+    EXPECT_EQ(value_of(told[0], "--ImageReader.single_camera"), "");
+    EXPECT_EQ(value_of(told[0], "--ImageReader.camera_model"), "");
     // Nothing at all.
     for (int i = 0; i < 9; i++)
         put("photos/photo" + std::to_string(i) + ".png", bytes_of(Image(i + 1, 300, 1)));
