@@ -17,13 +17,14 @@ func ask(
 ) -> void:
 	close()
 	_dialog = EditorFileDialog.new()
-	_dialog.title = title
 	_dialog.access = (
 		EditorFileDialog.ACCESS_FILESYSTEM if anywhere else EditorFileDialog.ACCESS_RESOURCES
 	)
 	_dialog.file_mode = (
 		EditorFileDialog.FILE_MODE_SAVE_FILE if save else EditorFileDialog.FILE_MODE_OPEN_FILE
 	)
+	# After the mode, which sets a title of its own.
+	_dialog.title = title
 	_dialog.filters = filters
 	var folder: String = path.get_base_dir()
 	_dialog.current_dir = ProjectSettings.globalize_path(folder) if anywhere else folder

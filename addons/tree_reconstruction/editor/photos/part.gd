@@ -111,9 +111,10 @@ func _on_made(tree: TreeReconstruction) -> void:
 func _choose_folder() -> void:
 	_close_chooser()
 	_chooser = EditorFileDialog.new()
-	_chooser.title = tr("Choose Photos")
 	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
 	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_ANY
+	# After the mode, which sets a title of its own.
+	_chooser.title = tr("Choose Photos")
 	_chooser.filters = PackedStringArray(
 		["*." + ", *.".join(PhotoFolder.FILMS) + ";" + tr("Films")]
 	)
