@@ -150,7 +150,8 @@ func _add_options() -> void:
 	var tips: Dictionary[String, String] = {}
 	for option: Dictionary in TreeReconstructor.get_photo_option_list():
 		tips[option.name] = option.description
-	_options.columns = 2
+	# Two options a line: the window fits a small screen, and photos and messages have room.
+	_options.columns = 4
 	_time = Widgets.choice(["Quick", "Normal", "Best"], ["quick", "normal", "best"])
 	Widgets.choose(_time, "normal")
 	_order = Widgets.choice(
@@ -166,9 +167,9 @@ func _add_options() -> void:
 	_height.allow_greater = true
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
+	_add_option("Bark", tips["bark"], _bark)
 	_add_option("Compare", tips["order"], _order)
 	_add_option("Compare by", tips["matcher"], _matcher)
-	_add_option("Bark", tips["bark"], _bark)
 	_add_option(
 		"Height of the tree",
 		(
