@@ -1,6 +1,6 @@
 extends "./photo_files.gd"
-## The same, where the photos show the trunk before a bright sky, and are near and sharp enough for a
-## picture of its bark: rough at all scales, with cracks up and down.
+## The same, where the photos show the trunk before a bright sky, and are near and sharp enough for
+## a picture of its bark: rough at all scales, with cracks up and down.
 
 const _SKY: Color = Color(0.8, 0.87, 0.93)
 const _BARK: Color = Color(0.62, 0.5, 0.4)
