@@ -34,6 +34,9 @@ TypedArray<Dictionary> list_options() {
         {"dense", true, PROPERTY_HINT_NONE, "",
          "Matches the photos pixel by pixel; without it the cloud has the few points that placed the "
          "cameras."},
+        {"bark", true, PROPERTY_HINT_NONE, "",
+         "Takes the bark's pictures out of the photos; without it, or where these are too coarse, the tree "
+         "has the drawn bark of its kind."},
         {"colmap", "", PROPERTY_HINT_GLOBAL_FILE, "",
          "The program COLMAP, or the folder that it is in; empty looks for it."},
     };
@@ -84,6 +87,7 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
     pipeline.colmap.effort = treerec::parse_photo_effort(to_std(String(values["time"])));
     pipeline.cloud = treerec::cloud_options_of(pipeline.colmap.effort);
     pipeline.cloud.dense = bool(values["dense"]);
+    pipeline.bark = bool(values["bark"]);
     pipeline.reconstruct = options.tree.pipeline;
     return options;
 }

@@ -70,8 +70,7 @@ MadeCloud make_cloud(const std::string& model_folder, const std::string& photos,
     MadeCloud made;
     PointCloud cloud = sure_points(read_sparse_points(model_folder, &quiet), options, made);
     if (options.dense) {
-        const PhotoModel model =
-            without_held_out(read_photo_model(model_folder, &quiet), options.hold_out);
+        const PhotoModel model = without_held_out(read_photo_model(model_folder, &quiet), options.hold_out);
         const std::vector<DVec3> sparse = places_of(cloud);
         SubProgress matching(progress, 0.0, kDenseEnd), refining(progress, kDenseEnd, 1.0);
         try {

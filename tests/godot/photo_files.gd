@@ -47,19 +47,42 @@ var colmap: String
 ## The photos.
 var photos: String
 
+var _count: int
+var _size: Vector2i
+# Of the camera, in pixels.
+var _focal: float
+# Where the photos were taken from: how far away, and how far around.
+var _away: float
+var _arc: float
+
 
 ## Writes both into [param folder], with a model of all photos but the last.
 func _init(folder: String) -> void:
+	_set_camera()
 	photos = folder.path_join("my photos")
 	DirAccess.make_dir_recursive_absolute(photos)
-	for i: int in COUNT:
-		var picture: Image = Image.create_empty(64, 48, false, Image.FORMAT_RGB8)
-		picture.fill(Color.from_hsv(float(i) / COUNT, 0.5, 0.6))
-		picture.save_jpg(photos.path_join(_name(i)))
+	for i: int in _count:
+		_picture(i).save_jpg(photos.path_join(_name(i)), 0.95)
 	colmap = folder.path_join("colmap")
 	write(colmap, _PROGRAM.to_utf8_buffer())
 	FileAccess.set_unix_permissions(colmap, 0x1C0)
 	_write_model(folder.path_join("models/0"))
+
+
+# How many photos there are, and what takes them.
+func _set_camera() -> void:
+	_count = COUNT
+	_size = Vector2i(64, 48)
+	_focal = 50.0
+	_away = 5.0
+	_arc = 1.5 * PI
+
+
+# What a photo shows.
+func _picture(i: int) -> Image:
+	var picture: Image = Image.create_empty(_size.x, _size.y, false, Image.FORMAT_RGB8)
+	picture.fill(Color.from_hsv(float(i) / _count, 0.5, 0.6))
+	return picture
 
 
 ## Makes [param command] of the program wait until it is let go.
@@ -84,7 +107,7 @@ func _gate(command: String) -> String:
 
 ## Has the photos say by GPS where the model's cameras stood, if its unit were [param unit] metres.
 func tell_places(unit: float) -> void:
-	for i: int in COUNT - 1:
+	for i: int in _count - 1:
 		var path: String = photos.path_join(_name(i))
 		var jpeg: PackedByteArray = FileAccess.get_file_as_bytes(path)
 		# The model's z is down, so that north is -y.
@@ -139,32 +162,35 @@ static func _name(i: int) -> String:
 
 
 # Where a photo was taken from.
-static func _centre(i: int) -> Vector3:
-	return Vector3(5.0, 0.0, 0.0).rotated(Vector3.BACK, 1.5 * PI * i / (COUNT - 1))
+func _centre(i: int) -> Vector3:
+	return Vector3(_away, 0.0, 0.0).rotated(Vector3.BACK, _arc * i / (_count - 1))
 
 
-# A tree of 3 boughs and 3 units; the photos are taken from around it, but for a quarter.
+# How its camera is turned: rows are what is right, down and ahead. The model's z is down.
+func _turn(i: int) -> Basis:
+	var ahead: Vector3 = -_centre(i).normalized()
+	var down: Vector3 = Vector3.BACK
+	return Basis(down.cross(ahead), down, ahead).transposed()
+
+
+# A tree of 3 boughs and 3 units; the photos are taken from around it.
 func _write_model(folder: String) -> void:
 	DirAccess.make_dir_recursive_absolute(folder)
 	var cameras: StreamPeerBuffer = StreamPeerBuffer.new()
 	cameras.put_u64(1)
 	cameras.put_32(1)
 	cameras.put_32(2)
-	cameras.put_u64(64)
-	cameras.put_u64(48)
-	for value: float in [50.0, 32.0, 24.0, 0.0]:
+	cameras.put_u64(_size.x)
+	cameras.put_u64(_size.y)
+	for value: float in [_focal, 0.5 * _size.x, 0.5 * _size.y, 0.0]:
 		cameras.put_double(value)
 	_save(folder, "cameras.bin", cameras)
 	var images: StreamPeerBuffer = StreamPeerBuffer.new()
-	images.put_u64(COUNT - 1)
-	for i: int in COUNT - 1:
-		var centre: Vector3 = _centre(i)
-		# Rows are what is right, down and ahead.
-		var ahead: Vector3 = -centre.normalized()
-		var down: Vector3 = Vector3.BACK
-		var turn: Basis = Basis(down.cross(ahead), down, ahead).transposed()
+	images.put_u64(_count - 1)
+	for i: int in _count - 1:
+		var turn: Basis = _turn(i)
 		var q: Quaternion = turn.get_rotation_quaternion()
-		var place: Vector3 = -(turn * centre)
+		var place: Vector3 = -(turn * _centre(i))
 		images.put_32(i + 1)
 		for value: float in [q.w, q.x, q.y, q.z, place.x, place.y, place.z]:
 			images.put_double(value)

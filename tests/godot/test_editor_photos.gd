@@ -4,7 +4,10 @@ extends "./session_suite.gd"
 const PhotosPanel := preload("res://addons/tree_reconstruction/editor/photos/photos_panel.gd")
 const PhotoFolder := preload("res://addons/tree_reconstruction/editor/photos/photo_folder.gd")
 const PhotoLog := preload("res://addons/tree_reconstruction/editor/photos/photo_log.gd")
+const Widgets := preload("res://addons/tree_reconstruction/editor/dock/widgets.gd")
+const PhotoBark := preload("res://addons/tree_reconstruction/editor/photos/photo_bark.gd")
 const PhotoFiles := preload("./photo_files.gd")
+const TrunkPhotos := preload("./trunk_photos.gd")
 
 const TARGET: String = "res://photo_test_tree.res"
 
@@ -103,14 +106,107 @@ func test_photos_become_a_tree() -> void:
 	check("2,003 features" in _panel.grid.get_item_tooltip(2), "Features of a photo aren't told.")
 	check("not found" in _panel.grid.get_item_tooltip(8), "A photo without a place isn't told.")
 	check(_panel.grid.get_item_icon(4) != null, "A photo has no picture.")
-	_panel.say_where(TARGET, false)
+	_panel.say_where(_made, false)
 	check("8 of 9 photos" in _panel.message.text, "It says: " + _panel.message.text)
+	# Photos of 64 pixels show no bark.
+	check("The tree has drawn bark. " in _panel.message.text, "It says: " + _panel.message.text)
+	check(PhotoBark.of(_made) == null, "It has bark that no photo shows.")
+	check_equal(PhotoBark.free_path(TARGET), "res://photo_test_tree_bark.res", "a free name")
 	check(_panel.begin.visible and _panel.begin.disabled, "It would write over the tree.")
 	# The scan is there to look at, and to make the tree of it again.
 	var worker: TreeReconstructor = TreeReconstructor.new()
 	check(worker.load_cloud(_made), worker.get_error_message())
 	check(worker.reconstruct_file(_made.provenance["source"]) != null, worker.get_error_message())
 	_shut()
+
+
+func test_photos_give_their_bark() -> void:
+	_open()
+	_files = TrunkPhotos.new(folder.path_join("trunk"))
+	_panel.colmap = _files.colmap
+	Widgets.choose(_panel._time, "quick")
+	_panel._height.value = 2.0
+	# As in the editor: else they could not be saved.
+	PortableCompressedTexture2D.set_keep_all_compressed_buffers(true)
+	# What bears the name already is somebody else's.
+	var other: String = "res://photo_test_tree_bark.res"
+	PhotoFiles.write(other, "not yours".to_utf8_buffer())
+	_begin()
+	await _wait()
+	check(_made != null, "No tree was made: " + _panel.message.text)
+	var bark: ShaderMaterial = PhotoBark.of(_made) as ShaderMaterial
+	if bark == null:
+		check(false, "It has no bark: %s" % "; ".join(_panel.making.get_warnings()))
+		_shut()
+		return
+	check_equal(bark.resource_path, "res://photo_test_tree_bark_2.res", "the bark's file")
+	check_equal(FileAccess.get_file_as_string(other), "not yours", "another's file")
+	_panel.say_where(_made, false)
+	check(bark.resource_path in _panel.message.text, "It says: " + _panel.message.text)
+	check(not "drawn bark" in _panel.message.text, "It says: " + _panel.message.text)
+	# As the next start of the editor finds them: the tree's file leads to the bark's.
+	var again: TreeReconstruction = (
+		ResourceLoader.load(TARGET, "", ResourceLoader.CACHE_MODE_IGNORE_DEEP) as TreeReconstruction
+	)
+	bark = PhotoBark.of(again) as ShaderMaterial
+	check(bark != null, "The tree's file has forgotten its bark.")
+	check(bark.shader.resource_path.ends_with("/bark.gdshader"), "It has another shader.")
+	for parameter: StringName in PhotoBark.PICTURES:
+		var texture: Texture2D = bark.get_shader_parameter(parameter) as Texture2D
+		check(texture != null and texture.resource_path.begins_with(bark.resource_path), parameter)
+		var path: String = "res://photo_test_tree_photos/bark".path_join(
+			PhotoBark.PICTURES[parameter]
+		)
+		var file: Image = Image.load_from_file(ProjectSettings.globalize_path(path))
+		check_equal(texture.get_image().get_size(), file.get_size(), "its size")
+		check(texture.get_image().has_mipmaps(), "From afar it would flicker.")
+		check(texture.get_image().is_compressed(), "It takes up video memory.")
+	_shut()
+
+
+func test_bark_that_is_not_wanted_is_drawn() -> void:
+	_open()
+	Widgets.choose(_panel._bark, false)
+	_begin()
+	await _wait()
+	check(_made != null, "No tree was made: " + _panel.message.text)
+	check(not _made.provenance["report"].has("bark"), "It was looked for.")
+	check(not "drawn bark" in "; ".join(_panel.making.get_warnings()), "It complains of it.")
+	_shut()
+
+
+func test_bark_goes_with_its_tree() -> void:
+	var pictures: String = folder.path_join("bark")
+	DirAccess.make_dir_recursive_absolute(pictures)
+	check(PhotoBark.make(pictures, "oak") == null, "There are no pictures.")
+	for name: String in PhotoBark.PICTURES.values():
+		var picture: Image = Image.create_empty(8, 8, false, Image.FORMAT_RGB8)
+		picture.fill(Color.SADDLE_BROWN)
+		picture.save_png(pictures.path_join(name))
+	var bark: ShaderMaterial = PhotoBark.make(pictures, "oak")
+	var drawn: ShaderMaterial = load("res://addons/tree_reconstruction/presets/oak_bark.tres")
+	check(bark.get_shader_parameter(&"albedo_texture") is PortableCompressedTexture2D, "pictures")
+	check_equal(
+		bark.get_shader_parameter(&"twig_color"),
+		drawn.get_shader_parameter(&"twig_color"),
+		"what young twigs look like"
+	)
+	PhotoFiles.write(pictures.path_join("normal.png"), "no picture".to_utf8_buffer())
+	for complaint: String in ['"!success"', '"err" is true', '"image.is_null()"']:
+		expect_error(complaint)
+	check(PhotoBark.make(pictures, "oak") == null, "It made bark of words.")
+	# Copies of a tree have its bark, and a tree that is made again keeps it.
+	var own: TreeReconstruction = grown_tree(2)
+	PhotoBark.give(own, bark)
+	check_equal(PhotoBark.of(Session.LocalTrees.copy_of(own)), bark, "a copy's bark")
+	var session: Session = _session_with(own)
+	session.node.bark_material = bark
+	session.replace_tree("Reconstruct Again", grown_tree(3))
+	check_equal(PhotoBark.of(session.tree), bark, "the bark of the tree that was made again")
+	check_equal(session.node.bark_material, bark, "that of its node")
+	_undo.undo()
+	check_equal(PhotoBark.of(session.tree), bark, "its bark after undo")
+	_end(session)
 
 
 func test_what_was_ended_goes_on() -> void:

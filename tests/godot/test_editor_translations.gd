@@ -47,6 +47,14 @@ func test_sentences_of_the_library_are_translated() -> void:
 		"Grafted 1 branch of 12 nodes in all, clear of other branches.":
 		"枝 1 本（合計 ノード 12 個）を接ぎ木しました。ほかの枝とはぶつかりません。",
 		"'a %s b.ply' is empty.": "'a %s b.ply' は空です。",
+		(
+			"The tree has drawn bark. The photos show the bark with pixels of 8.2 mm, and a picture of it"
+			+ " needs 6.0 mm or less: take some from nearer by, or larger ones."
+		):
+		(
+			"木の樹皮は描かれたものです。写真での樹皮の 1 ピクセルは 8.2 mm ですが、樹皮の画像には 6.0 mm 以下が必要です。"
+			+ "もっと近くから何枚か撮るか、より大きな写真を使ってください。"
+		),
 		"Cut away nodes.": "Cut away nodes.",
 		"Something else.": "Something else.",
 		"": "",

@@ -6,6 +6,7 @@ extends RefCounted
 signal added(nodes: Array[TreeInstance3D])
 
 const ScanFiles: GDScript = preload("./scan_files.gd")
+const PhotoBark := preload("../photos/photo_bark.gd")
 
 # How far away the view may look at the ground, in metres.
 const _REACH: float = 200.0
@@ -90,6 +91,7 @@ func add(trees: Array[TreeReconstruction], place: Vector3) -> Array[TreeInstance
 	for i: int in trees.size():
 		var node: TreeInstance3D = TreeInstance3D.new()
 		node.reconstruction = trees[i]
+		node.bark_material = PhotoBark.of(trees[i])
 		node.name = _name_of(trees[i])
 		node.position = place + offsets[i]
 		if parent is Node3D:

@@ -9,6 +9,7 @@ signal ended(tree: TreeReconstruction, sentence: String)
 const Session := preload("../session.gd")
 const Jobs := preload("../jobs.gd")
 const PhotoFolder := preload("photo_folder.gd")
+const PhotoBark := preload("photo_bark.gd")
 
 ## The folder that is worked in, while it runs and after.
 var work: String = ""
@@ -17,6 +18,8 @@ var job: Jobs.Job
 
 var _session: Session
 var _worker: TreeReconstructor
+# What there is to be said besides what the worker says.
+var _warnings: PackedStringArray = []
 
 
 func _init(session: Session) -> void:
@@ -42,6 +45,7 @@ func start(photos: String, tree_path: String, options: Dictionary) -> void:
 		_end(null, tr("%s can't be written: %s.") % [work, error_string(error)])
 		return
 	_worker = TreeReconstructor.new()
+	_warnings.clear()
 	job = _session.jobs.start(
 		tr("A tree from %s") % photos.trim_suffix("/").get_file(),
 		_make.bind(_worker, photos, work, tree_path, options),
@@ -67,7 +71,7 @@ func get_warnings() -> PackedStringArray:
 	if _worker != null:
 		for warning: String in _worker.get_report().get("warnings", []):
 			warnings.append(Session.Sentences.translate(warning, get_translation_domain()))
-	return warnings
+	return warnings + _warnings
 
 
 ## "Matching: 12 of 71".
@@ -83,6 +87,7 @@ func get_stage() -> String:
 		"Dense points": tr("Matching pixels"),
 		"Sky": tr("Looking for the sky"),
 		"Thin wood": tr("Matching twigs"),
+		"Bark": tr("Taking the bark out of the photos"),
 	}
 	# What comes before them is quick, and what comes after makes the tree.
 	var stage: String = tr("Making the tree")
@@ -94,8 +99,9 @@ func get_stage() -> String:
 	return stage if count.y == 0 else stage + ": " + tr("%d of %d") % [count.x, count.y]
 
 
+# The bark is made here too, since its pictures take seconds to be compressed.
 static func _make(
-	_running: Jobs.Job,
+	running: Jobs.Job,
 	worker: TreeReconstructor,
 	photos: String,
 	folder: String,
@@ -105,7 +111,14 @@ static func _make(
 	var made: TreeReconstruction = worker.reconstruct_photos(photos, folder, options)
 	if made != null:
 		made.resource_name = tree_path.get_file().get_basename()
+		if not running.cancelled and _has_bark(worker):
+			PhotoBark.give(made, PhotoBark.make(folder.path_join("bark"), made.get_leaf_look()))
 	return made
+
+
+static func _has_bark(worker: TreeReconstructor) -> bool:
+	var bark: Dictionary = worker.get_report().get("bark", {})
+	return bark.get("from", "") == "photos"
 
 
 func _on_made(made: TreeReconstruction, _ended: Jobs.Job, tree_path: String) -> void:
@@ -115,18 +128,49 @@ func _on_made(made: TreeReconstruction, _ended: Jobs.Job, tree_path: String) -> 
 			null, Session.Sentences.translate(_worker.get_error_message(), get_translation_domain())
 		)
 		return
-	var error: Error = (
-		ERR_ALREADY_EXISTS
-		if FileAccess.file_exists(tree_path)
-		else ResourceSaver.save(made, tree_path, ResourceSaver.FLAG_COMPRESS)
-	)
+	var bark: String = ""
+	var error: Error = ERR_ALREADY_EXISTS
+	if not FileAccess.file_exists(tree_path):
+		# First, so that the tree's file can name it.
+		bark = _save_bark(made, tree_path)
+		error = ResourceSaver.save(made, tree_path, ResourceSaver.FLAG_COMPRESS)
 	if error != OK:
+		if not bark.is_empty():
+			DirAccess.remove_absolute(bark)
 		_end(null, tr("%s can't be written: %s.") % [tree_path, error_string(error)])
 		return
 	made.take_over_path(tree_path)
 	if Engine.is_editor_hint():
-		EditorInterface.get_resource_filesystem().update_file(tree_path)
+		for path: String in [bark, tree_path]:
+			if not path.is_empty():
+				EditorInterface.get_resource_filesystem().update_file(path)
 	_end(made, "")
+
+
+# The file of its bark. None is no reason to have no tree: nothing then, and it has drawn bark.
+func _save_bark(made: TreeReconstruction, tree_path: String) -> String:
+	if not _has_bark(_worker):
+		return ""
+	var material: ShaderMaterial = PhotoBark.of(made) as ShaderMaterial
+	if material == null:
+		_warnings.append(
+			(
+				tr("The tree has drawn bark: the pictures in %s can't be read.")
+				% work.path_join("bark")
+			)
+		)
+		return ""
+	var error: Error = PhotoBark.save(material, tree_path)
+	if error != OK:
+		PhotoBark.give(made, null)
+		_warnings.append(
+			(
+				tr("The tree has drawn bark: %s can't be written: %s.")
+				% [PhotoBark.free_path(tree_path), error_string(error)]
+			)
+		)
+		return ""
+	return material.resource_path
 
 
 func _end(made: TreeReconstruction, sentence: String) -> void:

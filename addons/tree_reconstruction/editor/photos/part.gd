@@ -102,7 +102,7 @@ func _on_made(tree: TreeReconstruction) -> void:
 		var nodes: Array[TreeInstance3D] = _adder.add(trees, FreePlace.in_view(trees))
 		if not nodes.is_empty():
 			_session.view.want(nodes[0])
-	panel.say_where(tree.resource_path, is_in_scene)
+	panel.say_where(tree, is_in_scene)
 	EditorInterface.get_editor_toaster().push_toast(
 		tr("The tree of photos is ready: %s") % tree.resource_path, EditorToaster.SEVERITY_INFO
 	)

@@ -18,6 +18,7 @@ const PhotoGrid := preload("photo_grid.gd")
 const PhotoLog := preload("photo_log.gd")
 const Circle := preload("circle.gd")
 const Making := preload("making.gd")
+const PhotoBark := preload("photo_bark.gd")
 
 const _LOG_SECONDS: float = 0.5
 
@@ -42,6 +43,7 @@ var _browse: Button
 var _time: OptionButton
 var _order: OptionButton
 var _matcher: OptionButton
+var _bark: OptionButton
 var _height: SpinBox
 var _target: LineEdit = LineEdit.new()
 var _options: GridContainer = GridContainer.new()
@@ -148,7 +150,8 @@ func _add_options() -> void:
 	var tips: Dictionary[String, String] = {}
 	for option: Dictionary in TreeReconstructor.get_photo_option_list():
 		tips[option.name] = option.description
-	_options.columns = 2
+	# Two options a line: the window fits a small screen, and photos and messages have room.
+	_options.columns = 4
 	_time = Widgets.choice(["Quick", "Normal", "Best"], ["quick", "normal", "best"])
 	Widgets.choose(_time, "normal")
 	_order = Widgets.choice(
@@ -158,10 +161,13 @@ func _add_options() -> void:
 	Widgets.choose(_order, "auto")
 	_matcher = Widgets.choice(["Features", "Tracked corners", "Both"], ["sift", "pyrlk", "both"])
 	Widgets.choose(_matcher, "sift")
+	_bark = Widgets.choice(["From the photos", "Drawn"], [true, false])
+	Widgets.choose(_bark, true)
 	_height = Widgets.number(0.0, 100.0, 0.01, "m")
 	_height.allow_greater = true
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
+	_add_option("Bark", tips["bark"], _bark)
 	_add_option("Compare", tips["order"], _order)
 	_add_option("Compare by", tips["matcher"], _matcher)
 	_add_option(
@@ -246,6 +252,7 @@ func _on_begin() -> void:
 		"time": _time.get_selected_metadata(),
 		"order": _order.get_selected_metadata(),
 		"matcher": _matcher.get_selected_metadata(),
+		"bark": _bark.get_selected_metadata(),
 	}
 	if not colmap.is_empty():
 		options["colmap"] = colmap
@@ -273,14 +280,17 @@ func _on_ended(tree: TreeReconstruction, sentence: String) -> void:
 
 
 ## Says where the tree is, and what should be known of it.
-func say_where(path: String, is_in_scene: bool) -> void:
+func say_where(tree: TreeReconstruction, is_in_scene: bool) -> void:
 	var photos: Dictionary = making.get_photos()
 	var sentences: PackedStringArray = [
 		(
 			tr("%d of %d photos were used. The tree is %s.")
-			% [photos.get("placed", 0), photos.get("photos", 0), path]
+			% [photos.get("placed", 0), photos.get("photos", 0), tree.resource_path]
 		)
 	]
+	var bark: Material = PhotoBark.of(tree)
+	if bark != null:
+		sentences.append(tr("Its bark is that of the photos: %s.") % bark.resource_path)
 	if not is_in_scene:
 		sentences.append(tr("Drag it from the FileSystem dock into a scene."))
 	sentences.append(

@@ -252,6 +252,26 @@ const PATTERNS: PackedStringArray = [
 		+ " at least. If there is a tree in their cloud, tell where it stands."
 	),
 	"%s of the photos could not be read; open them, and save them again.",
+	"The tree has drawn bark. %s",
+	(
+		"The photos were not matched pixel by pixel, so that it is not known what stands before the"
+		+ " trunk."
+	),
+	"The tree has no piece of trunk below its first limb that bark could be taken from.",
+	"No photo shows the trunk below its first limb from the front.",
+	"None of the photos that show the trunk can be read.",
+	(
+		"The photos show the bark with pixels of %s mm, and a picture of it needs %s mm or less: take"
+		+ " some from nearer by, or larger ones."
+	),
+	(
+		"The photos show the bark out of focus or shaken: no detail finer than %s mm, and a picture of"
+		+ " it needs %s mm."
+	),
+	(
+		"Too little of the trunk is seen: %s square metres of its clear part, in no piece of %s x %s cm"
+		+ " and some more around it. Take more photos of it, all around."
+	),
 	(
 		"This tree does not say what it was made of, so it is not known from where it was photographed."
 		+ " Choose the folder of its COLMAP model."

@@ -2,7 +2,8 @@
 extends "../../test_plugin/scenario.gd"
 ## A tree from photos, with a program that stands in for COLMAP.
 
-const PhotoFiles: GDScript = preload("../../test_plugin/photo_files.gd")
+const TrunkPhotos: GDScript = preload("../../test_plugin/trunk_photos.gd")
+const ADDER: String = "res://addons/tree_reconstruction/editor/import/scene_adder.gd"
 const TREE: String = "res://my_photos.res"
 const SETTING: String = "tree_reconstruction/photos/colmap"
 
@@ -27,7 +28,7 @@ func _button(text: String) -> Control:
 
 func _open() -> void:
 	await step("the dock leads to photos where no tree is selected")
-	_files = PhotoFiles.new(OS.get_environment("TREE_EDITOR_TEST").path_join("phone"))
+	_files = TrunkPhotos.new(OS.get_environment("TREE_EDITOR_TEST").path_join("phone"))
 	EditorInterface.get_editor_settings().set_setting(SETTING, _files.colmap)
 	EditorInterface.set_main_screen_editor("3D")
 	await user.key("ctrl+n")
@@ -53,6 +54,9 @@ func _make() -> void:
 	_files.hold("exhaustive_matcher")
 	await user.frames(20)
 	check_fits()
+	# The least that there is to do.
+	var time: OptionButton = find_control("OptionButton", "How much is found", _window())
+	time.select(0)
 	await press(_button("Make Tree"))
 	if not await until(
 		func() -> bool: return _button("Cancel") != null and _button("Cancel").is_visible_in_tree(),
@@ -74,13 +78,29 @@ func _make() -> void:
 	var node: TreeInstance3D = root.get_child(0) as TreeInstance3D
 	check_equal(node.name, &"MyPhotos", "its name")
 	check_equal(node.reconstruction.resource_path, TREE, "its file")
+	await step("it has the bark of its photos, by a file beside its own")
+	var bark: ShaderMaterial = node.bark_material as ShaderMaterial
+	if check(bark != null, "It has drawn bark."):
+		check_equal(bark.resource_path, TREE.get_basename() + "_bark.res", "the bark's file")
+		var again: ShaderMaterial = (
+			ResourceLoader.load(bark.resource_path, "", ResourceLoader.CACHE_MODE_IGNORE_DEEP)
+			as ShaderMaterial
+		)
+		var texture: Texture2D = again.get_shader_parameter(&"albedo_texture") as Texture2D
+		check_equal(texture.get_size(), Vector2(512, 512), "the size of its picture")
+		check(texture.get_image().is_compressed(), "It takes up video memory.")
+		check_equal(
+			EditorInterface.get_resource_filesystem().get_file_type(bark.resource_path),
+			"ShaderMaterial",
+			"what the FileSystem dock takes it for"
+		)
 	await user.frames(30)
 	await picture("photos-made")
 	check_equal(
 		DirAccess.dir_exists_absolute("res://my_photos_photos/colmap"), true, "the work is there"
 	)
 	var log: String = FileAccess.get_file_as_string("res://my_photos_photos/photos.log")
-	check_equal(log.count("Processed file [9/9]"), 1, "times that features were found")
+	check_equal(log.count("Processed file [13/13]"), 1, "times that features were found")
 
 
 func _compare() -> void:
@@ -112,7 +132,15 @@ func _end() -> void:
 	check_equal(root.get_child_count(), 0, "trees after undo")
 	await user.key("ctrl+shift+z")
 	check_equal(root.get_child_count(), 1, "trees after redo")
+	check((root.get_child(0) as TreeInstance3D).bark_material != null, "Redo has lost its bark.")
 	check(FileAccess.file_exists(TREE), "The tree's file is gone.")
+	await step("from the FileSystem dock it comes with its bark, too")
+	await user.key("ctrl+z")
+	var adder: RefCounted = (load(ADDER) as GDScript).new(EditorInterface.get_editor_undo_redo())
+	var trees: Array[TreeReconstruction] = [load(TREE) as TreeReconstruction]
+	adder.add(trees, Vector3.ZERO)
+	if check_equal(root.get_child_count(), 1, "trees"):
+		check((root.get_child(0) as TreeInstance3D).bark_material != null, "It has drawn bark.")
 	# The scene is nothing to keep.
 	EditorInterface.save_scene_as("res://photo_scene.tscn", false)
 	await user.frames(10)
