@@ -43,6 +43,12 @@ func _open() -> void:
 		return
 	await user.frames(10)
 	check((_button("Make Tree") as Button).disabled, "It begins without photos.")
+	await press(_button("Choose Photos…"))
+	if await until(
+		func() -> bool: return dialog("Choose Photos") != null, "a dialog says what it is for"
+	):
+		await user.key("Escape")
+		await until(func() -> bool: return dialog("Choose Photos") == null, "it closes")
 	await picture("photos-window")
 
 
