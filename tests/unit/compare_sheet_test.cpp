@@ -81,6 +81,21 @@ TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
             }
 }
 
+// However short the pieces are that a stout trunk begins with.
+TEST_F(CompareSheet, AFootOfShortPiecesIsFlatToo) {
+    ScanFrame frame = tree_.frame();
+    tree_ = Tree();
+    tree_.set_frame(frame);
+    NodeId last = tree_.add_root({0.0, -2.0, 0.0}, 0.25);
+    for (const double y : {-1.95, -1.85, -1.7, 2.0})
+        last = tree_.add_child(last, {0.0, y, 0.0}, 0.25);
+    const Image sheet = compare_sheet(tree_, model_, folder_);
+    for (int y = kHeight / 2 + 42; y < kHeight; y++)
+        for (int x = 0; x < kWidth; x++)
+            ASSERT_EQ(sheet.at(kWidth + x, y)[0], 0) << x << " " << y;
+    EXPECT_GT(sheet.at(kWidth + kWidth / 2, kHeight / 2 + 38)[0], 180);
+}
+
 TEST_F(CompareSheet, PassesOverWhatCanNotBeRead) {
     write_file(folder_ + "/front.png", "no picture");
     const Image sheet = compare_sheet(tree_, model_, folder_);
