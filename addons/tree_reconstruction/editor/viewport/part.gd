@@ -111,6 +111,9 @@ func draw_over(overlay: Control) -> void:
 	var camera: Camera3D = _picker.get_camera_of(overlay)
 	if camera == null or _session.tree == null:
 		return
+	# Another scene is shown already, and its nodes are told of next.
+	if not is_instance_valid(_session.node) or not _session.node.is_inside_tree():
+		return
 	_surfaces[camera.get_viewport()] = overlay
 	_axes.draw(overlay, camera, _picker)
 	_legend.draw(overlay)
