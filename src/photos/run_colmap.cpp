@@ -99,10 +99,9 @@ std::vector<Model> map_cameras(ColmapWork& work, ColmapCall call, const std::str
 void place_cameras(ColmapWork& work, const std::string& before, const std::string& database) {
     Progress* const progress = work.job.progress();
     ColmapCall call{"mapper", {}, {}};
-    // Half of COLMAP's own: leaves that move leave few points that agree. Fifteen agree on a wrong place by
-    // chance next to never, and a pair of photos needs as many.
-    work.job.set(call.settings, call.command, {"--Mapper.abs_pose_min_num_inliers"}, "15");
-    work.job.set(call.settings, call.command, {"--Mapper.abs_pose_min_inlier_ratio"}, "0.1");
+    // COLMAP's own 30 are too many where leaves move, and few points agree. 15 also take photos that are
+    // too far from all others, and put these up to a tenth of the circle beside their place.
+    work.job.set(call.settings, call.command, {"--Mapper.abs_pose_min_num_inliers"}, "20");
     work.set_threads(call, {"--Mapper.num_threads"});
     RunStage stage(work.at("models.json"), basis_of(before, {call}));
     if (stage.done() && fs::exists(work.sparse / "0" / "images.bin")) return;

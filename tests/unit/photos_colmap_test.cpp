@@ -70,7 +70,7 @@ TEST_F(RunColmap, GivesEachVersionItsOwnOptions) {
         EXPECT_TRUE(has(get("out/photos.log"), "Processed file [9/9]"));
         const std::vector<Words> told = calls();
         ASSERT_EQ(commands(told), "feature_extractor exhaustive_matcher mapper");
-        EXPECT_EQ(value_of(told[2], "--Mapper.abs_pose_min_num_inliers"), "15");
+        EXPECT_EQ(value_of(told[2], "--Mapper.abs_pose_min_num_inliers"), "20");
         const std::string extraction = version == "4" ? "--FeatureExtraction" : "--SiftExtraction";
         EXPECT_EQ(value_of(told[0], extraction + ".use_gpu"), "0");
         EXPECT_EQ(value_of(told[0], extraction + ".max_image_size"), "1600");

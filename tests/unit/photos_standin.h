@@ -36,7 +36,7 @@ known() {
     exhaustive_matcher) echo "$common --$match.use_gpu --$match.num_threads --ExhaustiveMatching.block_size" ;;
     sequential_matcher) echo "$common --$match.use_gpu --$match.num_threads --SequentialMatching.overlap" ;;
     matches_importer) echo "$common --$match.use_gpu --$match.num_threads --match_list_path --match_type" ;;
-    mapper) echo "$common --image_path --output_path --Mapper.num_threads --Mapper.abs_pose_min_num_inliers --Mapper.abs_pose_min_inlier_ratio" ;;
+    mapper) echo "$common --image_path --output_path --Mapper.num_threads --Mapper.abs_pose_min_num_inliers" ;;
     esac
 }
 if [ "$1" = -h ]; then
