@@ -74,8 +74,6 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const std::function<Task
         Listener listener(this);
         {
             const std::lock_guard lock(mutex_);
-            fraction_ = 0.0;
-            stage_.clear();
             report_json_.clear();
             result_ = std::make_shared<treerec::Reconstruction>();
             cloud_ = std::make_shared<treerec::PointCloud>();
@@ -160,9 +158,6 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_ph
             r_details.photos = std::move(made.photos);
             r_details.photo_pairs = made.made.pairs;
             r_details.sized_by_gps = made.sized_by_gps;
-            if (made.bark && !made.bark->textures) {
-                made.tree.warnings.push_back("The tree has drawn bark. " + made.bark->why_not);
-            }
             r_details.bark = std::move(made.bark);
             return std::move(made.tree);
         };

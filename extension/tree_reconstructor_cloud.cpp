@@ -38,11 +38,6 @@ bool TreeReconstructor::load_cloud(const Ref<TreeReconstruction>& p_tree, int64_
     try {
         Listener listener(this);
         listener.check();
-        {
-            const std::lock_guard lock(mutex_);
-            fraction_ = 0.0;
-            stage_.clear();
-        }
         const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
         const ScanOfTree scan = scan_of(**p_tree);
         treerec::PointCloud cloud =
@@ -67,11 +62,6 @@ Error TreeReconstructor::save_cloud(const Ref<TreeReconstruction>& p_tree, const
     try {
         Listener listener(this);
         listener.check();
-        {
-            const std::lock_guard lock(mutex_);
-            fraction_ = 0.0;
-            stage_.clear();
-        }
         const ScanOfTree scan = scan_of(**p_tree);
         // A copy of the file for the next call would be a waste of memory, if there is none yet.
         treerec::save_cleaned_scan(file_path(p_path), scan.path, scan.options.pipeline,

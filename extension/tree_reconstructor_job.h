@@ -33,6 +33,9 @@ class TreeReconstructor::Job {
     explicit Job(TreeReconstructor* p_owner) : owner_(p_owner), owns_(!p_owner->running_.exchange(true)) {
         if (owns_) {
             owner_->_fail("");
+            const std::lock_guard lock(owner_->mutex_);
+            owner_->fraction_ = 0.0;
+            owner_->stage_.clear();
         }
     }
     ~Job() {

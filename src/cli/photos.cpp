@@ -89,12 +89,9 @@ void print_photos(const PhotosResult& result) {
         std::printf("; %zu points, of %zu pairs of photos\n", result.made.points, result.made.pairs);
     else
         std::printf("; %zu points\n", result.made.points);
-    if (!result.bark) return;
-    if (result.bark->textures)
+    if (result.bark && result.bark->textures)
         std::printf("bark from %zu photos, with pixels of %.1f mm\n", result.bark->photos,
                     1000.0 * result.bark->pixel);
-    else
-        std::printf("bark drawn: %s\n", result.bark->why_not.c_str());
 }
 
 // The tree over some of its photos. Whether there is one: it is no reason for a tree to fail.
@@ -161,6 +158,8 @@ void run_photos(const std::vector<std::string>& words) {
     options.cloud.dense = !arguments.has("--sparse");
     options.cloud.hold_out = arguments.whole("--hold-out", 0, 2, 1000);
     const std::string masks = arguments.text("--masks", "");
+    if (std::error_code failure; !masks.empty() && !std::filesystem::is_directory(path_of(masks), failure))
+        throw Error("There is no folder '" + masks + "' with the photos' masks.");
     const std::string bark = arguments.text("--bark", "photos");
     if (bark != "photos" && bark != "drawn")
         throw UsageError("--bark is photos or drawn, not '" + bark + "'.");
@@ -221,8 +220,14 @@ void run_photos(const std::vector<std::string>& words) {
     details.leaf_count = exporter.leaves();
     if (!masks.empty()) {
         progress.update(0.96, "Outline");
-        details.outline = judge_outline(tree, result.photos.model, masks, options.cloud.hold_out,
-                                        exports.leaves, exports.textures, exports.seed, &progress);
+        try {
+            details.outline = judge_outline(tree, result.photos.model, masks, options.cloud.hold_out,
+                                            exports.leaves, exports.textures, exports.seed, &progress);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& error) {
+            tree.warnings.push_back("The tree's outline was not judged. " + std::string(error.what()));
+        }
     }
     outs.push_back(utf8_of(path_of(out) / "report.json"));
     write_file(outs.back(), report_json(tree, details));

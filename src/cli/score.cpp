@@ -260,6 +260,9 @@ void run_score(const std::vector<std::string>& words) {
     if (photos.empty() != masks.empty())
         throw UsageError(
             "--photos and --masks belong together: R_3d needs the outline of the tree in each photo.");
+    for (const char* name : {"--every", "--leaves", "--view-weight"})
+        if (photos.empty() && arguments.has(name))
+            throw UsageError(std::string(name) + " is for photos: --photos and --masks name them.");
     const size_t every = arguments.whole("--every", 0, 2, 1000);
     const double weight = arguments.number("--view-weight", kInformationRatio, 0.0, 1.0);
     const std::string leaves = arguments.text("--leaves", "none");

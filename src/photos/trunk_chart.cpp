@@ -7,6 +7,7 @@
 
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "tree/branches.h"
 
 namespace treerec {
 
@@ -24,16 +25,11 @@ struct Section {
     double along;  // from the root
 };
 
-// The thickest way up from the root.
-std::vector<NodeId> stem_of(const Tree& tree) {
+std::vector<NodeId> trunk_nodes(const Tree& tree) {
+    const std::vector<double> lengths = subtree_lengths(tree);
     std::vector<NodeId> stem;
-    for (NodeId id = tree.root(); id != kNoNode;) {
+    for (NodeId id = tree.root(); id != kNoNode; id = main_child(tree, id, lengths))
         stem.push_back(id);
-        NodeId next = kNoNode;
-        for (const NodeId child : tree.children(id))
-            if (next == kNoNode || tree.node(child).radius > tree.node(next).radius) next = child;
-        id = next;
-    }
     return stem;
 }
 
@@ -107,7 +103,7 @@ double TrunkChart::beside(const DVec3& place) const {
 TrunkChart chart_trunk(const Tree& tree, double longest) {
     TrunkChart chart;
     if (tree.empty()) return chart;
-    chart.stem_ = stem_of(tree);
+    chart.stem_ = trunk_nodes(tree);
     std::vector<Section> sections = clear_sections(tree, chart.stem_);
     if (sections.size() < 2) return chart;
     const double top = sections.back().along;

@@ -48,9 +48,9 @@ class TrunkChart {
     double half_width_ = 0.0;
 };
 
-// Of the tree's thickest way up: begins above the root flare, ends below the first limb of two fifths of the
-// stem's radius, or where the stem is half as thick as at its foot, or `longest` metres further. Empty for a
-// tree without such a stem.
+// Of the tree's trunk (main_child() from the root on): begins above the root flare, ends below the first limb
+// of two fifths of the stem's radius, or where the stem is half as thick as at its foot, or `longest` metres
+// further. Empty for a tree without such a stem.
 TrunkChart chart_trunk(const Tree& tree, double longest);
 
 }  // namespace treerec

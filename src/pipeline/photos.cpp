@@ -95,14 +95,22 @@ SeenThings things_of(const PhotosResult& result, Progress* progress) {
     return things;
 }
 
-PhotoBark look_at_bark(const PhotosResult& result, Progress* progress) {
-    if (result.made.pairs > 0)
-        return bark_of_photos(result.tree.tree, read_photo_model(result.photos.model, progress),
-                              result.photos_folder, things_of(result, progress), {}, progress);
+// That there is none is no reason for a tree to fail.
+PhotoBark look_at_bark(const PhotosResult& result, size_t hold_out, Progress* progress) {
     PhotoBark none;
     none.why_not =
         "The photos were not matched pixel by pixel, so that it is not known what stands before the trunk.";
-    return none;
+    if (result.made.pairs == 0) return none;
+    try {
+        const PhotoModel model = without_held_out(read_photo_model(result.photos.model, progress), hold_out);
+        return bark_of_photos(result.tree.tree, model, result.photos_folder, things_of(result, progress), {},
+                              progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        none.why_not = error.what();
+        return none;
+    }
 }
 
 // Its pictures, or none: not those of another time either.
@@ -183,7 +191,9 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
     if (!has_scale && gps.photos > 0)
         result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
-    if (options.bark) result.bark = look_at_bark(result, &looking);
+    if (options.bark) result.bark = look_at_bark(result, options.cloud.hold_out, &looking);
+    if (result.bark && !result.bark->textures)
+        result.tree.warnings.push_back("The tree has drawn bark. " + result.bark->why_not);
     write_bark(result.bark, utf8_of(path_of(out) / "bark"));
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());

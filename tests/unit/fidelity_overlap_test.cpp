@@ -254,6 +254,8 @@ TEST_F(ScoreCli, TellsTheOutline) {
     EXPECT_NEAR(share(run(words + " --view-weight 0.5").out, "I"), 1.0 - 0.0625, 1e-9);
     EXPECT_EQ(run(words + " --every 5").code, 1);
     EXPECT_EQ(run(words + " --leaves grass").code, 2);
+    for (const char* option : {"--every 4", "--leaves oak", "--view-weight 0.5"})
+        EXPECT_EQ(run(std::string("score s/truth.txt s/scan.ply ") + option).code, 2) << option;
 }
 
 }  // namespace

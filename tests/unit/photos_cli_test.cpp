@@ -60,7 +60,7 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     EXPECT_TRUE(has(get("out/report.json"), "\"up_from_photos\": 9")) << get("out/report.json");
     EXPECT_FALSE(has(outcome.error, "scale")) << outcome.error;
     // They are no pictures, and nothing in them was matched; what was made at another time is not left there.
-    EXPECT_TRUE(has(outcome.out, "bark drawn: The photos were not matched")) << outcome.out;
+    EXPECT_TRUE(has(outcome.error, "The tree has drawn bark. The photos were not matched")) << outcome.error;
     EXPECT_TRUE(has(get("out/report.json"), "\"from\": \"drawn\"")) << get("out/report.json");
     put("out/bark/albedo.png", "old");
     // The tree alone is made again, and without a length its sizes are relative.
@@ -75,6 +75,20 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     // What lies there is a scan.
     EXPECT_EQ(run("reconstruct out -o out/again.txt").code, 0);
     EXPECT_EQ(run("reconstruct out/sparse/0 -o out/sparse.txt").code, 0);
+}
+
+// A folder that is not there is told before the work, and one without the masks loses nothing of it.
+TEST_F(PhotosCli, MasksThatAreMissingAreTold) {
+    const Outcome nowhere = run("photos photos -o out --masks nowhere");
+    EXPECT_EQ(nowhere.code, 1);
+    EXPECT_TRUE(has(nowhere.error, "There is no folder 'nowhere'")) << nowhere.error;
+    EXPECT_EQ(commands(calls()), "");
+    fs::create_directories(folder_ / "masks");
+    const Outcome empty = run("photos photos -o out --masks masks --hold-out 4");
+    EXPECT_EQ(empty.code, 0) << empty.error;
+    EXPECT_TRUE(has(empty.error, "The tree's outline was not judged. 2 of 2 photos have no mask"))
+        << empty.error;
+    EXPECT_TRUE(has(get("out/report.json"), "was not judged")) << get("out/report.json");
 }
 
 TEST_F(PhotosCli, TheCleanedCloudLiesInTheCloudOfThePhotos) {

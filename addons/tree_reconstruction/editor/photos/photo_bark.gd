@@ -7,6 +7,7 @@ extends RefCounted
 ## in is kept out of the project; this one is there at once, and moves as one.
 
 const Kinds := preload("../../nodes/leaf_kinds.gd")
+const PhotoFolder := preload("photo_folder.gd")
 
 ## The pictures by the parameter of bark.gdshader that takes them.
 const PICTURES: Dictionary[StringName, String] = {
@@ -16,7 +17,6 @@ const PICTURES: Dictionary[StringName, String] = {
 }
 
 const _KNOWN_AS: StringName = &"bark_material"
-const _MOST_TRIES: int = 1000
 
 
 ## The bark out of the pictures in [param folder] for a tree whose leaves look like those of the
@@ -52,12 +52,7 @@ static func save(material: ShaderMaterial, tree_path: String) -> Error:
 
 ## A name for the bark of the tree in [param tree_path], of a file that is not there yet.
 static func free_path(tree_path: String) -> String:
-	var base: String = tree_path.get_basename() + "_bark"
-	for i: int in _MOST_TRIES:
-		var path: String = "%s%s.res" % [base, "" if i == 0 else "_%d" % (i + 1)]
-		if not FileAccess.file_exists(path):
-			return path
-	return base + "_new.res"
+	return PhotoFolder.free_path(tree_path.get_basename() + "_bark")
 
 
 ## Has [param tree] know its bark, in its file too; [code]null[/code] makes it forget.

@@ -82,7 +82,12 @@ static func free_tree_path(folder: String) -> String:
 	if name.get_extension().to_lower() in FILMS:
 		name = name.get_basename()
 	name = name.validate_filename().to_snake_case()
-	var base: String = "res://" + ("tree" if name.is_empty() else name)
+	return free_path("res://" + ("tree" if name.is_empty() else name))
+
+
+## [param base] with a resource's extension, and a number before it where that is taken: a file that
+## is not there yet.
+static func free_path(base: String) -> String:
 	for i: int in _MOST_TRIES:
 		var path: String = "%s%s.res" % [base, "" if i == 0 else "_%d" % (i + 1)]
 		if not FileAccess.file_exists(path):
