@@ -13,16 +13,18 @@ namespace tubes {
 
 namespace {
 
-constexpr double kCollar = 0.35;           // how much wider a branch leaves its parent, over its radius
-constexpr double kForkShare = 0.7;         // of its parent's radius: as wide a thick branch starts at most
-constexpr double kForkTaper = 0.3;         // of its own radius: how much thinner a forking branch starts
-constexpr double kRoundTipRadius = 0.006;  // metres; thinner tips are pointed
-constexpr double kCutRadius = 0.025;       // metres; no branch ends by itself so thick: those are cut flat
-constexpr double kTwigRadius = 0.008;      // metres; thinner tubes have a side less,
-constexpr double kFineTwigRadius = 0.004;  // these two, and run out in a point
-constexpr double kHeightSlack = 1e-3;      // how far rings may leave out any bend, over the tree's height
-constexpr size_t kMostLeftOut = 12;        // points of the axis between two rings, at level 0
-constexpr size_t kFewBranches = 256;       // are built sooner than threads start
+constexpr double kCollar = 0.35;            // how much wider a branch leaves its parent, over its radius
+constexpr double kForkShare = 0.7;          // of its parent's radius: as wide a thick branch starts at most
+constexpr double kForkTaper = 0.3;          // of its own radius: how much thinner a forking branch starts
+constexpr double kRoundTipRadius = 0.006;   // metres; thinner tips are pointed
+constexpr double kCutRadius = 0.025;        // metres; no branch ends by itself so thick: those are cut flat
+constexpr double kTwigRadius = 0.008;       // metres; thinner tubes have a side less,
+constexpr double kFineTwigRadius = 0.004;   // these two, and run out in a point
+constexpr double kHeightSlack = 1e-3;       // how far rings may leave out any bend, over the tree's height
+constexpr double kTaperSlack = 0.06;        // how far they may leave out a change of the radius, over it,
+constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
+constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
+constexpr size_t kFewBranches = 256;        // are built sooner than threads start
 
 // How much rings leave out at level 0 of branches of such a radius in metres: the eye rests on the stout
 // ones.
@@ -104,6 +106,8 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const double closeness = 0.35 * (1 + level);
     const double slack = limits.slack * (1 << level);
     const size_t most_left_out = kMostLeftOut << level;
+    const double taper = kTaperSlack * (1 << level),
+                 taper_slack = kHeightTaperSlack * crown.height * (1 << level);
     const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
         out.push_back({point.position, point.direction, std::max(point.radius, least), point.along,
@@ -119,6 +123,9 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             const DVec3 off = offset - chord * t;
             const double limit = std::max(slack * points[i].radius, least_slack);
             if (glm::dot(off, off) > limit * limit) return true;
+            const double thick = glm::mix(points[from].radius, points[to].radius, t);
+            if (std::abs(thick - points[i].radius) > std::max(taper * points[i].radius, taper_slack))
+                return true;
         }
         return false;
     };

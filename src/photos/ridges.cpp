@@ -15,10 +15,12 @@ constexpr double kStep = 0.25;      // pixels along that way
 constexpr double kNarrowest = 1.0;  // pixels of the first level
 constexpr double kNarrower = 2.0;   // of the others: what is narrower is found on the level before
 constexpr double kWidest = 4.5;
-constexpr double kBlur = 0.8;       // pixels: what a lens and a JPEG make of a line without width
-constexpr double kLevelBlur = 1.2;  // and making pictures smaller
-constexpr double kStraight = 0.85;  // cosine between a line's neighbouring places
-constexpr double kUneven = 2.0;     // one side of a line by the other, from its brightest bend
+// Pixels: how wide at half height a lens, the sensor and a JPEG make a line without width. A camera's
+// contrast is down to half at .3 periods a pixel, more or less, and so are pictures that were made smaller.
+constexpr double kBlur = 1.5;
+constexpr double kLeastWidth = 0.5;  // pixels: what is seen as a line at all, and no wider than a blur
+constexpr double kStraight = 0.85;   // cosine between a line's neighbouring places
+constexpr double kUneven = 2.0;      // one side of a line by the other, from its brightest bend
 
 struct Bend {
     DVec2 place{0.0}, way{0.0};
@@ -42,6 +44,37 @@ std::optional<Bend> bend_at(const GreyPicture& smooth, int x, int y, double leas
     const DVec2 away = -glm::dot(slope, across) / value * across;
     if (std::abs(away.x) > kMostAside || std::abs(away.y) > kMostAside) return {};
     return Bend{DVec2(x, y) + away, {-across.y, across.x}, value};
+}
+
+// How wide a line is that seems `seen` pixels wide at half its height: a box that a normal distribution of
+// full width kBlur at half height blurs. The wider it is, the less is its width changed.
+double width_before_blur(double seen) {
+    constexpr size_t kSteps = 64;
+    constexpr double kStepWidth = 0.1;
+    static const auto seen_of = [] {
+        std::array<double, kSteps> table{};
+        const double sigma = kBlur / (2.0 * std::sqrt(2.0 * std::log(2.0)));
+        for (size_t i = 0; i < kSteps; i++) {
+            const double half = 0.5 * kStepWidth * static_cast<double>(i + 1);
+            const auto height = [&](double x) {
+                const double scale = 1.0 / (sigma * std::sqrt(2.0));
+                return std::erf((x + half) * scale) - std::erf((x - half) * scale);
+            };
+            double low = 0.0, high = half + 2.0 * kBlur;
+            for (int round = 0; round < 40; round++) {
+                const double x = 0.5 * (low + high);
+                (height(x) > 0.5 * height(0.0) ? low : high) = x;
+            }
+            table[i] = low + high;
+        }
+        return table;
+    }();
+    const auto above = std::upper_bound(seen_of.begin(), seen_of.end(), seen);
+    if (above == seen_of.end()) return seen;
+    const auto i = static_cast<double>(above - seen_of.begin());
+    if (above == seen_of.begin()) return kLeastWidth;
+    const double part = (seen - above[-1]) / (above[0] - above[-1]);
+    return std::max(kLeastWidth, kStepWidth * (i + part));
 }
 
 // How far from the middle the grey level is half that of the side, and that side's contrast.
@@ -86,11 +119,10 @@ std::optional<Ridge> ridge_of(const GreyPicture& picture, const Bend& bend, size
     if (left.away > kUneven * right.away + 1.0 || right.away > kUneven * left.away + 1.0) return {};
     const double width = left.away + right.away;
     if (width < (level > 0 ? kNarrower : kNarrowest) || width > kWidest) return {};
-    const double blur = level > 0 ? kLevelBlur : kBlur;
     Ridge ridge;
     ridge.place = bend.place + 0.5 * (left.away - right.away) * across;
     ridge.way = bend.way;
-    ridge.width = std::sqrt(std::max(width * width - blur * blur, 0.09));
+    ridge.width = width_before_blur(width);
     return ridge;
 }
 

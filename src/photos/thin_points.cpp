@@ -156,6 +156,7 @@ size_t add_thin_wood(PointCloud& cloud, double cell, std::vector<ThinPlace> plac
         }
     });
     cloud.keep_only(keep);
+    cloud.radii.resize(cloud.size(), 0.0F);
     for (size_t i = 0; i < places.size(); i++) {
         const ThinPlace& place = places[i];
         const DVec3 side = any_perpendicular(place.way), other = glm::cross(place.way, side);
@@ -166,6 +167,7 @@ size_t add_thin_wood(PointCloud& cloud, double cell, std::vector<ThinPlace> plac
             cloud.positions.emplace_back(place.position - origin +
                                          place.radius * (std::cos(angle) * side + std::sin(angle) * other));
             cloud.colors.push_back(place.color);
+            cloud.radii.push_back(static_cast<float>(place.radius));
         }
     }
     return places.size();

@@ -10,7 +10,8 @@ namespace {
 
 size_t bytes_of(const PointCloud& cloud) {
     return cloud.positions.size() * sizeof(Vec3) + cloud.colors.size() * sizeof(Color8) +
-           cloud.normals.size() * sizeof(Vec3) + cloud.labels.values.size();
+           cloud.normals.size() * sizeof(Vec3) + cloud.radii.size() * sizeof(float) +
+           cloud.labels.values.size();
 }
 
 }  // namespace

@@ -327,6 +327,8 @@ OrientReport orient_cloud(PointCloud& cloud, const OrientOptions& options, Progr
             cloud.positions[i] = cloud.frame.turn_to_tree(DVec3(cloud.positions[i]) * report.metres_per_unit);
         for (size_t i = begin; i < std::min(end, cloud.normals.size()); i++)
             cloud.normals[i] = cloud.frame.turn_to_tree(DVec3(cloud.normals[i]));
+        for (size_t i = begin; i < std::min(end, cloud.radii.size()); i++)
+            cloud.radii[i] *= static_cast<float>(report.metres_per_unit);
     });
     return report;
 }

@@ -19,6 +19,7 @@ void PointCloud::keep_only(const std::vector<uint8_t>& keep) {
     compact(positions, keep);
     compact(colors, keep);
     compact(normals, keep);
+    compact(radii, keep);
     compact(labels.values, keep);
 }
 

@@ -31,12 +31,15 @@ struct PointLabels {
 
 // positions: relative to frame.origin, in the axes and units that the frame says (fresh from a file: the
 // scan's own; after orient_cloud(): tree space, metres and Y up). float is exact to 2 micrometres at 30 m.
-// colors, normals: empty, or one per point.
+// colors, normals: empty, or one per point. radii: likewise, of the wood that a point lies on, where the
+// cloud's maker knows it better than its points tell (a line in photos, some pixels wide), else 0; in the
+// unit of positions.
 struct PointCloud {
     ScanFrame frame;
     std::vector<Vec3> positions;
     std::vector<Color8> colors;
     std::vector<Vec3> normals;
+    std::vector<float> radii;
     ScanUnit unit;
     PointLabels labels;
     // In the scan's unit: points nearer to each other tell no more of the shape. 0: its file does not tell.

@@ -207,6 +207,17 @@ void convert_normals(const ReadJob& job, const RawCloud& raw, PointCloud& cloud)
     if (!any) cloud.normals.clear();
 }
 
+// Those that are none count as unknown; where all are, there are none.
+void convert_radii(const RawCloud& raw, PointCloud& cloud) {
+    bool any = false;
+    for (const float radius : raw.radii)
+        any = any || (std::isfinite(radius) && radius > 0.0F);
+    if (!any) return;
+    cloud.radii = raw.radii;
+    for (float& radius : cloud.radii)
+        if (!std::isfinite(radius) || radius < 0.0F) radius = 0.0F;
+}
+
 // Labels that are all whole numbers up to 255, or all words, or 0 and 1 with what lies between; others are
 // none.
 void convert_labels(const RawCloud& raw, PointCloud& cloud) {
@@ -282,6 +293,8 @@ PointCloud settle(const ReadJob& job, RawCloud&& raw) {
     cloud.spacing = raw.spacing;
     convert_labels(raw, cloud);
     raw.labels = {};
+    convert_radii(raw, cloud);
+    raw.radii = {};
     if (!raw.colors.empty()) convert_colors(job, raw, cloud);
     raw.colors = {};
     if (!raw.normals.empty()) convert_normals(job, raw, cloud);

@@ -36,7 +36,7 @@ constexpr NameRole kSureNames[] = {
     {"x", kRoleX},           {"y", kRoleY},        {"z", kRoleZ},          {"red", kRoleR},
     {"green", kRoleG},       {"blue", kRoleB},     {"diffusered", kRoleR}, {"diffusegreen", kRoleG},
     {"diffuseblue", kRoleB}, {"nx", kRoleNx},      {"ny", kRoleNy},        {"nz", kRoleNz},
-    {"normalx", kRoleNx},    {"normaly", kRoleNy}, {"normalz", kRoleNz},
+    {"normalx", kRoleNx},    {"normaly", kRoleNy}, {"normalz", kRoleNz},   {"woodradius", kRoleRadius},
 };
 // Of labels: those whose name says which value is the leaf go before the others.
 constexpr std::string_view kLeafNames[] = {"foliage",       "leaf",       "leaves",       "isleaf",
@@ -124,8 +124,8 @@ bool has_role(const std::vector<int8_t>& roles, Role role) {
 }
 
 std::string describe_roles(const std::vector<int8_t>& roles) {
-    static constexpr const char* kNames[] = {"x",  "y",  "z",  "r",       "g",    "b",
-                                             "nx", "ny", "nz", "opacity", "label"};
+    static constexpr const char* kNames[] = {"x",  "y",  "z",  "r",       "g",     "b",
+                                             "nx", "ny", "nz", "opacity", "label", "wood_radius"};
     std::string text;
     for (const int8_t role : roles)
         text += std::string(text.empty() ? "" : " ") + (role == kNoRole ? "-" : kNames[role]);
@@ -160,6 +160,7 @@ void make_room(const ReadJob& job, RawCloud& raw, size_t count, const std::vecto
     if (has_role(roles, kRoleNx)) make_room(job, raw.normals, count);
     if (has_role(roles, kRoleOpacity)) make_room(job, raw.opacities, count);
     if (has_role(roles, kRoleLabel)) make_room(job, raw.labels, count);
+    if (has_role(roles, kRoleRadius)) make_room(job, raw.radii, count);
 }
 
 void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {
@@ -168,6 +169,7 @@ void RawCloud::reserve(size_t count, const std::vector<int8_t>& roles) {
     if (has_role(roles, kRoleNx)) normals.reserve(count);
     if (has_role(roles, kRoleOpacity)) opacities.reserve(count);
     if (has_role(roles, kRoleLabel)) labels.reserve(count);
+    if (has_role(roles, kRoleRadius)) radii.reserve(count);
 }
 
 void RawCloud::add(const std::array<double, kRoleCount>& row, const std::vector<int8_t>& roles) {
@@ -176,6 +178,7 @@ void RawCloud::add(const std::array<double, kRoleCount>& row, const std::vector<
     if (has_role(roles, kRoleNx)) normals.emplace_back(row[kRoleNx], row[kRoleNy], row[kRoleNz]);
     if (has_role(roles, kRoleOpacity)) opacities.push_back(static_cast<float>(row[kRoleOpacity]));
     if (has_role(roles, kRoleLabel)) labels.push_back(static_cast<float>(row[kRoleLabel]));
+    if (has_role(roles, kRoleRadius)) radii.push_back(static_cast<float>(row[kRoleRadius]));
 }
 
 size_t RawCloud::keep_only(const std::vector<uint8_t>& keep) {
@@ -192,6 +195,7 @@ size_t RawCloud::keep_only(const std::vector<uint8_t>& keep) {
     compact(normals);
     compact(opacities);
     compact(labels);
+    compact(radii);
     return before - positions.size();
 }
 
@@ -220,6 +224,8 @@ void decode_column(const ValueColumn& column, size_t count, int8_t role, size_t 
         decode_values(column, count, &raw.opacities[begin], 1);
     else if (role == kRoleLabel)
         decode_values(column, count, &raw.labels[begin], 1);
+    else if (role == kRoleRadius)
+        decode_values(column, count, &raw.radii[begin], 1);
     else if (role >= kRoleNx)
         decode_values(column, count, &raw.normals[begin][role - kRoleNx], 3);
     else if (role >= kRoleR)

@@ -17,7 +17,7 @@
 namespace treerec {
 
 // What a column or property of a file means. kRoleOpacity: of a Gaussian splat; no name alone gives it.
-// kRoleLabel: which points are leaf and which wood.
+// kRoleLabel: which points are leaf and which wood. kRoleRadius: of the wood that a point lies on.
 enum Role : int8_t {
     kRoleX,
     kRoleY,
@@ -30,6 +30,7 @@ enum Role : int8_t {
     kRoleNz,
     kRoleOpacity,
     kRoleLabel,
+    kRoleRadius,
     kRoleCount
 };
 inline constexpr int8_t kNoRole = -1;
@@ -51,13 +52,14 @@ bool has_role(const std::vector<int8_t>& roles, Role role);
 std::string describe_roles(const std::vector<int8_t>& roles);
 
 // Points as the file has them, before origin and colour range are settled. colors, normals, opacities,
-// labels: empty or one each.
+// labels, radii: empty or one each.
 struct RawCloud {
     std::vector<DVec3> positions;
     std::vector<Vec3> colors;  // in the file's own range
     std::vector<Vec3> normals;
     std::vector<float> opacities;
     std::vector<float> labels;
+    std::vector<float> radii;
     std::string label_column;  // the name of the labels' column
     ScanUnit unit;
     double spacing = 0.0;      // as PointCloud has it
@@ -73,6 +75,7 @@ struct RawCloud {
         if (!normals.empty()) normals[index] = Vec3(row[kRoleNx], row[kRoleNy], row[kRoleNz]);
         if (!opacities.empty()) opacities[index] = static_cast<float>(row[kRoleOpacity]);
         if (!labels.empty()) labels[index] = static_cast<float>(row[kRoleLabel]);
+        if (!radii.empty()) radii[index] = static_cast<float>(row[kRoleRadius]);
     }
     // Keeps the points whose keep[i] is not 0, in order. Returns how many were left out.
     size_t keep_only(const std::vector<uint8_t>& keep);

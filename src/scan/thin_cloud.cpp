@@ -37,6 +37,7 @@ void thin_cloud(PointCloud& cloud, size_t most, const Progress* progress) {
         thin.positions.push_back(cloud.positions[i]);
         if (cloud.has_colors()) thin.colors.push_back(cloud.colors[i]);
         if (cloud.has_normals()) thin.normals.push_back(cloud.normals[i]);
+        if (!cloud.radii.empty()) thin.radii.push_back(cloud.radii[i]);
     }
     cloud = std::move(thin);
 }

@@ -31,6 +31,8 @@ std::vector<Vec3> enlarged(std::vector<Vec3> points, double factor) {
 
 PointCloud enlarged(PointCloud cloud, double factor) {
     cloud.positions = enlarged(std::move(cloud.positions), factor);
+    for (float& radius : cloud.radii)
+        radius *= static_cast<float>(factor);
     cloud.frame.metres_per_unit *= factor;
     return cloud;
 }

@@ -87,9 +87,10 @@ std::string to_ply(const PointCloud& cloud, std::string_view comment, const Prog
     if (cloud.has_normals()) header += "property float nx\nproperty float ny\nproperty float nz\n";
     if (cloud.has_colors()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     if (!cloud.labels.empty()) header.append("property uchar ").append(label_name(cloud.labels)).append("\n");
+    if (!cloud.radii.empty()) header += "property float wood_radius\n";
     header += "end_header\n";
     const size_t stride = 24U + (cloud.has_normals() ? 12U : 0U) + (cloud.has_colors() ? 3U : 0U) +
-                          (cloud.labels.empty() ? 0U : 1U);
+                          (cloud.labels.empty() ? 0U : 1U) + (cloud.radii.empty() ? 0U : 4U);
     ByteWriter writer(header.size() + stride * cloud.size());
     writer.put_text(header);
     for (size_t i = 0; i < cloud.size(); i++) {
@@ -106,6 +107,8 @@ std::string to_ply(const PointCloud& cloud, std::string_view comment, const Prog
             for (const uint8_t channel : cloud.colors[i])
                 writer.put(channel);
         if (!cloud.labels.empty()) writer.put(cloud.labels.values[i]);
+        if (!cloud.radii.empty())
+            writer.put(static_cast<float>(static_cast<double>(cloud.radii[i]) / cloud.frame.metres_per_unit));
     }
     return writer.take();
 }

@@ -11,6 +11,7 @@
 #include "skeleton/flood_paper.h"
 #include "skeleton/flood_twigs.h"
 #include "skeleton/foot.h"
+#include "skeleton/known_radii.h"
 #include "skeleton/radii.h"
 #include "skeleton/root.h"
 #include "skeleton/tips.h"
@@ -138,7 +139,7 @@ const char* flood_kind_name(FloodKind kind) {
     return kFloods[static_cast<size_t>(kind)];
 }
 
-void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
+void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
                     double factor, SkeletonResult& result, StageClock& clock, Progress* listener) {
     SubProgress gridding(listener, 0.1, 0.4);
     gridding.update(0.0, "Voxels");
@@ -204,6 +205,7 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
         }
     }
     if (options.fit_radii && !solid) {
+        KnownRadii(cloud, result.spacing, &fitting).tell(made.axes);
         if (!root.lying) limit_foot(made.axes.front());
         infer_radii(made.axes, made.limbs, true);
     }
@@ -221,11 +223,11 @@ void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, con
         if (options.keep_raw) result.raw = result.tree;
     }
     mark_trunk(result.tree);
-    result.tree.set_frame(frame);
+    result.tree.set_frame(cloud.frame);
     const DVec3 base = result.tree.node(result.tree.root()).position;
     result.tree.rebase(base);
     if (options.keep_raw) {
-        result.raw.set_frame(frame);
+        result.raw.set_frame(cloud.frame);
         result.raw.rebase(base);
     }
     result.steps = std::move(flooded.steps);

@@ -18,7 +18,7 @@ inline double automatic_branch(double extent) {
 // points: thinned to result.spacing, in `frame`. factor: by how much the
 // cloud was enlarged (scan/usual_size.h), which the lengths in sentences leave out. Fills all of `result` but
 // the spacing. Throws Error for a voxel that does not suit the tree, Cancelled on request.
-void flood_skeleton(const std::vector<Vec3>& points, const ScanFrame& frame, const SkeletonOptions& options,
+void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
                     double factor, SkeletonResult& result, StageClock& clock, Progress* listener);
 
 }  // namespace treerec

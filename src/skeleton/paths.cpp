@@ -12,8 +12,11 @@ namespace treerec {
 namespace {
 
 constexpr size_t kGrain = 1024;
+constexpr float kThicker = 1.5F;  // times as thick as what bears it: more than measures differ
+constexpr float kGrows = 30.0F;   // of the radius by which wood grows thicker: what that costs
 
-// What each edge of the graph costs: its length, and more where it is a gap.
+// What each edge of the graph costs from the vertex of its row: its length, and more where it is a gap or
+// leads to thicker wood.
 std::vector<float> edge_costs(const PointGraph& graph, const LocalScale& scale, const Progress& progress) {
     std::vector<float> costs(graph.length.size());
     parallel_for(graph.size(), kGrain, [&](size_t begin, size_t end) {
@@ -21,9 +24,14 @@ std::vector<float> edge_costs(const PointGraph& graph, const LocalScale& scale, 
         for (size_t v = begin; v < end; v++)
             for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
                 const float length = graph.length[e];
-                const float reach = edge_reach(scale, static_cast<uint32_t>(v), graph.neighbour[e]);
+                float reach = edge_reach(scale, static_cast<uint32_t>(v), graph.neighbour[e]), grows = 0.0F;
+                if (!scale.radius.empty()) {
+                    const float from = scale.radius[v], to = scale.radius[graph.neighbour[e]];
+                    reach = std::max(reach, std::min(from, to));
+                    if (from > 0.0F && to > kThicker * from) grows = kGrows * (to - from);
+                }
                 const float stretch = std::max(1.0f, length / reach);
-                costs[e] = length * stretch * stretch;
+                costs[e] = length * stretch * stretch + grows;
             }
     });
     return costs;

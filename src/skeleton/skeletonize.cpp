@@ -10,6 +10,7 @@
 #include "skeleton/bark.h"
 #include "skeleton/flood_skeleton.h"
 #include "skeleton/foot.h"
+#include "skeleton/known_radii.h"
 #include "skeleton/limbs.h"
 #include "skeleton/paths.h"
 #include "skeleton/point_graph.h"
@@ -151,13 +152,18 @@ SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions&
         return result;
     }
     if (floods) {
-        flood_skeleton(points, cloud.frame, options, factor, result, clock, listener);
+        flood_skeleton(points, cloud, options, factor, result, clock, listener);
         return result;
     }
 
     SubProgress linking(listener, 0.1, 0.55);
     PointGraph graph = neighbour_graph(points, linking);
-    const LocalScale first_scale = local_scale(graph, result.spacing, &progress);
+    LocalScale first_scale = local_scale(graph, result.spacing, &progress);
+    const KnownRadii known(cloud, result.spacing, &progress);
+    if (known.any()) {
+        first_scale.radius = known.at(points, progress);
+        link_stout_wood(points, first_scale, result.spacing, graph, progress);
+    }
     clock.stop("Neighbours", graph.neighbour.size() / 2);
 
     progress.update(0.55, "Shortest paths");
@@ -227,6 +233,7 @@ SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions&
     progress.update(0.9, "Refinement");
     infer_radii(axes, limbs);
     refine_axes(axes, limbs, places_of_sample(thinned, places), thinned.measured(), progress, options.noise);
+    if (options.fit_radii) known.tell(axes);
     seat_root(limbs, axes);
     if (!root.lying) limit_foot(axes.front());
     infer_radii(axes, limbs, true);
