@@ -85,10 +85,19 @@ Image lay_out(const Sheet& sheet) {
     for (const std::string& note : sheet.notes)
         for (std::string& line : wrapped(note, kNote, inner))
             notes.push_back(std::move(line));
+    // As many figures beside each other as there is room for, and as many in every line.
+    double widest = 1.0;
+    for (const SheetFigure& figure : sheet.figures)
+        widest = std::max({widest, text_width(figure.name, kNote), text_width(figure.value, kValue)});
+    const size_t count = sheet.figures.size();
+    const size_t room = std::max<size_t>(1, static_cast<size_t>(inner / (widest + kGutter)));
+    const size_t lines = (count + room - 1) / room;
+    const size_t beside = lines > 0 ? (count + lines - 1) / lines : 1;
+    const int figures = static_cast<int>(lines) * kFigures;
     int height = top;
     for (const int row : heights)
         height += row + kCaption;
-    if (!sheet.figures.empty()) height += kFigures + kGutter;
+    if (count > 0) height += figures + kGutter;
     height += static_cast<int>(notes.size()) * kNoteLine + kMargin - (notes.empty() ? 8 : 4);
     Image image(inner + 2 * kMargin, height, 3);
     fill(image, 0, 0, image.width, image.height, kPaper);
@@ -107,15 +116,16 @@ Image lay_out(const Sheet& sheet) {
         }
         y += heights[r] + kCaption;
     }
-    if (!sheet.figures.empty()) {
-        const auto count = static_cast<double>(sheet.figures.size());
-        frame(image, kMargin, y, inner, kFigures);
-        for (size_t i = 0; i < sheet.figures.size(); i++) {
-            const double middle = kMargin + inner * (static_cast<double>(i) + 0.5) / count;
-            centred(image, middle, y + 35.0, sheet.figures[i].value, kValue, kInk);
-            centred(image, middle, y + 58.0, sheet.figures[i].name, kNote, kSoft);
+    if (count > 0) {
+        frame(image, kMargin, y, inner, figures);
+        for (size_t i = 0; i < count; i++) {
+            const double middle =
+                kMargin + inner * (static_cast<double>(i % beside) + 0.5) / static_cast<double>(beside);
+            const double line = y + static_cast<double>(i / beside) * kFigures;
+            centred(image, middle, line + 35.0, sheet.figures[i].value, kValue, kInk);
+            centred(image, middle, line + 58.0, sheet.figures[i].name, kNote, kSoft);
         }
-        y += kFigures + kGutter;
+        y += figures + kGutter;
     }
     for (const std::string& note : notes) {
         draw_text(image, kMargin, y + 8.0, note, kNote, kSoft);

@@ -8,7 +8,7 @@
 
 namespace treerec {
 
-// size: pixels from the baseline to the top of a capital. Letters, digits and . , : - + = % ( ) / _ ' < > ?;
+// size: pixels from the baseline to the top of a capital. Letters, digits and . , : ; - + = % ( ) / _ ' < > ?;
 // each other character, of UTF-8, is drawn as a question mark.
 double text_width(std::string_view text, double size);
 

@@ -26,7 +26,7 @@ Rgb height_color(double share) {
 // So wide that neighbours on a surface touch, and never less than a pixel.
 double dot_radius(const PanelView& view, const PointCloud& cloud) {
     const double apart = cloud.spacing > 0.0 ? cloud.spacing * cloud.frame.metres_per_unit : 0.0;
-    return std::clamp(0.6 * apart, 0.7 * view.metres_per_pixel(), 2.0 * view.metres_per_pixel());
+    return std::clamp(0.6 * apart, 0.7 * view.metres_per_pixel(), 5.0 * view.metres_per_pixel());
 }
 
 Image drawn_points(const PanelView& view, const PointCloud& cloud, const std::vector<Rgb>& colors,

@@ -18,6 +18,7 @@ constexpr size_t kAsked = 2000;      // nodes that tell how much a photo shows o
 constexpr double kLeastShown = 0.1;  // of the tree
 constexpr double kAlike = 0.02;      // shares of the tree that are no different
 constexpr double kMargin = 0.05;     // of the tree's size in the photo, left free around it
+constexpr double kLeastWidth = 0.6;  // of what is shown, to its height
 constexpr double kLeastSide = 50.0, kMostSide = 130.0;  // degrees
 constexpr double kPale = 0.35, kTint = 0.72;
 constexpr Rgb kBoth = {38, 140, 72}, kMissing = {216, 60, 36}, kTooMuch = {36, 96, 214},
@@ -42,19 +43,27 @@ Shown look(const SheetSubject& subject, const PhotoModel& model, size_t i, const
     DVec2 low(size), high(0.0);
     size_t inside = 0;
     for (NodeId id : nodes) {
-        const auto at = shown.view.project(subject.tree.node(id).position);
-        if (!at || !(at->x >= 0.0 && at->y >= 0.0 && at->x < size.x && at->y < size.y)) continue;
-        inside++;
-        low = glm::min(low, *at);
-        high = glm::max(high, *at);
+        const Node& node = subject.tree.node(id);
+        const auto at = shown.view.project(node.position);
+        if (!at) continue;
+        const DVec2 radius(shown.view.focal * node.radius /
+                           std::max(glm::distance(node.position, shown.view.centre), 1e-6));
+        // Wood whose sides are out of the picture is not shown.
+        const bool whole = at->x >= radius.x && at->x < size.x - radius.x && at->y >= 0.0 && at->y < size.y;
+        inside += whole;
+        if (!whole && !(at->x >= 0.0 && at->y >= 0.0 && at->x < size.x && at->y < size.y)) continue;
+        low = glm::min(low, *at - radius);
+        high = glm::max(high, *at + radius);
     }
-    if (inside == 0) return shown;
+    if (!(high.x > low.x && high.y > low.y)) return shown;
     shown.share = static_cast<double>(inside) / static_cast<double>(nodes.size());
     const DVec2 reach = high - low;
     shown.extent = std::max(reach.x, reach.y);
+    // A narrow stem is seen with something beside it.
+    const double narrow = std::max(0.0, kLeastWidth * reach.y - reach.x);
     const DVec2 margin(kMargin * shown.extent + 2.0);
-    shown.low = glm::max(low - margin, DVec2(0.0));
-    shown.high = glm::min(high + margin, size);
+    shown.low = glm::max(low - margin - DVec2(0.5 * narrow, 0.0), DVec2(0.0));
+    shown.high = glm::min(high + margin + DVec2(0.5 * narrow, 0.0), size);
     shown.direction = (shown.view.centre - middle) * DVec3(1.0, 0.0, 1.0);
     return shown;
 }

@@ -1,7 +1,7 @@
 @tool
 extends RefCounted
-## The photos that the edited tree was made of, as judges of it: by masks of its outline, or by their
-## sky. They follow what measures the tree against its scan, on threads.
+## The photos that the edited tree was made of, as judges of it: by masks of its outline, or by
+## their sky. They follow what measures the tree against its scan, on threads.
 
 ## Figures came, went, or are out of date.
 signal changed

@@ -60,7 +60,7 @@ func _build() -> void:
 	)
 	_add(
 		&"skeleton",
-		"Points in the wood (R_s)",
+		"Wood R_s",
 		(
 			"The share of the scan's points that lie in the wood, or at most 2 cm beside it: how well the"
 			+ " branches follow the scan. 0.9 or more is good."
@@ -95,16 +95,16 @@ func _build_photos() -> void:
 	body.add_child(_photos)
 	_add(
 		&"quality",
-		"Fidelity to the photos (Q)",
+		"Fidelity Q",
 		(
-			"How true the tree is to its photos as a whole, 0 to 1: the product of the three figures I, R_3d"
-			+ " and R_s. 0.75 or more is good, less than 0.5 poor."
+			"How true the tree is to its photos as a whole, 0 to 1: the product of the three figures I,"
+			+ " R_3d and R_s. 0.75 or more is good, less than 0.5 poor."
 		),
 		_photos
 	)
 	_add(
 		&"information",
-		"Enough photos (I)",
+		"Photos I",
 		(
 			"How much so many photos can tell of a tree: 0.83 for 8 of them, 0.99 for 20. Your edits don't"
 			+ " change it; more photos do."
@@ -113,7 +113,7 @@ func _build_photos() -> void:
 	)
 	_add(
 		&"reconstruction",
-		"Points on the tree (R_3d)",
+		"Points R_3d",
 		(
 			"The share of the scan's points that fall on the tree in the photos, on average over all photos."
 			+ " 0.9 or more is good; less where points are beside the tree, or where photos show only a part"
@@ -123,28 +123,28 @@ func _build_photos() -> void:
 	)
 	_add(
 		&"precision",
-		"Outline: right",
+		"Precision",
 		(
-			"Precision: of the tree as it is drawn, with its leaves if they are shown, the share that covers"
+			"Of the tree's outline as it is drawn, with its leaves if they are shown, the share that covers"
 			+ " the tree in the photos. Less means wood or leaves that the photos don't have."
 		),
 		_photos
 	)
 	_add(
 		&"recall",
-		"Outline: found",
+		"Recall",
 		(
-			"Recall: of the tree in the photos, the share that the drawn tree covers. Less means that wood or"
-			+ " leaves are missing. Only masks of the photos tell it."
+			"Of the tree's outline in the photos, the share that the drawn tree covers. Less means that wood"
+			+ " or leaves are missing. Only masks of the photos tell it."
 		),
 		_photos
 	)
 	_add(
 		&"iou",
-		"Outline: overlap (IoU)",
+		"Overlap (IoU)",
 		(
-			"What the drawn tree and the tree in the photos both cover, of what either of them covers. 1 is a"
-			+ " perfect outline. Only masks of the photos tell it."
+			"What the drawn tree and the tree in the photos both cover, of what either of them covers. 1 is"
+			+ " a perfect outline. Only masks of the photos tell it."
 		),
 		_photos
 	)
