@@ -156,7 +156,8 @@ func test_the_dock_shows_q_before_and_after_an_edit() -> void:
 	var found: Dictionary = _session.photos.cloud
 	var q: float = found["information"] * found["reconstruction"] * measured["skeleton"]
 	check_equal(first[&"quality"], "%.3f" % q, "Q")
-	check(shown._before[&"quality"].text in ["good", "fair", "poor"], "There is no verdict.")
+	var title: Label = shown._lines[&"quality"].get_child(0) as Label
+	check(title.text in ["Q · good", "Q · fair", "Q · poor"], "The verdict is " + title.text)
 	check("masks of 6 photos" in shown.judged.text, shown.judged.text)
 	check(not shown.masks.visible, "It asks for masks that it has.")
 	_session.run("Prune", "prune_order order=1")
@@ -168,7 +169,8 @@ func test_the_dock_shows_q_before_and_after_an_edit() -> void:
 	check(_text(&"quality").begins_with("▼"), "Q is " + _text(&"quality"))
 	check(_text(&"recall").begins_with("▼"), "Recall is " + _text(&"recall"))
 	check_equal(shown._before[&"recall"].text, first[&"recall"], "recall before")
-	check(shown._before[&"quality"].text.ends_with(first[&"quality"]), "Q before the edit is gone.")
+	check_equal(shown._before[&"quality"].text, first[&"quality"], "Q before")
+	check_equal(title.text, "Q · poor", "the verdict of a tree without branches")
 	check_equal(_text(&"information"), first[&"information"], "I")
 	check_equal(_text(&"reconstruction"), first[&"reconstruction"], "R_3d")
 	_undo.undo()

@@ -223,11 +223,12 @@ func _refresh_photos(measured: Dictionary, measured_before: Dictionary) -> void:
 	masks.visible = sky or not photos.sentence.is_empty()
 
 
-# A word beside Q: the paper's own trees have 0.67 to 0.88.
+# A word with Q: the paper's own trees have 0.67 to 0.88.
 func _judge(quality: float) -> void:
-	var words: Label = _before[&"quality"]
+	var words: Label = _lines[&"quality"].get_child(0) as Label
 	words.remove_theme_color_override(&"font_color")
 	if quality < 0.0:
+		words.text = "Fidelity Q"
 		return
 	var color: StringName = &"success_color"
 	var verdict: String = tr("good")
@@ -237,7 +238,7 @@ func _judge(quality: float) -> void:
 	elif quality < _GOOD:
 		color = &"warning_color"
 		verdict = tr("fair")
-	words.text = verdict if words.text.is_empty() else "%s  %s" % [verdict, words.text]
+	words.text = "Q · " + verdict
 	if has_theme_color(color, &"Editor"):
 		words.add_theme_color_override(&"font_color", get_theme_color(color, &"Editor"))
 
