@@ -12,10 +12,16 @@
 
 namespace treerec {
 
-// Throws UsageError for a name that does not end in .png.
+// Throws UsageError for a name that does not end in .png, or where no file can be written: to be asked before
+// the long work.
 inline void require_png(const std::string& path) {
     if (extension_of(path) != "png")
         throw UsageError("A sheet is a PNG: '" + path + "' does not end in .png.");
+    try {
+        require_writable(path);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
 }
 
 inline void write_png(const std::string& path, const Image& picture) {

@@ -186,7 +186,11 @@ std::string fidelity_tables(const Page& page) {
         " of the points lie within the balls and frusta of the skeleton or at most " +
         fixed(100.0 * f.tolerance, 0) + " cm outside of them (R<sub>s</sub>; " + percent(f.skeleton_strict) +
         " without that tolerance). Explained is a point so near to the bark; covered is bark with such "
-        "a point on it, by pieces of 5 cm: a sparse scan, or one from one side, covers less.</p>"
+        "a point on it, by pieces of 5 cm: a sparse scan, or one from one side, covers less.";
+    if (!page.details.photos && !page.details.outline)
+        html += " The scan was made without photos, so that there is no Q: I and R<sub>3d</sub> are theirs.";
+    html +=
+        "</p>"
         "<div class=\"scroll\"><table><tr>";
     html += cells({"", "length, m", "points", "explained", "median, mm", "95 % within, mm", "covered"}, "th");
     html += "</tr>";

@@ -220,6 +220,7 @@ TEST_F(Cli, AScanGivesItsSheets) {
     EXPECT_EQ(run("reconstruct grown/scan.ply --sheet grown/stages.jpg").code, 2);
     EXPECT_EQ(run("score grown/tree.txt grown/scan.ply --sheet grown/stages.jpg").code, 2);
     EXPECT_EQ(run("reconstruct grown/scan.ply --sheet nowhere/stages.png").code, 2);
+    EXPECT_EQ(run("score grown/tree.txt grown/scan.ply --sheet nowhere/stages.png").code, 2);
     EXPECT_EQ(run("score grown/tree.txt grown/scan.ply --pictures grown").code, 2);
 }
 

@@ -40,10 +40,21 @@ func _build() -> void:
 	tooltip_text = "How true the tree is to its scan, before and after your edits."
 	follow = CheckBox.new()
 	follow.text = "Compare with the scan"
-	follow.tooltip_text = "Reads the scan and measures the tree against it, now and after every edit."
+	follow.tooltip_text = (
+		"Reads the scan, and the photos if the tree was made of some, and measures the tree against them,"
+		+ " now and after every edit."
+	)
 	follow.toggled.connect(_on_follow_toggled)
 	body.add_child(follow)
 	_build_photos()
+	_add(
+		&"skeleton",
+		"Wood R_s",
+		(
+			"The share of the scan's points that lie in the wood, or at most 2 cm beside it: how well the"
+			+ " branches follow the scan. 0.9 or more is good."
+		)
+	)
 	_add(
 		&"explained",
 		"Explained",
@@ -57,14 +68,6 @@ func _build() -> void:
 		&"coverage",
 		"Bark seen",
 		"The share of the bark that the scan's points lie on. The rest was not seen, or is guessed."
-	)
-	_add(
-		&"skeleton",
-		"Wood R_s",
-		(
-			"The share of the scan's points that lie in the wood, or at most 2 cm beside it: how well the"
-			+ " branches follow the scan. 0.9 or more is good."
-		)
 	)
 	heat = CheckBox.new()
 	heat.text = "Heat map"
@@ -91,7 +94,6 @@ func _build() -> void:
 
 
 func _build_photos() -> void:
-	_photos.add_theme_constant_override(&"separation", 0)
 	body.add_child(_photos)
 	_add(
 		&"quality",
