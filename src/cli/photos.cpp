@@ -221,12 +221,12 @@ void run_photos(const std::vector<std::string>& words) {
     details.triangles = exporter.triangles();
     details.leaf_count = exporter.leaves();
     const auto target = [&](const char* name) { return outs.emplace_back(utf8_of(path_of(out) / name)); };
+    details.title = "Tree of " + std::to_string(result.photos.registered) + " photos";
     SubProgress showing(&progress, 0.96, 0.98);
     ShownFidelity shown = show_fidelity(
         tree,
-        {"Tree of " + std::to_string(result.photos.registered) + " photos", exports.leaves, exports.textures,
-         exports.seed, OutlineFolders{result.photos.model, masks, result.photos_folder},
-         options.cloud.hold_out},
+        {details.title, exports.leaves, exports.textures, exports.seed,
+         OutlineFolders{result.photos.model, masks, result.photos_folder}, options.cloud.hold_out},
         &showing);
     // Nobody has asked the sky.
     if (!shown.outline && !masks.empty())

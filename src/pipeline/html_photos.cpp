@@ -37,7 +37,7 @@ std::string photo_table(const OutlineJudgement& outline) {
 }  // namespace
 
 std::string photos_section(const ReportDetails& details, const Fidelity& fidelity) {
-    if (!details.photos && !details.outline) return "";
+    if (!details.outline && details.outline_lacks.empty()) return "";
     std::string html = "<section><h2>Fidelity to the photos</h2>";
     if (!details.outline)
         return html + "<p>There is no Q: the photos do not judge this tree. " + words(details.outline_lacks) +

@@ -8,8 +8,9 @@
 
 namespace treerec {
 
-// Q and what it is made of, the photos that judge, and the sheet of them; for a tree of photos that nothing
-// judges, why; empty for a tree that was made of none. fidelity: of the tree and the cloud's wood.
+// Q and what it is made of, the photos that judge, and the sheet of them; where they
+// can't judge, why; empty where there are none, or nobody asked them. fidelity: of the tree and the cloud's
+// wood.
 std::string photos_section(const ReportDetails& details, const Fidelity& fidelity);
 
 }  // namespace treerec

@@ -335,13 +335,17 @@ std::string made_how(const Page& page) {
 std::string head(const Page& page) {
     const Reconstruction& r = page.result;
     const Measurements& m = r.measured;
-    const std::string name = words(stem_of(page.details.scan_path));
+    const std::string name =
+        words(page.details.title.empty() ? stem_of(page.details.scan_path) : page.details.title);
+    const std::string from = page.details.photos
+                                 ? std::to_string(page.details.photos->registered) + " photos, by way of " +
+                                       std::to_string(r.points_read) + " points"
+                                 : std::to_string(r.points_read) + " scanned points";
     std::string html =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
         "content=\"width=device-width,initial-scale=1\"><title>" +
         name + " - reconstructed tree</title><style>" + page_style() + "</style></head><body><main><h1>" +
-        name + "</h1><p class=\"soft\">A tree reconstructed from " + std::to_string(r.points_read) +
-        " scanned points</p><div class=\"tiles\">";
+        name + "</h1><p class=\"soft\">A tree reconstructed from " + from + "</p><div class=\"tiles\">";
     html += tile(fixed(m.height, 2) + " m", "height");
     html += m.dbh > 0.0 ? tile(fixed(100.0 * m.dbh, 1) + " cm", "diameter at breast height")
                         : tile("-", "diameter at breast height");

@@ -258,7 +258,9 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     if (details.photos) {
         const double r_s = json["fidelity"]["R_s"].get<double>();
         json["photos"]["outline"] = details.outline ? outline_json(*details.outline, r_s) : Json(nullptr);
-        if (!details.outline) json["photos"]["outline_lacks"] = details.outline_lacks;
+        if (!details.outline)
+            json["photos"]["outline_lacks"] =
+                details.outline_lacks.empty() ? Json(nullptr) : Json(details.outline_lacks);
     }
     if (details.bark) json["bark"] = bark_json(*details.bark);
     return dump(json);

@@ -245,6 +245,7 @@ TEST(PhotosSection, SaysWhyThereIsNoQ) {
     ReportDetails details;
     EXPECT_EQ(photos_section(details, {}), "");
     details.photos.emplace();
+    EXPECT_EQ(photos_section(details, {}), "");
     details.outline_lacks = "No sky is sure.";
     EXPECT_TRUE(has(photos_section(details, {}), "There is no Q"));
     EXPECT_TRUE(has(photos_section(details, {}), "No sky is sure."));

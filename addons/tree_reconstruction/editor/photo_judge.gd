@@ -72,7 +72,7 @@ func set_tree(tree: TreeReconstruction) -> void:
 
 ## The tree was edited.
 func note_edit() -> void:
-	if not outline.is_empty() and not stale:
+	if (not outline.is_empty() or _measuring != null) and not stale:
 		stale = true
 		changed.emit()
 
