@@ -8,8 +8,8 @@
 
 namespace treerec {
 
-// size: pixels from the baseline to the top of a capital. Letters, digits and . , : ; - + = % ( ) / _ ' < > ?;
-// each other character, of UTF-8, is drawn as a question mark.
+// size: pixels from the baseline to the top of a capital. Letters, digits and . , : ; - + = % ( ) / _ ' < >
+// ?; each other character, of UTF-8, is drawn as a question mark.
 double text_width(std::string_view text, double size);
 
 // Onto a picture of three channels; what lies outside of it is left out. x: of the left end, y: of the
