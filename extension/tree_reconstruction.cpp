@@ -38,7 +38,7 @@ int64_t TreeReconstruction::get_bark_revision() const {
     const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
     std::vector<bool> followed = guarded(std::vector<bool>(), [&] {
         std::vector<bool> kinds;
-        for (const treerec::LeafKind& kind : _leaf_kinds(*tree)) {
+        for (const treerec::LeafKind& kind : make_leaf_kinds(*tree)) {
             kinds.push_back(treerec::follows(kind.rules, *foliage));
         }
         return kinds;
@@ -279,7 +279,7 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) con
     return guarded(Array(), [&] {
         const std::shared_ptr<const Tree> tree = get_tree();
         return to_surface_arrays(treerec::build_level_bark(
-            treerec::leafy_tree(*tree, _leaf_kinds(*tree), *get_leaf_density()), p_lod, p_whole_repeats));
+            treerec::leafy_tree(*tree, make_leaf_kinds(*tree), *get_leaf_density()), p_lod, p_whole_repeats));
     });
 }
 

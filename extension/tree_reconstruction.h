@@ -51,6 +51,8 @@ class TreeReconstruction : public godot::Resource {
     };
     LeafSetting get_leaf_setting() const;
     void set_leaf_setting(const LeafSetting& p_setting);
+    // With the season in them. Throws treerec::Error.
+    std::vector<treerec::LeafKind> make_leaf_kinds(const treerec::Tree& p_tree) const;
     void set_leaf_density(treerec::Foliage p_foliage);
     std::shared_ptr<const treerec::Foliage> get_leaf_density() const;
 
@@ -207,8 +209,6 @@ class TreeReconstruction : public godot::Resource {
     std::vector<treerec::LeafPlacement> _place_leaves(int p_lod) const;
     std::vector<std::vector<treerec::LeafPlacement>> _place_foliage(
         const treerec::Tree& p_tree, const std::vector<treerec::LeafKind>& p_kinds, int p_lod) const;
-    // With the season in them. Throw treerec::Error.
-    std::vector<treerec::LeafKind> _leaf_kinds(const treerec::Tree& p_tree) const;
     // Adds what is wanted of a kind's leaves and its card to what is told of the kind.
     using AddLeaves = void (*)(godot::Dictionary& r_part, const std::vector<treerec::LeafPlacement>& p_leaves,
                                treerec::Mesh p_card);

@@ -185,5 +185,5 @@ Array TreeReconstruction::build_joined_leaf_arrays(int p_lod) const {
 
 std::vector<treerec::LeafPlacement> TreeReconstruction::_place_leaves(int p_lod) const {
     const std::shared_ptr<const treerec::Tree> tree = get_tree();
-    return _place_foliage(*tree, _leaf_kinds(*tree), p_lod).front();
+    return _place_foliage(*tree, make_leaf_kinds(*tree), p_lod).front();
 }

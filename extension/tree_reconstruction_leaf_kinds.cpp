@@ -33,7 +33,7 @@ static bool _is_evergreen(const LeafRule& p_own, const treerec::LeafKind& p_kind
     return p_kind.look.empty() ? p_own.is_evergreen() : LeafRule::is_look_evergreen(to_godot(p_kind.look));
 }
 
-std::vector<treerec::LeafKind> TreeReconstruction::_leaf_kinds(const treerec::Tree& p_tree) const {
+std::vector<treerec::LeafKind> TreeReconstruction::make_leaf_kinds(const treerec::Tree& p_tree) const {
     const Ref<LeafRule> rule = get_leaf_rule();
     if (rule.is_null()) {
         return treerec::leaf_kinds(p_tree, get_leaf_rules());
@@ -79,7 +79,7 @@ Dictionary TreeReconstruction::_describe_kind(const treerec::LeafKind& p_kind, d
 TypedArray<Dictionary> TreeReconstruction::get_leaf_kinds(double p_season_shift) const {
     return guarded(TypedArray<Dictionary>(), [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
-        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         std::vector<int64_t> nodes(kinds.size(), 0);
         for (treerec::NodeId id = 0; id < tree->id_end(); id++) {
             if (tree->contains(id)) {
@@ -143,7 +143,7 @@ TypedArray<Dictionary> TreeReconstruction::_build_foliage(int p_lod, AddLeaves p
     ERR_FAIL_COND_V_MSG(p_lod < 0, none, vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(none, [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
-        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         const auto placed = _place_foliage(*tree, kinds, p_lod);
         TypedArray<Dictionary> parts;
         for (size_t i = 0; i < kinds.size(); i++) {

@@ -24,7 +24,7 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
     return guarded(none, [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
-        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         const treerec::LevelBuilder builder(*tree, kinds, uint64_t(get_seed()), *foliage);
         const treerec::Bounds& box = builder.box();
         TypedArray<Dictionary> levels;

@@ -113,7 +113,7 @@ PackedByteArray TreeReconstruction::draw(int p_size) const {
     return guarded(PackedByteArray(), [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
-        const std::vector<treerec::LeafKind> kinds = _leaf_kinds(*tree);
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         std::vector<std::vector<treerec::LeafPlacement>> placed = _place_foliage(*tree, kinds, 0);
         std::vector<treerec::PicturedLeaves> pictured;
         for (size_t i = 0; i < kinds.size(); i++) {

@@ -8,7 +8,6 @@
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "pipeline/export.h"
-#include "pipeline/html_report.h"
 #include "pipeline/photos.h"
 #include "pipeline/report.h"
 #include "reconstruct_options.h"
@@ -226,32 +225,6 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
     }
 }
 
-Error TreeReconstructor::save_html_report(const String& p_path) {
-    const Job job(this);
-    ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
-    try {
-        Listener listener(this);
-        listener.check();
-        std::shared_ptr<const treerec::Reconstruction> result;
-        std::shared_ptr<const treerec::ReportDetails> details;
-        {
-            const std::lock_guard lock(mutex_);
-            result = result_;
-            details = details_;
-        }
-        if (result->tree.empty()) {
-            throw treerec::Error("There is nothing to report on; call reconstruct_file() first.");
-        }
-        const std::string path = file_path(p_path);
-        treerec::require_writable(path);
-        treerec::write_file(path, treerec::report_html(*result, *details, &listener), &listener);
-        return OK;
-    } catch (const std::exception& error) {
-        _fail(error.what());
-        return FAILED;
-    }
-}
-
 TypedArray<Dictionary> TreeReconstructor::get_option_list() {
     return list_reconstruct_options();
 }
@@ -317,7 +290,8 @@ void TreeReconstructor::_bind_methods() {
                          DEFVAL(int(LSystem::DIALECT_TOLD)));
     ClassDB::bind_method(D_METHOD("export_file", "tree", "path", "levels", "pictures_beside"),
                          &TreeReconstructor::export_file, DEFVAL(1), DEFVAL(false));
-    ClassDB::bind_method(D_METHOD("save_html_report", "path"), &TreeReconstructor::save_html_report);
+    ClassDB::bind_method(D_METHOD("save_html_report", "path", "folders"),
+                         &TreeReconstructor::save_html_report, DEFVAL(Dictionary()));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_photo_option_list"),
@@ -329,6 +303,10 @@ void TreeReconstructor::_bind_methods() {
                          DEFVAL(""));
     ClassDB::bind_method(D_METHOD("load_photo", "view", "folder", "longest"), &TreeReconstructor::load_photo,
                          DEFVAL(2560));
+    ClassDB::bind_method(D_METHOD("load_outlines", "tree", "points", "folders"),
+                         &TreeReconstructor::load_outlines, DEFVAL(Dictionary()));
+    ClassDB::bind_method(D_METHOD("measure_outline", "tree", "leaves"), &TreeReconstructor::measure_outline,
+                         DEFVAL(true));
     ClassDB::bind_method(D_METHOD("cancel"), &TreeReconstructor::cancel);
     ClassDB::bind_method(D_METHOD("get_progress"), &TreeReconstructor::get_progress);
     ClassDB::bind_method(D_METHOD("get_stage"), &TreeReconstructor::get_stage);

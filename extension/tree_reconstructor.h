@@ -12,14 +12,16 @@
 #include <mutex>
 #include <string>
 
+#include "fidelity/photo_judge.h"
 #include "l_system.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
 
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
-// save_cloud(), load_photo_views(), load_photo(), import_skeleton(), export_file() and save_html_report() may
-// run on any thread, one at a time; the other methods may be called from any other thread meanwhile.
+// save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
+// export_file() and save_html_report() may run on any thread, one at a time; the other methods may be called
+// from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -38,11 +40,16 @@ class TreeReconstructor : public godot::RefCounted {
                                                    LSystem::Dialect p_dialect);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
                              int p_levels = 1, bool p_pictures_beside = false);
-    godot::Error save_html_report(const godot::String& p_path);
+    godot::Error save_html_report(const godot::String& p_path,
+                                  const godot::Dictionary& p_folders = godot::Dictionary());
     godot::TypedArray<godot::Dictionary> load_photo_views(const godot::Ref<TreeReconstruction>& p_tree,
                                                           const godot::String& p_model = "");
     godot::Dictionary load_photo(const godot::Dictionary& p_view, const godot::String& p_folder,
                                  int64_t p_longest = 2560);
+    godot::Dictionary load_outlines(const godot::Ref<TreeReconstruction>& p_tree,
+                                    const godot::PackedVector3Array& p_points,
+                                    const godot::Dictionary& p_folders);
+    godot::Dictionary measure_outline(const godot::Ref<TreeReconstruction>& p_tree, bool p_leaves = true);
     static godot::TypedArray<godot::Dictionary> get_option_list();
     static godot::TypedArray<godot::Dictionary> get_photo_option_list();
 
@@ -94,6 +101,8 @@ class TreeReconstructor : public godot::RefCounted {
     std::shared_ptr<const treerec::ReportDetails> details_ = std::make_shared<treerec::ReportDetails>();
     // Of the last reconstruct_file() or load_cloud(); never null.
     std::shared_ptr<const treerec::PointCloud> cloud_ = std::make_shared<treerec::PointCloud>();
+    // Of the last load_outlines(); may be null.
+    std::shared_ptr<const treerec::PhotoJudge> judge_;
     std::vector<treerec::FloodStep> steps_;
     double voxel_ = 0.0;
     int64_t last_signal_ms_ = 0;

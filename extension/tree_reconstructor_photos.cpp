@@ -11,38 +11,13 @@
 #include "convert.h"
 #include "error.h"
 #include "file_bytes.h"
-#include "photos/cameras_tell.h"
 #include "photos/pinhole_view.h"
 #include "photos/shown_photo.h"
 #include "tree_reconstructor.h"
 #include "tree_reconstructor_job.h"
+#include "tree_reconstructor_photos.h"
 
 using namespace godot;
-
-// A folder of COLMAP's model: the one that is named, one in it, or one beside the tree's scan.
-static std::string find_model(const Ref<TreeReconstruction>& p_tree, const String& p_model) {
-    if (!p_model.is_empty()) {
-        const std::string named = file_path(p_model);
-        const std::vector<std::string> found =
-            treerec::photo_models_beside(treerec::utf8_of(treerec::path_of(named) / "cloud.ply"));
-        return found.empty() ? named : found.front();
-    }
-    const Dictionary provenance = p_tree->get_provenance();
-    const String source = provenance.get("source", "");
-    if (source.is_empty()) {
-        throw treerec::Error(
-            "This tree does not say what it was made of, so it is not known from where it was photographed. "
-            "Choose the folder of its COLMAP model.");
-    }
-    const std::string scan = file_path(source);
-    const std::vector<std::string> found = treerec::photo_models_beside(scan);
-    if (found.empty()) {
-        throw treerec::Error("Beside '" + scan +
-                             "' there is no COLMAP model that would tell from where the tree was "
-                             "photographed. Choose the folder of the model.");
-    }
-    return found.front();
-}
 
 static Dictionary to_dictionary(const treerec::Photo& p_photo, const treerec::Camera& p_camera,
                                 const treerec::PinholeView& p_view) {
@@ -84,7 +59,7 @@ TypedArray<Dictionary> TreeReconstructor::load_photo_views(const Ref<TreeReconst
         listener.check();
         listener.update(0.0, "Cameras");
         const treerec::ScanFrame frame = p_tree->get_tree()->frame();
-        const std::string folder = find_model(p_tree, p_model);
+        const std::string folder = find_photo_model(**p_tree, p_model);
         const treerec::PhotoModel model = treerec::read_photo_model(folder, &listener);
         if (model.photos.empty()) {
             throw treerec::Error("The COLMAP model in '" + folder + "' has no photos.");

@@ -41,7 +41,9 @@ func _enter_tree() -> void:
 	_game_export = exporter.new()
 	add_export_plugin(_game_export)
 	_session = _load("session.gd").new(get_undo_redo())
-	for speaker: RefCounted in [_session, _session.local_trees, _session.consent, _session.scan]:
+	for speaker: RefCounted in [
+		_session, _session.local_trees, _session.consent, _session.scan, _session.photos
+	]:
 		speaker.set_translation_domain(DOMAIN)
 	_session.view.restore(EditorInterface.get_editor_settings())
 	_session.said.connect(_on_said)

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/png_file.h"
 #include "cli/print_outline.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
-#include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "photos/heic_photos.h"
@@ -18,6 +18,7 @@
 #include "pipeline/html_report.h"
 #include "pipeline/photos.h"
 #include "pipeline/report.h"
+#include "pipeline/show_fidelity.h"
 
 namespace treerec {
 
@@ -53,7 +54,9 @@ constexpr const char* kShared[] = {"--cloud",
 
 std::vector<Option> all_options() {
     std::vector<Option> options = {
-        {"-o", "OUT", "the folder to write to: tree.glb tree.txt report.json cloud.ply photos.log"},
+        {"-o", "OUT",
+         "the folder to write to: tree.glb tree.txt report.json report.html compare.png stages.png\n"
+         "fidelity.png cloud.ply photos.log"},
         {"--order", "ORDER",
          "which photos are compared: exhaustive (all), sequence (neighbours by name, the last with\n"
          "the first) or auto, the default: exhaustive for up to 80"},
@@ -66,7 +69,7 @@ std::vector<Option> all_options() {
          "every N-th photo, by name, places its camera and nothing else, so that it can judge the tree"},
         {"--masks", "FOLDER",
          "white-on-black pictures of the tree's outline, PHOTO.png, of the photos that are held out or\n"
-         "else of all: how well the tree has it is told"},
+         "else of all: how well the tree has it is told (without: the photos' sky tells its precision)"},
         {"--bark", "FROM",
          "photos takes the bark's pictures out of the photos, into OUT/bark, where these are good enough;\n"
          "drawn takes those of --leaves (default photos)"},
@@ -95,12 +98,10 @@ void print_photos(const PhotosResult& result) {
 }
 
 // The tree over some of its photos. Whether there is one: it is no reason for a tree to fail.
-bool write_sheet(PhotosResult& result, const std::string& path, Progress& progress) {
+bool write_compared(PhotosResult& result, const std::string& path, Progress& progress) {
     try {
         const PhotoModel model = read_photo_model(result.photos.model, &progress);
-        const std::vector<uint8_t> bytes =
-            encode_png(compare_sheet(result.tree.tree, model, result.photos_folder, {}, &progress));
-        write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        write_png(path, compare_sheet(result.tree.tree, model, result.photos_folder, {}, &progress));
         return true;
     } catch (const Cancelled&) {
         throw;
@@ -166,6 +167,7 @@ void run_photos(const std::vector<std::string>& words) {
     options.bark = bark == "photos";
     options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
     options.reconstruct = reconstruct_options_from(arguments);
+    options.reconstruct.skeleton.keep_raw = true;
     options.reconstruct.score_points = ReconstructOptions{}.score_points;
     ReportDetails details{
         "", options.reconstruct, arguments.text("--leaves", "auto"), options.reconstruct.skeleton.seed, 0, 0};
@@ -218,22 +220,28 @@ void run_photos(const std::vector<std::string>& words) {
     }
     details.triangles = exporter.triangles();
     details.leaf_count = exporter.leaves();
-    if (!masks.empty()) {
-        progress.update(0.96, "Outline");
-        try {
-            details.outline = judge_outline(tree, result.photos.model, masks, options.cloud.hold_out,
-                                            exports.leaves, exports.textures, exports.seed, &progress);
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const Error& error) {
-            tree.warnings.push_back("The tree's outline was not judged. " + std::string(error.what()));
-        }
-    }
-    outs.push_back(utf8_of(path_of(out) / "report.json"));
-    write_file(outs.back(), report_json(tree, details));
-    progress.update(0.98, "Comparing");
-    if (write_sheet(result, utf8_of(path_of(out) / "compare.png"), progress))
-        outs.push_back(utf8_of(path_of(out) / "compare.png"));
+    const auto target = [&](const char* name) { return outs.emplace_back(utf8_of(path_of(out) / name)); };
+    details.title = "Tree of " + std::to_string(result.photos.registered) + " photos";
+    SubProgress showing(&progress, 0.96, 0.98);
+    ShownFidelity shown = show_fidelity(
+        tree,
+        {details.title, exports.leaves, exports.textures, exports.seed,
+         OutlineFolders{result.photos.model, masks, result.photos_folder}, options.cloud.hold_out},
+        &showing);
+    // Nobody has asked the sky.
+    if (!shown.outline && !masks.empty())
+        tree.warnings.push_back("The tree's outline was not judged. " + shown.lacks);
+    details.outline = shown.outline;
+    details.outline_lacks = shown.lacks;
+    details.outline_sheet = shown.fidelity;
+    write_file(target("report.json"), report_json(tree, details));
+    write_file(target("report.html"), report_html(tree, details, &progress));
+    write_png(target("stages.png"), *shown.stages);
+    write_png(target("fidelity.png"), *shown.fidelity);
+    progress.update(0.99, "Comparing");
+    if (const std::string path = utf8_of(path_of(out) / "compare.png");
+        write_compared(result, path, progress))
+        outs.push_back(path);
     if (result.bark && result.bark->textures)
         for (const char* name : {"albedo.png", "normal.png", "roughness.png"})
             outs.push_back(utf8_of(path_of(out) / "bark" / name));
@@ -243,7 +251,10 @@ void run_photos(const std::vector<std::string>& words) {
         std::fprintf(stderr, "Warning: %s\n", warning.c_str());
     if (quiet) return;
     print_photos(result);
-    if (details.outline) print_outline(details.outline->shapes);
+    if (details.outline) {
+        print_fidelity(details.outline->cloud, shown.skeleton, details.outline->source);
+        print_outline(details.outline->shapes, details.outline->source);
+    }
     print_summary(tree, outs,
                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "cli/png_file.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
@@ -18,6 +19,7 @@
 #include "pipeline/html_report.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
+#include "pipeline/show_fidelity.h"
 
 namespace treerec {
 
@@ -58,6 +60,9 @@ const Command& reconstruct_command() {
           "the cloud as it was cleaned, to lay over the scan: .ply, or .xyz .txt .asc .las (the\n"
           "scan's own coordinates; a column leaf where leaves were told from wood)"},
          {"--html", "FILE", "a page to send to somebody: pictures, fidelity, tables (also -o FILE.html)"},
+         {"--sheet", "FILE.png",
+          "a picture to show: the cloud, the skeleton before and after pruning, the tree, and it from its\n"
+          "four sides"},
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
@@ -106,12 +111,14 @@ void run_reconstruct(const std::vector<std::string>& words) {
                          "' is too much: one scan at a time, and each file to write behind a -o of its own.");
     const std::string scan = positional[0];
     std::vector<std::string> outs = arguments.all("-o");
-    const bool told = arguments.has("--report") || arguments.has("--html") || arguments.has("--cloud");
+    const bool told = arguments.has("--report") || arguments.has("--html") || arguments.has("--cloud") ||
+                      arguments.has("--sheet");
     if (outs.empty() && !told) throw UsageError("Where to? Name at least one file to write with -o.");
     std::vector<std::string> pages = arguments.all("--html");
     std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
     std::erase_if(outs, is_page);
-    const ReconstructOptions options = reconstruct_options_from(arguments);
+    ReconstructOptions options = reconstruct_options_from(arguments);
+    options.skeleton.keep_raw = arguments.has("--sheet");
     ReportDetails details{scan, options, arguments.text("--leaves", "auto"), options.skeleton.seed, 0, 0};
     ExportOptions exports;
     as_usage([&] { return leaf_preset(details.leaves == "auto" ? "generic" : details.leaves); });
@@ -129,6 +136,11 @@ void run_reconstruct(const std::vector<std::string>& words) {
         targets.push_back(cloud);
     }
     if (arguments.has("--report")) targets.push_back(report);
+    const std::string sheet = arguments.text("--sheet", "");
+    if (arguments.has("--sheet")) {
+        require_png(sheet);
+        targets.push_back(sheet);
+    }
     targets.insert(targets.end(), pages.begin(), pages.end());
     for (const std::string& target : targets)
         require_safe_target(target, scan, targets);
@@ -171,6 +183,11 @@ void run_reconstruct(const std::vector<std::string>& words) {
         const std::string html = report_html(result, details, &reporting);
         for (const std::string& page : pages)
             write_file(page, html);
+    }
+    if (arguments.has("--sheet")) {
+        ShowOptions show{stem_of(scan), exports.leaves, exports.textures, exports.seed};
+        show.fidelity = false;
+        write_png(sheet, *show_fidelity(result, show, &progress).stages);
     }
     progress.clear();
     for (const std::string& warning : result.warnings)

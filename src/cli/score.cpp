@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/png_file.h"
 #include "cli/print_outline.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
@@ -13,6 +14,8 @@
 #include "fidelity/photo_overlap.h"
 #include "fidelity/score.h"
 #include "fidelity/unexplained.h"
+#include "pipeline/judge_outline.h"
+#include "pipeline/sheets.h"
 #include "scan/read_cloud.h"
 
 namespace treerec {
@@ -20,8 +23,6 @@ namespace treerec {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int kOutlinePixels = 1024;
 
 Json agreements_json(const std::vector<Agreement>& agreements, const char* threshold) {
     Json json = Json::array();
@@ -86,6 +87,7 @@ struct ScanReport {
     std::vector<DoubtfulBranch> doubtful;
     std::optional<PhotoFidelity> photos;
     std::optional<OutlineOverlap> outline;
+    OutlineSource source = OutlineSource::kMasks;
     double noise = 0.0;
 };
 
@@ -110,9 +112,11 @@ void print_json(const ScanReport& report, const Tree& tree) {
         fidelity["R_3d_seen"] = report.photos->seen;
         fidelity["Q"] = modelling_fidelity(*report.photos, report.fidelity);
         const Overlap& outline = report.outline->mean;
-        fidelity["recall"] = outline.recall;
+        const bool known = report.source == OutlineSource::kMasks;
+        fidelity["by"] = outline_source_name(report.source);
+        fidelity["recall"] = known ? Json(outline.recall) : Json(nullptr);
         fidelity["precision"] = outline.precision;
-        fidelity["iou"] = outline.iou;
+        fidelity["iou"] = known ? Json(outline.iou) : Json(nullptr);
         for (const PhotoHits& photo : report.photos->photos)
             fidelity["photos"].push_back(
                 {{"name", photo.name}, {"inside", photo.inside}, {"outside", photo.outside}});
@@ -172,11 +176,8 @@ void print_text(const ScanReport& report, const Tree& tree) {
                     100.0 * score.explained_2cm_noise);
     std::printf("R_s %.3f with a tolerance of %g mm, %.3f without\n", fidelity.skeleton,
                 1000.0 * fidelity.tolerance, fidelity.skeleton_strict);
-    if (report.photos)
-        std::printf("I %.3f (%zu photos), R_3d %.3f, Q = I R_3d R_s = %.3f\n", report.photos->information,
-                    report.photos->photos.size(), report.photos->reconstruction,
-                    modelling_fidelity(*report.photos, fidelity));
-    if (report.outline) print_outline(*report.outline);
+    if (report.photos) print_fidelity(*report.photos, fidelity.skeleton, report.source);
+    if (report.outline) print_outline(*report.outline, report.source);
     for (size_t order = 0; order < fidelity.by_order.size(); order++)
         print_part(order == 0 ? "trunk" : ("order " + std::to_string(order)).c_str(),
                    fidelity.by_order[order]);
@@ -200,6 +201,21 @@ void print_text(const ScanReport& report, const Tree& tree) {
     }
 }
 
+// The tree and its scan in pictures. cloud: in any frame.
+Image score_sheet(const Tree& tree, PointCloud cloud, const std::vector<OutlinePart>& parts,
+                  const ScanReport& report, const PhotoJudge* judge, const OutlineFolders& folders,
+                  const std::string& name, Progress* progress) {
+    for (Vec3& p : cloud.positions)
+        p = Vec3(tree.frame().to_tree(cloud.frame.to_scan(DVec3(p))));
+    cloud.frame = tree.frame();
+    SheetPhotos photos;
+    if (judge != nullptr) photos = {read_photo_model(folders.model), folders.photos};
+    SheetSubject subject{name, tree, parts, cloud};
+    if (judge != nullptr && !folders.photos.empty()) subject.photos = &photos;
+    return fidelity_sheet(
+        subject, {report.fidelity, cloud, judge, report.outline ? &*report.outline : nullptr}, progress);
+}
+
 Tree read_scaled(const Arguments& arguments, const std::string& path, const std::string& option,
                  double metres_per_unit) {
     Tree tree = skeleton_from(arguments, path, option, told_dialect_from(arguments));
@@ -220,9 +236,14 @@ const Command& score_command() {
          {"--levels", "N", "lightened to a half, a quarter and so on as well (default 1: the tree alone)"},
          {"--photos", "FOLDER", "a COLMAP model in the scan's coordinates, for I, R_3d and Q; with --masks"},
          {"--masks", "FOLDER", "white-on-black pictures of the tree's outline in these photos: PHOTO.png"},
+         {"--pictures", "FOLDER",
+          "the photos themselves, for --sheet; without --masks their sky judges: precision only"},
          {"--every", "N", "every N-th photo of the model alone, by name: those that '--hold-out N' held out"},
          {"--leaves", "PRESET", "the tree's leaves, for its outline in the photos (default none)"},
          {"--view-weight", "W", "a/b: how much less each further photo tells, 0 to 1, for I (default 0.8)"},
+         {"--sheet", "FILE.png",
+          "a picture of it: photo, outline, cloud and tree with Q (--pictures), else the cloud, its\n"
+          "distances to the bark, the skeleton and the tree"},
          {"--scale", "S", "metres per unit of the files (default: what the model's file says, else 1)"},
          {"--tree", "N", "which tree of a model's file with several, in its order (default: the largest)"},
          {"--reference-tree", "N", "likewise of a reference's file"},
@@ -257,12 +278,17 @@ void run_score(const std::vector<std::string>& words) {
     options.tolerance = arguments.number("--tolerance", options.tolerance, 0.0, 10.0);
     const int levels = static_cast<int>(arguments.whole("--levels", 1, 1, 12));
     const std::string photos = arguments.text("--photos", ""), masks = arguments.text("--masks", "");
-    if (photos.empty() != masks.empty())
+    const std::string pictures = arguments.text("--pictures", ""), sheet = arguments.text("--sheet", "");
+    if (photos.empty() != (masks.empty() && pictures.empty()))
         throw UsageError(
-            "--photos and --masks belong together: R_3d needs the outline of the tree in each photo.");
-    for (const char* name : {"--every", "--leaves", "--view-weight"})
+            "--photos and --masks belong together: R_3d needs the outline of the tree in each photo, or its "
+            "sky (--pictures).");
+    for (const char* name : {"--every", "--view-weight"})
         if (photos.empty() && arguments.has(name))
             throw UsageError(std::string(name) + " is for photos: --photos and --masks name them.");
+    if (photos.empty() && !arguments.has("--sheet") && arguments.has("--leaves"))
+        throw UsageError("--leaves is for photos and for --sheet: --photos and --masks name them.");
+    if (arguments.has("--sheet")) require_png(sheet);
     const size_t every = arguments.whole("--every", 0, 2, 1000);
     const double weight = arguments.number("--view-weight", kInformationRatio, 0.0, 1.0);
     const std::string leaves = arguments.text("--leaves", "none");
@@ -279,14 +305,16 @@ void run_score(const std::vector<std::string>& words) {
         const PointCloud cloud = read_cloud(reference, read_options_from(arguments), nullptr, &reading);
         ScanReport report;
         report.noise = noise;
+        std::optional<PhotoJudge> judge;
+        std::vector<OutlinePart> parts;
+        if (!photos.empty() || arguments.has("--sheet"))
+            parts = outline_parts(tree, rules, leaves, 1, {}, &progress);
         if (!photos.empty()) {
-            PhotoModel model_of = read_photo_model(photos, &reading);
-            if (every > 0) model_of = held_out(model_of, every);
-            const std::vector<Image> pictures = read_masks(masks, model_of, &progress);
-            report.photos = measure_photos(cloud, model_of, pictures, weight, &progress);
-            const std::vector<OutlinePart> parts = outline_parts(tree, rules, leaves, 1, {}, &progress);
-            report.outline =
-                measure_overlap(parts, tree.frame(), model_of, pictures, kOutlinePixels, &progress);
+            judge = photo_judge({photos, masks, pictures}, every, cloud, &reading);
+            report.photos = judge->cloud();
+            report.photos->information = photo_information(report.photos->photos.size(), weight);
+            report.outline = judge->judge(parts, tree.frame(), &progress);
+            report.source = judge->source();
         }
         SubProgress scoring(&progress, 0.3, 0.6);
         report.score = score_scan(tree, cloud, noise, &scoring);
@@ -294,6 +322,9 @@ void run_score(const std::vector<std::string>& words) {
         if (levels > 1) report.levels = measure_levels(tree, cloud, levels, options, &progress);
         report.unexplained = find_unexplained(tree, cloud, report.fidelity, {}, {}, &progress);
         report.doubtful = find_doubtful(tree, report.fidelity);
+        if (arguments.has("--sheet"))
+            write_png(sheet, score_sheet(tree, cloud, parts, report, judge ? &*judge : nullptr,
+                                         {photos, masks, pictures}, stem_of(model), &progress));
         progress.clear();
         if (as_json)
             print_json(report, tree);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "fidelity/photo_hits.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
@@ -14,7 +15,6 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kChunk = 8192;
 constexpr int kBright = 128;
 
 std::string size_text(int width, int height) {
@@ -38,6 +38,12 @@ std::string mask_path(const std::string& folder, const std::string& photo) {
     return {};
 }
 
+}  // namespace
+
+double photo_information(size_t photos, double ratio) {
+    return 1.0 - portable::pow(ratio, static_cast<double>(photos));
+}
+
 Image read_mask(const std::string& path) {
     std::optional<Image> picture = decode_picture(read_file(path).view(), 1);
     if (!picture)
@@ -48,10 +54,11 @@ Image read_mask(const std::string& path) {
     return mask;
 }
 
-}  // namespace
-
-double photo_information(size_t photos, double ratio) {
-    return 1.0 - portable::pow(ratio, static_cast<double>(photos));
+void check_mask(const Photo& photo, const Camera& camera, const Image& mask) {
+    if (mask.width == camera.width && mask.height == camera.height && mask.channels == 1) return;
+    throw Error("The mask of " + quote_word(photo.name) + " has " + size_text(mask.width, mask.height) +
+                " pixels, but the photo has " + size_text(camera.width, camera.height) +
+                ": they must be the same.");
 }
 
 void check_masks(const PhotoModel& model, const std::vector<Image>& masks) {
@@ -61,15 +68,11 @@ void check_masks(const PhotoModel& model, const std::vector<Image>& masks) {
                     std::to_string(masks.size()) + " masks: each photo needs one.");
     for (size_t i = 0; i < masks.size(); i++) {
         const Photo& photo = model.photos[i];
-        const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-        if (masks[i].width != camera.width || masks[i].height != camera.height || masks[i].channels != 1)
-            throw Error("The mask of " + quote_word(photo.name) + " has " +
-                        size_text(masks[i].width, masks[i].height) + " pixels, but the photo has " +
-                        size_text(camera.width, camera.height) + ": they must be the same.");
+        check_mask(photo, model.cameras[static_cast<size_t>(photo.camera)], masks[i]);
     }
 }
 
-std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model, const Progress* progress) {
+std::vector<std::string> mask_files(const std::string& folder, const PhotoModel& model) {
     std::error_code failure;
     if (!std::filesystem::is_directory(path_of(folder), failure))
         throw Error("There is no folder '" + folder + "' with the photos' masks.");
@@ -89,6 +92,11 @@ std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model
         throw Error(std::to_string(count) + " of " + std::to_string(model.photos.size()) +
                     " photos have no mask in '" + folder + "': " + missing +
                     ". A mask is called like its photo, with .png after it, and is white where the tree is.");
+    return paths;
+}
+
+std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model, const Progress* progress) {
+    const std::vector<std::string> paths = mask_files(folder, model);
     std::vector<Image> masks(paths.size());
     parallel_for(paths.size(), 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
@@ -99,48 +107,30 @@ std::vector<Image> read_masks(const std::string& folder, const PhotoModel& model
     return masks;
 }
 
+PhotoFidelity sum_up_photos(std::vector<PhotoHits> photos, double information) {
+    PhotoFidelity result;
+    result.information = information;
+    for (const PhotoHits& photo : photos) {
+        const auto count = static_cast<double>(photos.size());
+        const size_t seen = photo.inside + photo.outside - photo.unseen;
+        result.reconstruction += photo.share / count;
+        if (seen > 0) result.seen += static_cast<double>(photo.inside) / static_cast<double>(seen) / count;
+    }
+    result.photos = std::move(photos);
+    return result;
+}
+
 PhotoFidelity measure_photos(const PointCloud& cloud, const PhotoModel& model,
                              const std::vector<Image>& masks, double ratio, const Progress* progress) {
     if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to see in the photos.");
     check_masks(model, masks);
-    PhotoFidelity result;
+    std::vector<PhotoHits> hits;
     for (size_t i = 0; i < masks.size(); i++) {
         const Photo& photo = model.photos[i];
         const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-        struct Hits {
-            size_t inside = 0, seen = 0;
-        };
-        std::vector<Hits> hits((cloud.size() + kChunk - 1) / kChunk);
-        parallel_for(cloud.size(), kChunk, [&](size_t begin, size_t end) {
-            if (progress) progress->check();
-            Hits here;
-            for (size_t k = begin; k < end; k++) {
-                const DVec3 world = cloud.frame.to_scan(DVec3(cloud.positions[k]));
-                const std::optional<DVec2> at = camera.project(photo.to_camera(world));
-                if (!at || !(at->x >= 0.0 && at->y >= 0.0 && at->x < camera.width && at->y < camera.height))
-                    continue;
-                here.seen++;
-                here.inside += *masks[i].at(static_cast<int>(at->x), static_cast<int>(at->y)) != 0;
-            }
-            hits[begin / kChunk] = here;
-        });
-        PhotoHits photo_hits;
-        photo_hits.name = photo.name;
-        size_t seen = 0;
-        for (const Hits& chunk : hits) {
-            photo_hits.inside += chunk.inside;
-            seen += chunk.seen;
-        }
-        photo_hits.outside = cloud.size() - photo_hits.inside;
-        photo_hits.unseen = cloud.size() - seen;
-        const auto inside = static_cast<double>(photo_hits.inside);
-        photo_hits.share = inside / static_cast<double>(cloud.size());
-        result.reconstruction += photo_hits.share / static_cast<double>(masks.size());
-        if (seen > 0) result.seen += inside / static_cast<double>(seen) / static_cast<double>(masks.size());
-        result.photos.push_back(std::move(photo_hits));
+        hits.push_back(count_hits(cloud, photo, camera, masks[i], progress));
     }
-    result.information = photo_information(masks.size(), ratio);
-    return result;
+    return sum_up_photos(std::move(hits), photo_information(masks.size(), ratio));
 }
 
 PhotoFidelity measure_photos(const PointCloud& cloud, const std::string& model, const std::string& masks,

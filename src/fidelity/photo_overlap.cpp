@@ -6,13 +6,11 @@
 
 #include "error.h"
 #include "fidelity/photo_fidelity.h"
-#include "fidelity/sample_mask.h"
 #include "foliage/leaf_rule_text.h"
 #include "geometry/parallel.h"
 #include "mesh/leaf_cards.h"
 #include "mesh/levels.h"
 #include "mesh/textures.h"
-#include "photos/pinhole_view.h"
 
 namespace treerec {
 
@@ -61,11 +59,37 @@ std::optional<Overlap> compare(const SampleMask& drawn, const Image& mask, const
     return Overlap{both / wanted, made > 0.0 ? both / made : 0.0, both / either};
 }
 
+std::optional<Overlap> overlap_in(std::span<const OutlinePart> parts, const ScanFrame& frame,
+                                  const OutlineMask& mask, const Progress* progress) {
+    const PinholeView view = fitted(pinhole_view(mask.photo, mask.camera, frame), mask.longest);
+    return compare(drawn_outline(parts, view, progress), mask.mask, mask.shown);
+}
+
+OutlineOverlap mean_of(const std::vector<std::string>& names,
+                       const std::vector<std::optional<Overlap>>& found) {
+    OutlineOverlap result;
+    for (size_t i = 0; i < found.size(); i++)
+        if (found[i]) result.photos.push_back({names[i], *found[i]});
+    if (result.photos.empty()) throw Error("All of the photos' masks are black: none shows a tree.");
+    for (const PhotoOverlap& photo : result.photos) {
+        const double share = 1.0 / static_cast<double>(result.photos.size());
+        result.mean.recall += share * photo.overlap.recall;
+        result.mean.precision += share * photo.overlap.precision;
+        result.mean.iou += share * photo.overlap.iou;
+    }
+    return result;
+}
+
 }  // namespace
 
 std::vector<OutlinePart> outline_parts(const Tree& tree, const LeafRules& rules, const std::string& textures,
                                        uint64_t seed, const Foliage& foliage, const Progress* progress) {
-    const std::vector<LeafKind> kinds = leaf_kinds(tree, rules);
+    return outline_parts(tree, leaf_kinds(tree, rules), textures, seed, foliage, progress);
+}
+
+std::vector<OutlinePart> outline_parts(const Tree& tree, const std::vector<LeafKind>& kinds,
+                                       const std::string& textures, uint64_t seed, const Foliage& foliage,
+                                       const Progress* progress) {
     const LevelBuilder builder(tree, kinds, seed, foliage, progress);
     TreeLevel level = builder.build(0, 0, progress);
     std::vector<OutlinePart> parts;
@@ -83,35 +107,51 @@ std::vector<OutlinePart> outline_parts(const Tree& tree, const LeafRules& rules,
     return parts;
 }
 
+SampleMask drawn_outline(std::span<const OutlinePart> parts, const PinholeView& view,
+                         const Progress* progress) {
+    SampleMask drawn(view.width, view.height);
+    for (const OutlinePart& part : parts)
+        draw(part, view, drawn, progress);
+    return drawn;
+}
+
+OutlineMask outline_mask(const Photo& photo, const Camera& camera, const Image& mask, int longest) {
+    // Where it was taken from makes no difference to what the lens does.
+    const PinholeView view = fitted(pinhole_view(photo, camera, {}), longest);
+    Image all(camera.width, camera.height, 1);
+    std::fill(all.pixels.begin(), all.pixels.end(), uint8_t{255});
+    return {photo, camera, longest, undistorted(mask, camera, view), undistorted(all, camera, view)};
+}
+
+OutlineOverlap measure_overlap(std::span<const OutlinePart> parts, const ScanFrame& frame,
+                               std::span<const OutlineMask> masks, const Progress* progress) {
+    std::vector<std::optional<Overlap>> found(masks.size());
+    parallel_for(masks.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++)
+            found[i] = overlap_in(parts, frame, masks[i], progress);
+    });
+    std::vector<std::string> names;
+    for (const OutlineMask& mask : masks)
+        names.push_back(mask.photo.name);
+    return mean_of(names, found);
+}
+
 OutlineOverlap measure_overlap(std::span<const OutlinePart> parts, const ScanFrame& frame,
                                const PhotoModel& model, const std::vector<Image>& masks, int longest,
                                const Progress* progress) {
     check_masks(model, masks);
     std::vector<std::optional<Overlap>> found(masks.size());
+    std::vector<std::string> names;
+    for (const Photo& photo : model.photos)
+        names.push_back(photo.name);
     parallel_for(masks.size(), 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             const Photo& photo = model.photos[i];
             const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-            const PinholeView view = fitted(pinhole_view(photo, camera, frame), longest);
-            Image all(camera.width, camera.height, 1);
-            std::fill(all.pixels.begin(), all.pixels.end(), uint8_t{255});
-            SampleMask drawn(view.width, view.height);
-            for (const OutlinePart& part : parts)
-                draw(part, view, drawn, progress);
-            found[i] = compare(drawn, undistorted(masks[i], camera, view), undistorted(all, camera, view));
+            found[i] = overlap_in(parts, frame, outline_mask(photo, camera, masks[i], longest), progress);
         }
     });
-    OutlineOverlap result;
-    for (size_t i = 0; i < found.size(); i++)
-        if (found[i]) result.photos.push_back({model.photos[i].name, *found[i]});
-    if (result.photos.empty()) throw Error("All of the photos' masks are black: none shows a tree.");
-    for (const PhotoOverlap& photo : result.photos) {
-        const double share = 1.0 / static_cast<double>(result.photos.size());
-        result.mean.recall += share * photo.overlap.recall;
-        result.mean.precision += share * photo.overlap.precision;
-        result.mean.iou += share * photo.overlap.iou;
-    }
-    return result;
+    return mean_of(names, found);
 }
 
 }  // namespace treerec

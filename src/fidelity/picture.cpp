@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "error.h"
 #include "fidelity/segment_tree.h"
@@ -14,6 +15,7 @@ namespace treerec {
 namespace {
 
 constexpr int kSamples = 2;  // across a pixel and down it
+constexpr uint8_t kOpaque = 128;
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr double kReach = 3.0;      // samples to the neighbours that shade
 constexpr double kDarkest = 0.35;   // what shading leaves of a colour
@@ -62,7 +64,8 @@ DVec3 Picture::place(const DVec3& p) const {
     return {0.5 * width_ + glm::dot(d, right_) / sample_, 0.5 * height_ - d.y / sample_, glm::dot(d, away_)};
 }
 
-void Picture::draw(const Mesh& mesh, const Rgb& color, const Progress* progress) {
+template <typename Pixel>
+void Picture::draw_triangles(const Mesh& mesh, Pixel pixel, const Progress* progress) {
     const DVec3 light = glm::normalize(-0.5 * right_ + DVec3(0.0, 0.7, 0.0) - 0.8 * away_);
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         if (progress && i % 49152 == 0) progress->check();
@@ -77,7 +80,7 @@ void Picture::draw(const Mesh& mesh, const Rgb& color, const Progress* progress)
         const DVec3 normal =
             normalized_or(glm::cross(corners[1] - corners[0], corners[2] - corners[0]), light);
         // Either side: cards have two.
-        const Rgb shade = scaled(color, 0.35 + 0.65 * std::abs(glm::dot(normal, light)));
+        const double lit = 0.35 + 0.65 * std::abs(glm::dot(normal, light));
         const auto [low_x, high_x] = std::minmax({at[0].x, at[1].x, at[2].x});
         const auto [low_y, high_y] = std::minmax({at[0].y, at[1].y, at[2].y});
         const int x0 = static_cast<int>(std::clamp(std::ceil(low_x - 0.5), 0.0, double(width_)));
@@ -92,9 +95,33 @@ void Picture::draw(const Mesh& mesh, const Rgb& color, const Progress* progress)
                 const double c =
                     ((at[1].x - at[0].x) * (py - at[0].y) - (px - at[0].x) * (at[1].y - at[0].y)) / area;
                 if (b < 0.0 || c < 0.0 || b + c > 1.0) continue;
-                set(x, y, at[0].z + b * (at[1].z - at[0].z) + c * (at[2].z - at[0].z), shade);
+                if (const std::optional<Rgb> color = pixel(i, b, c))
+                    set(x, y, at[0].z + b * (at[1].z - at[0].z) + c * (at[2].z - at[0].z),
+                        scaled(*color, lit));
             }
     }
+}
+
+void Picture::draw(const Mesh& mesh, const Rgb& color, const Progress* progress) {
+    draw_triangles(
+        mesh, [&](size_t, double, double) { return std::optional(color); }, progress);
+}
+
+void Picture::draw_textured(const Mesh& mesh, const Image& picture, const Progress* progress) {
+    if (picture.channels != 4 || mesh.uvs.size() != mesh.positions.size())
+        throw Error("A picture on a mesh has four channels, and the mesh has UVs.");
+    const auto texel = [](double at, int count) {
+        return std::clamp(static_cast<int>(std::floor(at * count)), 0, count - 1);
+    };
+    const auto pixel = [&](size_t i, double b, double c) -> std::optional<Rgb> {
+        const DVec2 first(mesh.uvs[mesh.indices[i]]);
+        const DVec2 uv = first + b * (DVec2(mesh.uvs[mesh.indices[i + 1]]) - first) +
+                         c * (DVec2(mesh.uvs[mesh.indices[i + 2]]) - first);
+        const uint8_t* at = picture.at(texel(uv.x, picture.width), texel(uv.y, picture.height));
+        if (at[3] < kOpaque) return std::nullopt;
+        return Rgb{at[0], at[1], at[2]};
+    };
+    draw_triangles(mesh, pixel, progress);
 }
 
 void Picture::draw(const std::vector<Vec3>& points, const std::vector<Rgb>& colors, double radius,

@@ -35,6 +35,9 @@ class Picture {
 
     // Lit from the upper left, behind the viewer. color: of all of it.
     void draw(const Mesh& mesh, const Rgb& color, const Progress* progress = nullptr);
+    // Coloured by a picture of four channels that is laid on by the mesh's UVs; what is less than half opaque
+    // is a hole.
+    void draw_textured(const Mesh& mesh, const Image& picture, const Progress* progress = nullptr);
     // Round dots of `radius` metres (at least a pixel across), in tree space. colors: one each.
     void draw(const std::vector<Vec3>& points, const std::vector<Rgb>& colors, double radius,
               const Progress* progress = nullptr);
@@ -44,6 +47,10 @@ class Picture {
     Image finish(const Rgb& background = {255, 255, 255}) const;
 
   private:
+    // pixel(i, b, c): the colour of the triangle of which mesh.indices[i] is the first corner, where b and c
+    // are the shares of its second and third one; nothing for a hole.
+    template <typename Pixel>
+    void draw_triangles(const Mesh& mesh, Pixel pixel, const Progress* progress);
     void set(int x, int y, double depth, const Rgb& color) {
         const size_t at = static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
         if (depth >= depth_[at]) return;

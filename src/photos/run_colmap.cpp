@@ -206,8 +206,9 @@ std::string claim_folder(const std::string& out, const std::string& photos) {
     const bool ours = fs::exists(work / "lock", failure) ||
                       (fs::is_directory(work, failure) && fs::is_empty(work, failure));
     // With what 'treerec photos' puts beside it.
-    for (const char* name : {"colmap", "sparse", "cloud.ply", "photos.log", "tree.glb", "tree.txt",
-                             "report.json", "compare.png", "bark"})
+    for (const char* name :
+         {"colmap", "sparse", "cloud.ply", "photos.log", "tree.glb", "tree.txt", "report.json", "report.html",
+          "compare.png", "stages.png", "fidelity.png", "bark"})
         if (!ours && fs::exists(whole / name, failure))
             throw Error(
                 "'" + utf8_of(whole / name) +

@@ -5,28 +5,35 @@
 
 namespace treerec {
 
-namespace {
-
-constexpr int kLongest = 1024;  // pixels of a picture's longer side
-
-}  // namespace
-
-OutlineJudgement judge_outline(const Reconstruction& result, const std::string& model,
-                               const std::string& masks, size_t hold_out, const LeafRules& rules,
-                               const std::string& textures, uint64_t seed, Progress* progress) {
-    PhotoModel photos = read_photo_model(model, progress);
-    if (hold_out > 0) photos = held_out(photos, hold_out);
-    if (photos.photos.empty())
+PhotoJudge photo_judge(const OutlineFolders& folders, size_t hold_out, const PointCloud& cloud,
+                       Progress* progress) {
+    PhotoModel model = read_photo_model(folders.model, nullptr);
+    if (hold_out > 0) model = held_out(model, hold_out);
+    if (model.photos.empty()) {
+        if (hold_out == 0) throw Error("The COLMAP model in '" + folders.model + "' has no photos.");
         throw Error("Every " + std::to_string(hold_out) +
                     "th photo was to judge the tree, but there are fewer of them.");
-    const std::vector<Image> pictures = read_masks(masks, photos, progress);
-    OutlineJudgement judgement;
-    judgement.hold_out = hold_out;
-    judgement.cloud = measure_photos(result.cloud, photos, pictures, kInformationRatio, progress);
-    const std::vector<OutlinePart> parts =
-        outline_parts(result.tree, rules, textures, seed, result.foliage, progress);
-    judgement.shapes = measure_overlap(parts, result.tree.frame(), photos, pictures, kLongest, progress);
-    return judgement;
+    }
+    if (!folders.masks.empty()) return PhotoJudge::by_masks(model, folders.masks, cloud, progress);
+    return PhotoJudge::by_sky(model, folders.photos, cloud, progress);
+}
+
+// Both lists are in the photos' order.
+std::vector<JudgedPhoto> judged_photos(const OutlineJudgement& judgement) {
+    std::vector<JudgedPhoto> photos;
+    size_t next = 0;
+    for (const PhotoHits& hits : judgement.cloud.photos) {
+        photos.push_back({&hits, nullptr});
+        if (next < judgement.shapes.photos.size() && judgement.shapes.photos[next].name == hits.name)
+            photos.back().overlap = &judgement.shapes.photos[next++].overlap;
+    }
+    return photos;
+}
+
+OutlineJudgement judge_outline(const Reconstruction& result, const OutlineFolders& folders, size_t hold_out,
+                               std::span<const OutlinePart> parts, Progress* progress) {
+    const PhotoJudge judge = photo_judge(folders, hold_out, result.cloud, progress);
+    return {hold_out, judge.source(), judge.cloud(), judge.judge(parts, result.tree.frame(), progress)};
 }
 
 }  // namespace treerec

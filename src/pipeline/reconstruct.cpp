@@ -198,6 +198,14 @@ double told_spacing(const Reconstruction& result) {
 
 }  // namespace
 
+PointCloud wood_of(const Reconstruction& result) {
+    PointCloud wood;
+    wood.frame = result.cloud.frame;
+    wood.positions = result.cloud.positions;
+    if (!result.wood.empty() && result.leaf_points < wood.size()) wood.keep_only(result.wood);
+    return wood;
+}
+
 std::string chosen_leaves(const std::string& asked, const Reconstruction& result) {
     if (asked != "auto") return asked;
     return result.palm ? "palm" : "generic";

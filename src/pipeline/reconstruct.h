@@ -68,6 +68,10 @@ struct Reconstruction {
     std::vector<std::string> warnings;  // of all stages, in order
 };
 
+// The cleaned points that fidelity is measured with: those of the wood, or all where all are leaves. Places
+// alone.
+PointCloud wood_of(const Reconstruction& result);
+
 // The leaf preset that the user asked for, or, for "auto", one that suits what was found: "palm" or
 // "generic".
 std::string chosen_leaves(const std::string& asked, const Reconstruction& result);

@@ -82,10 +82,7 @@ Json part_json(const FidelityPart& part) {
 // Of about so many points of the wood as the fit is of in the editor.
 Json fidelity_json(const Reconstruction& result) {
     constexpr size_t kPoints = 200000;
-    PointCloud wood;
-    wood.frame = result.cloud.frame;
-    wood.positions = result.cloud.positions;
-    if (!result.wood.empty() && result.leaf_points < wood.size()) wood.keep_only(result.wood);
+    PointCloud wood = wood_of(result);
     wood.positions = sample_points(wood.positions, kPoints);
     const Fidelity fidelity = measure_fidelity(result.tree, wood);
     Json json = part_json(fidelity.all);
@@ -131,20 +128,27 @@ Json photos_json(const ReportDetails& details) {
 }
 
 Json outline_json(const OutlineJudgement& outline, double r_s) {
-    const auto shares = [](const Overlap& overlap) {
-        return Json{{"recall", overlap.recall}, {"precision", overlap.precision}, {"iou", overlap.iou}};
+    const bool masks = outline.source == OutlineSource::kMasks;
+    const auto shares = [masks](const Overlap& overlap) {
+        const auto known = [masks](double share) { return masks ? Json(share) : Json(nullptr); };
+        return Json{
+            {"recall", known(overlap.recall)}, {"precision", overlap.precision}, {"iou", known(overlap.iou)}};
     };
     Json json = {{"photos", outline.cloud.photos.size()},
+                 {"by", outline_source_name(outline.source)},
                  {"hold_out", outline.hold_out},
                  {"I", outline.cloud.information},
                  {"R_3d", outline.cloud.reconstruction},
                  {"R_3d_seen", outline.cloud.seen},
+                 {"R_s", r_s},
                  {"Q", outline.cloud.information * outline.cloud.reconstruction * r_s}};
     json.update(shares(outline.shapes.mean));
     json["by_photo"] = Json::array();
-    for (const PhotoOverlap& photo : outline.shapes.photos) {
-        Json entry = {{"name", photo.name}};
-        entry.update(shares(photo.overlap));
+    for (const JudgedPhoto& photo : judged_photos(outline)) {
+        Json entry = {
+            {"name", photo.hits->name}, {"inside", photo.hits->inside}, {"outside", photo.hits->outside}};
+        entry.update(photo.overlap ? shares(*photo.overlap)
+                                   : Json{{"recall", nullptr}, {"precision", nullptr}, {"iou", nullptr}});
         json["by_photo"].push_back(entry);
     }
     return json;
@@ -251,8 +255,13 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["fidelity"] = fidelity_json(result);
     json["warnings"] = result.warnings;
     if (details.photos) json["photos"] = photos_json(details);
-    if (details.photos && details.outline)
-        json["photos"]["outline"] = outline_json(*details.outline, json["fidelity"]["R_s"].get<double>());
+    if (details.photos) {
+        const double r_s = json["fidelity"]["R_s"].get<double>();
+        json["photos"]["outline"] = details.outline ? outline_json(*details.outline, r_s) : Json(nullptr);
+        if (!details.outline)
+            json["photos"]["outline_lacks"] =
+                details.outline_lacks.empty() ? Json(nullptr) : Json(details.outline_lacks);
+    }
     if (details.bark) json["bark"] = bark_json(*details.bark);
     return dump(json);
 }

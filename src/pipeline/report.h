@@ -23,7 +23,10 @@ struct ReportDetails {
     std::optional<ColmapRun> photos = {};          // where the scan was made of some
     size_t photo_pairs = 0;                        // that were matched pixel by pixel
     bool sized_by_gps = false;                     // the scale is that of photos->gps
-    std::optional<OutlineJudgement> outline = {};  // where there are masks of the photos
+    std::optional<OutlineJudgement> outline = {};  // where masks of the photos, or their sky, tell of it
+    std::string outline_lacks = {};                // a sentence: why photos that were asked don't
+    std::string title = {};                        // of the page; else the scan's name
+    std::optional<Image> outline_sheet = {};       // fidelity_sheet(), for the page
     std::optional<PhotoBark> bark = {};            // where it was looked for in the photos
 };
 
@@ -53,10 +56,12 @@ struct ReportDetails {
 //   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
 //   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
 //   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
-//   says where it was taken; photos/gps_scale.h), outline {photos (that judge), hold_out (every how many one;
-//   0: the tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), Q, recall, precision,
-//   iou, by_photo [{name, recall, precision, iou}]} (with masks alone)}: of a scan that was made of photos
-//   alone
+//   says where it was taken; photos/gps_scale.h), outline {photos (that judge), by ("masks", or "sky": then
+//   R_3d, Q and precision are upper bounds, and recall and iou null), hold_out (every how many one; 0: the
+//   tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), R_s, Q, recall, precision,
+//   iou, by_photo
+//   [{name, inside (points on the tree), outside, recall, precision, iou}]} (null where nothing judges, and
+//   outline_lacks is a sentence, or null where nobody asked)}: of a scan that was made of photos alone
 //   bark {from "photos" or "drawn", why_drawn (a sentence, or null), photos, pixel_mm, detail_mm (null where
 //   no photo shows any), area_m2}: where it was looked for in photos (photos/bark_picture.h)
 std::string report_json(const Reconstruction& result, const ReportDetails& details);

@@ -50,8 +50,8 @@ bool has(const std::string& text, const std::string& part) {
 TEST_F(PhotosCli, PhotosBecomeATree) {
     const Outcome outcome = run("photos photos -o out --known-length 0,0,1,0,0,-1.5,2.5");
     ASSERT_EQ(outcome.code, 0) << outcome.error;
-    for (const char* name :
-         {"tree.glb", "tree.txt", "report.json", "cloud.ply", "photos.log", "sparse/0/images.bin"})
+    for (const char* name : {"tree.glb", "tree.txt", "report.json", "report.html", "stages.png",
+                             "fidelity.png", "cloud.ply", "photos.log", "sparse/0/images.bin"})
         EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
     EXPECT_TRUE(has(outcome.out, "9 of 9 photos placed")) << outcome.out;
     EXPECT_TRUE(has(outcome.out, "4800 points")) << outcome.out;
@@ -63,6 +63,10 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     EXPECT_TRUE(has(outcome.error, "The tree has drawn bark. The photos were not matched")) << outcome.error;
     EXPECT_TRUE(has(get("out/report.json"), "\"from\": \"drawn\"")) << get("out/report.json");
     put("out/bark/albedo.png", "old");
+    // Nor has anybody asked their sky for its word: that it can't tell is no warning.
+    EXPECT_FALSE(has(outcome.error, "not judged")) << outcome.error;
+    EXPECT_TRUE(has(get("out/report.json"), "\"outline\": null")) << get("out/report.json");
+    EXPECT_TRUE(has(get("out/report.html"), "There is no Q")) << outcome.error;
     // The tree alone is made again, and without a length its sizes are relative.
     calls();
     const std::string first = get("out/cloud.ply");

@@ -292,8 +292,9 @@ TEST_F(RunColmap, OfSeveralModelsTheLargestIsTaken) {
 }
 
 TEST_F(RunColmap, WhatIsSomebodyElsesStays) {
-    for (const std::string name : {"out/cloud.ply", "out/photos.log", "out/sparse", "out/colmap",
-                                   "out/tree.glb", "out/tree.txt", "out/report.json", "out/compare.png"}) {
+    for (const std::string name :
+         {"out/cloud.ply", "out/photos.log", "out/sparse", "out/colmap", "out/tree.glb", "out/tree.txt",
+          "out/report.json", "out/report.html", "out/compare.png", "out/stages.png", "out/fidelity.png"}) {
         put(name, "theirs");
         EXPECT_TRUE(has(sentence(), "is there already")) << name << ": " << sentence();
         EXPECT_EQ(get(name), "theirs");

@@ -30,6 +30,7 @@ enum Kind { INFO, WARNING, ERROR }
 const History := preload("history.gd")
 const Jobs := preload("jobs.gd")
 const LocalTrees := preload("local_trees.gd")
+const PhotoJudge := preload("photo_judge.gd")
 const ScanData := preload("scan_data.gd")
 const Sentences := preload("translations/sentences.gd")
 const UndoStatus := preload("undo_status.gd")
@@ -47,6 +48,7 @@ var jobs: Jobs = Jobs.new()
 var view: ViewState = ViewState.new()
 var local_trees: LocalTrees = LocalTrees.new()
 var scan: ScanData
+var photos: PhotoJudge
 ## The tools by their ids (see [code]tools/tool.gd[/code]), and the chosen one.
 var tools: Dictionary[StringName, RefCounted] = {}
 var tool: RefCounted
@@ -80,6 +82,7 @@ func _init(undo: Object) -> void:
 	history = History.new(undo)
 	# Methods, since functions made here would keep this session alive.
 	scan = ScanData.new(jobs, _warn)
+	photos = PhotoJudge.new(jobs, scan)
 	consent = Consent.new(local_trees, _warn)
 	scan.changed.connect(_on_scan_changed)
 	view.changed.connect(_on_view_changed)
@@ -122,10 +125,15 @@ func update() -> void:
 		_tree_moved = false
 		_drop_missing()
 		scan.set_tree(tree)
+		photos.set_tree(tree)
+		photos.note_edit()
 		scan.note_edit()
 		tree_changed.emit()
 	jobs.update()
 	scan.update()
+	if node != null:
+		photos.leaves = node.leaves
+	photos.update()
 
 
 ## Grafts go on with a branch that was picked, which is remembered among the latest.
@@ -187,6 +195,7 @@ func _watch(other: TreeReconstruction) -> void:
 		if is_instance_valid(node) and not LocalTrees.is_foreign(_shown, node):
 			local_trees.watch(_shown)
 	scan.set_tree(_shown)
+	photos.set_tree(_shown)
 	_tree_moved = true
 
 

@@ -12,6 +12,8 @@ enum Lack { NOTHING, MODEL, PHOTOS }
 const Session: GDScript = preload("../session.gd")
 const Jobs: GDScript = preload("../jobs.gd")
 const PhotoFolder: GDScript = preload("../photos/photo_folder.gd")
+## Where the project keeps which folders the user chose.
+const KEY: String = "photo_folders"
 ## Pixels of the longer side of a picture that is shown.
 const LONGEST: int = 2560
 # Where photos lie beside a tree's cloud, or a COLMAP model: the names of folders.
@@ -19,7 +21,6 @@ const _BESIDE: PackedStringArray = ["photos", "frames", "images"]
 # So many names tell whether a folder has the photos.
 const _ASKED: int = 60
 const _SECTION: String = "tree_reconstruction"
-const _KEY: String = "photo_folders"
 
 ## As [method TreeReconstructor.load_photo_views] gives them.
 var views: Array[Dictionary] = []
@@ -47,7 +48,7 @@ func _init(session: Session) -> void:
 	set_translation_domain(session.get_translation_domain())
 	_session = session
 	if Engine.is_editor_hint():
-		_chosen = EditorInterface.get_editor_settings().get_project_metadata(_SECTION, _KEY, {})
+		_chosen = EditorInterface.get_editor_settings().get_project_metadata(_SECTION, KEY, {})
 
 
 ## Reads from where the tree was photographed.
@@ -100,7 +101,7 @@ func take_folder(folder: String) -> void:
 	_chosen[_get_source()] = chosen
 	if Engine.is_editor_hint():
 		var settings: EditorSettings = EditorInterface.get_editor_settings()
-		settings.set_project_metadata(_SECTION, _KEY, _chosen)
+		settings.set_project_metadata(_SECTION, KEY, _chosen)
 	if lack == Lack.MODEL:
 		_read_views()
 		return

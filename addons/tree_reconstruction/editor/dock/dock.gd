@@ -109,6 +109,7 @@ func _init(session: Session) -> void:
 	_session.view_changed.connect(_on_changed)
 	_session.scan_changed.connect(_on_changed)
 	_session.scan.fidelity_changed.connect(_on_changed)
+	_session.photos.changed.connect(_on_changed)
 	# Its children become visible after it.
 	visibility_changed.connect(update, CONNECT_DEFERRED)
 	_on_changed()
@@ -125,6 +126,7 @@ func close() -> void:
 	_session.view_changed.disconnect(_on_changed)
 	_session.scan_changed.disconnect(_on_changed)
 	_session.scan.fidelity_changed.disconnect(_on_changed)
+	_session.photos.changed.disconnect(_on_changed)
 
 
 ## Brings what is seen up to date. That happens by itself, some times a second.

@@ -34,6 +34,20 @@ func ask(
 	EditorInterface.popup_dialog_centered_clamped(_dialog, Vector2i(900, 600))
 
 
+## Shows a dialog for a folder, which may be outside of the project.
+func ask_folder(title: String, begin: String, done: Callable) -> void:
+	close()
+	_dialog = EditorFileDialog.new()
+	_dialog.access = EditorFileDialog.ACCESS_FILESYSTEM
+	_dialog.file_mode = EditorFileDialog.FILE_MODE_OPEN_DIR
+	_dialog.title = title
+	if not begin.is_empty():
+		_dialog.current_dir = begin
+	_dialog.dir_selected.connect(done)
+	_dialog.visibility_changed.connect(_on_visibility_changed)
+	EditorInterface.popup_dialog_centered_clamped(_dialog, Vector2i(900, 600))
+
+
 ## Takes the dialog away.
 func close() -> void:
 	if is_instance_valid(_dialog):

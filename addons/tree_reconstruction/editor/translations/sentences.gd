@@ -350,6 +350,22 @@ const PATTERNS: PackedStringArray = [
 		"'%s' is there already, and was not made of HEIC photos here; it was left as it is. Name another"
 		+ " folder to write to."
 	),
+	# Of photos that judge.
+	(
+		"The photos themselves are not where they were, and there are no masks of them: nothing can judge"
+		+ " the tree."
+	),
+	"The photos don't agree on where up is, so that their sky can't be told.",
+	"No sky is sure in any of the photos, so that only masks of them can judge the tree.",
+	"None of the photos in '%s' can be read.",
+	"The mask of %s has %s pixels, but the photo has %s: they must be the same.",
+	"The mask '%s' is no picture that can be read (PNG, JPEG, BMP or TGA).",
+	"There is no folder '%s' with the photos' masks.",
+	(
+		"%s of %s photos have no mask in '%s': %s. A mask is called like its photo, with .png after it,"
+		+ " and is white where the tree is."
+	),
+	"All of the photos' masks are black: none shows a tree.",
 	# The library of twigs.
 	"Apple",
 	"Birch",
