@@ -1,8 +1,8 @@
 extends "./trunk_photos.gd"
 ## The same, from farther away, with a round crown on the trunk.
 
-## What its leaves throw back where the light falls on them, as it is stored, on average.
-const LEAF: Color = Color(0.42, 0.5, 0.16)
+## What its leaves are like as it is stored, on average.
+const LEAF: Color = Color(0.34, 0.4, 0.13)
 
 const _CROWN: Vector3 = Vector3(0.0, 0.0, -0.75)
 const _RADIUS: float = 0.6
@@ -30,5 +30,5 @@ func _picture(i: int) -> Image:
 			var beside: float = (centre + ahead * way - _CROWN).length()
 			if beside < _RADIUS:
 				var at: Vector3 = centre + way * (ahead - sqrt(_RADIUS * _RADIUS - beside * beside))
-				picture.set_pixel(x, y, LEAF * (0.8 + 0.9 * noise.get_noise_3dv(at)))
+				picture.set_pixel(x, y, LEAF * (1.0 + 1.1 * noise.get_noise_3dv(at)))
 	return picture
