@@ -229,8 +229,8 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     if (result.bark && !result.bark->textures)
         result.tree.warnings.push_back("The tree has drawn bark. " + result.bark->why_not);
     if (options.leaf_colours) result.leaf_colours = look_at_leaves(result, options.cloud.hold_out, &tinting);
-    // A bare tree needs none.
-    if (result.leaf_colours && !result.leaf_colours->seen() && !result.tree.foliage.empty())
+    // Bare trees bear drawn leaves, too. Without dense points, the bark says why.
+    if (result.leaf_colours && !result.leaf_colours->seen() && result.made.pairs > 0)
         result.tree.warnings.push_back("The leaves have drawn colors. " + result.leaf_colours->why_not);
     write_bark(result.bark, utf8_of(path_of(out) / "bark"));
     std::vector<std::string> before = result.photos.warnings;
