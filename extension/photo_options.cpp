@@ -37,6 +37,9 @@ TypedArray<Dictionary> list_options() {
         {"bark", true, PROPERTY_HINT_NONE, "",
          "Takes the bark's pictures out of the photos; without it, or where these are too coarse, the tree "
          "has the drawn bark of its kind."},
+        {"leaf_colors", true, PROPERTY_HINT_NONE, "",
+         "Gives the leaves the colors that the photos show, by height; without it, or where the photos show "
+         "too few leaves, they have the drawn colors of their kind."},
         {"colmap", "", PROPERTY_HINT_GLOBAL_FILE, "",
          "The program COLMAP, or the folder that it is in; empty looks for it."},
     };
@@ -88,6 +91,7 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
     pipeline.cloud = treerec::cloud_options_of(pipeline.colmap.effort);
     pipeline.cloud.dense = bool(values["dense"]);
     pipeline.bark = bool(values["bark"]);
+    pipeline.leaf_colours = bool(values["leaf_colors"]);
     pipeline.reconstruct = options.tree.pipeline;
     return options;
 }

@@ -158,6 +158,7 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_ph
             r_details.photo_pairs = made.made.pairs;
             r_details.sized_by_gps = made.sized_by_gps;
             r_details.bark = std::move(made.bark);
+            r_details.leaf_colours = std::move(made.leaf_colours);
             return std::move(made.tree);
         };
         return task;

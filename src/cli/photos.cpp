@@ -73,6 +73,10 @@ std::vector<Option> all_options() {
         {"--bark", "FROM",
          "photos takes the bark's pictures out of the photos, into OUT/bark, where these are good enough;\n"
          "drawn takes those of --leaves (default photos)"},
+        {"--leaf-colors", "FROM",
+         "photos gives the leaves the colors that the photos show, by height; drawn leaves those of "
+         "--leaves\n"
+         "(default photos)"},
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
         {"--known-length", "LIST",
@@ -95,6 +99,9 @@ void print_photos(const PhotosResult& result) {
     if (result.bark && result.bark->textures)
         std::printf("bark from %zu photos, with pixels of %.1f mm\n", result.bark->photos,
                     1000.0 * result.bark->pixel);
+    if (result.leaf_colours && result.leaf_colours->seen())
+        std::printf("leaf colors from %zu points in %zu photos\n", result.leaf_colours->points,
+                    result.leaf_colours->photos);
 }
 
 // The tree over some of its photos. Whether there is one: it is no reason for a tree to fail.
@@ -165,6 +172,10 @@ void run_photos(const std::vector<std::string>& words) {
     if (bark != "photos" && bark != "drawn")
         throw UsageError("--bark is photos or drawn, not '" + bark + "'.");
     options.bark = bark == "photos";
+    const std::string colors = arguments.text("--leaf-colors", "photos");
+    if (colors != "photos" && colors != "drawn")
+        throw UsageError("--leaf-colors is photos or drawn, not '" + colors + "'.");
+    options.leaf_colours = colors == "photos";
     options.colmap.threads = static_cast<int>(arguments.whole("--threads", 0, 1, 1024));
     options.reconstruct = reconstruct_options_from(arguments);
     options.reconstruct.skeleton.keep_raw = true;
@@ -200,11 +211,13 @@ void run_photos(const std::vector<std::string>& words) {
     details.photo_pairs = result.made.pairs;
     details.sized_by_gps = result.sized_by_gps;
     details.bark = result.bark;
+    details.leaf_colours = result.leaf_colours;
     details.leaves = chosen_leaves(details.leaves, tree);
     exports.leaves = suited_leaves(details.leaves, tree);
     exports.textures = details.leaves;
     exports.foliage = tree.foliage;
     if (result.bark && result.bark->textures) exports.bark = encode_bark(*result.bark->textures);
+    exports.leaf_colours = result.leaf_colours;
     TreeExporter exporter(tree.tree, exports, &progress);
     progress.update(0.95, "Writing");
     std::vector<std::string> outs;

@@ -57,20 +57,22 @@ class Builder {
     size_t add_view(std::string_view bytes, int target);
     size_t add_accessor(std::string_view bytes, size_t count, int component, const char* type, int target);
     size_t add_indices(const Mesh& mesh);
-    Json make_primitive(const Mesh& mesh, int material);
+    Json make_primitive(const Mesh& mesh, int material, const LeafTint& tint = {});
     size_t add_level(const ModelFile::Level& level, size_t number);
     void add_levels(const ModelFile& file);
     size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap,
                        const std::string& suffix = "");
     void add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
-                           const std::string& rule);
+                           const std::string& rule, bool tinted);
 
     static constexpr std::array<char, 4> kPadding{};
     std::deque<std::vector<uint16_t>> short_indices_;  // by mesh: what parts point into
     std::deque<std::vector<glm::u8vec4>> wind_;
+    std::deque<std::vector<glm::u8vec4>> tints_;
     // The materials of what is drawn in any level; -1: of nothing. Leaves by kind, the tree's own first.
     int bark_material_ = -1;
     std::vector<int> leaf_materials_;
+    std::vector<LeafTint> tint_of_;  // by kind
 };
 
 size_t Builder::add_view(std::string_view bytes, int target) {
@@ -107,7 +109,7 @@ size_t Builder::add_indices(const Mesh& mesh) {
     return add_accessor(bytes_of(indices), count, kUnsignedShort, "SCALAR", kIndexBuffer);
 }
 
-Json Builder::make_primitive(const Mesh& mesh, int material) {
+Json Builder::make_primitive(const Mesh& mesh, int material, const LeafTint& tint) {
     const size_t count = mesh.positions.size();
     std::vector<glm::u8vec4>& wind = wind_.emplace_back();
     wind.resize(count);
@@ -143,6 +145,14 @@ Json Builder::make_primitive(const Mesh& mesh, int material) {
     add("TANGENT", bytes_of(mesh.tangents), kFloat, "VEC4");
     add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
     add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
+    if (tint) {
+        std::vector<glm::u8vec4>& tints = tints_.emplace_back(count);
+        parallel_for(count, kChunk, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; i++)
+                tints[i] = glm::u8vec4(Vec4(tint(mesh.positions[i], mesh.colors[i].w), 1.0f) * 255.0f + 0.5f);
+        });
+        add("COLOR_0", bytes_of(tints), kUnsignedByte, "VEC4");
+    }
     primitive["material"] = material;
     return primitive;
 }
@@ -186,13 +196,13 @@ Json texture_info(size_t index) {
 size_t Builder::add_level(const ModelFile::Level& level, size_t number) {
     const std::string name = "Tree_LOD" + std::to_string(number);
     Json primitives = Json::array();
-    const auto add = [&](const Mesh* mesh, int material) {
-        if (drawn(mesh)) primitives.push_back(make_primitive(*mesh, material));
+    const auto add = [&](const Mesh* mesh, int material, const LeafTint& tint = {}) {
+        if (drawn(mesh)) primitives.push_back(make_primitive(*mesh, material, tint));
     };
     add(level.bark, bark_material_);
-    add(level.leaves, leaf_materials_[0]);
+    add(level.leaves, leaf_materials_[0], tint_of_[0]);
     for (size_t i = 0; i < level.other_leaves.size(); i++)
-        add(level.other_leaves[i], leaf_materials_[i + 1]);
+        add(level.other_leaves[i], leaf_materials_[i + 1], tint_of_[i + 1]);
     Json node = {{"name", name}};
     if (!primitives.empty()) {
         node["mesh"] = json["meshes"].size();
@@ -252,6 +262,9 @@ Builder::Builder(const ModelFile& file) {
     if (has_bark) bark_material_ = materials++;
     for (const bool has : has_leaves)
         leaf_materials_.push_back(has ? materials++ : -1);
+    tint_of_.push_back(file.leaf_tint);
+    for (size_t i = 0; i < file.other_leaves.size(); i++)
+        tint_of_.push_back(file.other_materials.at(i).tint);
     if (materials > 0) add_levels(file);
     geometry_parts = parts.size();
     geometry_size = size;
@@ -268,24 +281,24 @@ Builder::Builder(const ModelFile& file) {
         material["pbrMetallicRoughness"] = std::move(surface);
         json["materials"].push_back(std::move(material));
     }
-    if (has_leaves[0]) add_leaf_material(all, "", "");
+    if (has_leaves[0]) add_leaf_material(all, "", "", bool(file.leaf_tint));
     for (size_t i = 0; i < file.other_leaves.size(); i++)
         if (has_leaves[i + 1])
             add_leaf_material(file.other_materials.at(i).pictures, kind_suffix(i),
-                              file.other_materials[i].rule);
+                              file.other_materials[i].rule, bool(file.other_materials[i].tint));
     if (size > 0) json["buffers"] = Json::array({{{"byteLength", size}}});
     // glTF knows no empty lists.
     for (auto list = json.begin(); list != json.end();)
         list = list->is_array() && list->empty() ? json.erase(list) : std::next(list);
 }
 
-// suffix, rule: of a further kind of leaves; empty for the tree's own.
+// suffix, rule: of a further kind of leaves; empty for the tree's own. tinted: by vertex.
 void Builder::add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
-                                const std::string& rule) {
+                                const std::string& rule, bool tinted) {
     Json material, surface;
     material["name"] = "leaves" + suffix;
     surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge, suffix));
-    surface["baseColorFactor"] = kLeafTint;
+    if (!tinted) surface["baseColorFactor"] = kLeafTint;
     surface["metallicFactor"] = 0.0;
     surface["roughnessFactor"] = 1.0;  // a crown of many small mirrors would be white
     material["pbrMetallicRoughness"] = std::move(surface);

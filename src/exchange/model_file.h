@@ -1,6 +1,7 @@
 // What goes into a model file, whatever its format.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,11 @@
 #include "mesh/mesh.h"
 
 namespace treerec {
+
+// What a leaf's picture is multiplied by, as linear light, each 0..1. place: metres, Y up, of the vertex;
+// openness: 1 open to the sky, 0 deep in the crown. Empty: leaves are as leaf.gdshader shows the preset's on
+// average.
+using LeafTint = std::function<Vec3(const Vec3& place, float openness)>;
 
 struct ModelFile {
     const Mesh* bark = nullptr;    // null or without triangles: left out
@@ -26,9 +32,11 @@ struct ModelFile {
     struct LeafMaterial {
         std::string rule;                    // foliage/leaf_rule_text.h; kept in glTF
         std::vector<NamedPicture> pictures;  // leaf_albedo and leaf_normal
+        LeafTint tint = {};
     };
     std::vector<const Mesh*> other_leaves;
     std::vector<LeafMaterial> other_materials;  // as many
+    LeafTint leaf_tint = {};                    // of the tree's own leaves; kept in glTF
     std::string preset = "generic";             // of the textures (foliage/leaves.h)
     // make_pictures(preset) when empty; give them to write several files at the cost of one.
     std::vector<NamedPicture> pictures;

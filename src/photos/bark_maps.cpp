@@ -7,6 +7,7 @@
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "mesh/linear_light.h"
 #include "mesh/texture_noise.h"
 
 namespace treerec {
@@ -31,26 +32,15 @@ constexpr double kCoarser = 1.5;     // than a pixel
 constexpr double kNoiseRelief = 0.15, kNoiseTone = 0.32;
 constexpr size_t kRows = 16;
 
-// IEC 61966-2-1.
-double linear_of(double level) {
-    const double v = level / 255.0;
-    return v <= 0.04045 ? v / 12.92 : portable::pow((v + 0.055) / 1.055, 2.4);
-}
-
 uint8_t level_of(double light) {
-    const double v = light <= 0.0031308 ? 12.92 * light : 1.055 * portable::pow(light, 1.0 / 2.4) - 0.055;
-    return to_byte(v);
+    return to_byte(stored_of(light));
 }
 
 std::array<float, 256> linear_table() {
     std::array<float, 256> table{};
     for (int i = 0; i < 256; i++)
-        table[static_cast<size_t>(i)] = static_cast<float>(linear_of(i));
+        table[static_cast<size_t>(i)] = static_cast<float>(linear_of(i / 255.0));
     return table;
-}
-
-double luminance(const DVec3& light) {
-    return glm::dot(light, DVec3(0.2126, 0.7152, 0.0722));
 }
 
 // A running mean of 2 * radius + 1 pixels along a line.
@@ -130,7 +120,7 @@ void take_light_off(Image& picture, const std::vector<uint8_t>& seen, const DVec
         if (!seen[i]) continue;
         const uint8_t* level = picture.pixels.data() + 3 * i;
         const DVec3 light(linear[level[0]], linear[level[1]], linear[level[2]]);
-        lights[0].values[i] = static_cast<float>(luminance(light));
+        lights[0].values[i] = static_cast<float>(luminance_of(light));
         for (size_t c = 0; c < 3; c++)
             lights[c + 1].values[i] = linear[level[c]];
         there.values[i] = 1.0f;
@@ -224,7 +214,7 @@ BarkTextures maps_of(Image albedo, const DVec2& metres, double detail) {
     for (size_t i = 0; i < light.values.size(); i++) {
         const uint8_t* level = albedo.pixels.data() + 3 * i;
         light.values[i] =
-            static_cast<float>(luminance({lightness[level[0]], lightness[level[1]], lightness[level[2]]}));
+            static_cast<float>(luminance_of({lightness[level[0]], lightness[level[1]], lightness[level[2]]}));
     }
     // Relief is what changes at the scale of cracks and plates; coarser relief counts more, as it is deeper.
     PixelField relief(width, height);

@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "photos/even_exposures.h"
 #include "photos/photo_picture.h"
 #include "photos/seen_bark.h"
 
@@ -22,9 +22,7 @@ constexpr double kUnlike = 0.12;     // in natural logarithms: how far photos of
 constexpr double kUnlikeCost = 6.0;  // for each such step more
 constexpr double kSeamCost = 0.2;    // against a neighbour's photo, as a logarithm of the score
 constexpr int kSweeps = 8;
-constexpr double kMostRatio = 0.7;  // in logarithms: more is no exposure but another thing
-constexpr double kPrior = 0.02;     // of gains of 1, in overlaps
-constexpr size_t kCells = 8;        // that a thread takes at a time
+constexpr size_t kCells = 8;  // that a thread takes at a time
 
 struct Slot {
     size_t photo = SIZE_MAX;
@@ -171,42 +169,14 @@ void take_photo(size_t p, const Photo& photo, const Camera& camera, const ScanFr
     });
 }
 
-// The logarithm of each photo's gain, by channel: least squares over the cells that two photos show, with a
-// weak prior of none (Brown and Lowe 2007, section 6).
 std::vector<DVec3> gains_of(const Patchwork& work, size_t photos) {
-    struct Overlap {
-        double count = 0.0;
-        DVec3 sum{0.0};  // of light of the first minus light of the second
-    };
-    std::map<std::pair<size_t, size_t>, Overlap> overlaps;
+    ExposureOverlaps overlaps;
     for (const Slots& slots : work.slots)
         for (size_t a = 0; a < kSlots; a++)
-            for (size_t b = 0; b < kSlots; b++) {
-                if (a == b || slots[a].photo == SIZE_MAX || slots[b].photo == SIZE_MAX) continue;
-                const DVec3 ratio = slots[a].light - slots[b].light;
-                if (std::abs(ratio.x) + std::abs(ratio.y) + std::abs(ratio.z) > 3.0 * kMostRatio) continue;
-                Overlap& overlap = overlaps[{slots[a].photo, slots[b].photo}];
-                overlap.count += 1.0;
-                overlap.sum += ratio;
-            }
-    std::vector<DVec3> gains(photos, DVec3(0.0));
-    constexpr int kSteps = 300;  // of Gauss and Seidel's
-    for (int step = 0; step < kSteps; step++) {
-        for (auto first = overlaps.begin(); first != overlaps.end();) {
-            const size_t a = first->first.first;
-            double count = 0.0, all = 0.0;
-            DVec3 sum(0.0);
-            auto next = first;
-            for (; next != overlaps.end() && next->first.first == a; ++next) {
-                sum += next->second.count * gains[next->first.second] - next->second.sum;
-                count += next->second.count;
-            }
-            all = count * (1.0 + kPrior);
-            gains[a] = sum / all;
-            first = next;
-        }
-    }
-    return gains;
+            for (size_t b = 0; b < kSlots; b++)
+                if (a != b && slots[a].photo != SIZE_MAX && slots[b].photo != SIZE_MAX)
+                    overlaps.add(slots[a].photo, slots[b].photo, slots[a].light - slots[b].light);
+    return overlaps.gains(photos);
 }
 
 // The slot of each cell: iterated conditional modes (Besag 1986) over what speaks against each.

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "error.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
-#include "photos/pinhole_view.h"
+#include "photos/depth_picture.h"
 #include "photos/seen_bark.h"
 
 namespace treerec {
@@ -20,55 +19,11 @@ constexpr double kRough = 0.2;    // of the trunk's radius
 constexpr double kMargin = 1.25;  // of branches' radii: collars and moss
 constexpr size_t kCells = 64;     // that a thread takes at a time
 
-// How far away along the axis of the view the nearest wood but the stem is, by pixel.
-struct WoodDepth {
-    PinholeView view;
-    std::vector<float> depth;
-
-    // Whether there is anything before a square of the photo. at, reach: its middle and half its edge, in
-    // pixels of the view. far: along the axis.
-    bool hides(const DVec2& at, double reach, double far) const {
-        for (int k = 0; k < 9; k++) {
-            const int x = static_cast<int>(std::floor(at.x + reach * (k % 3 - 1)));
-            const int y = static_cast<int>(std::floor(at.y + reach * (k / 3 - 1)));
-            if (x < 0 || y < 0 || x >= view.width || y >= view.height) continue;
-            if (depth[static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x)] <
-                far / kBefore)
-                return true;
-        }
-        return false;
-    }
-
-    // A ball before or behind others.
-    void put(const DVec3& place, double radius, double thinnest) {
-        const auto at = view.project(place);
-        if (!at) return;
-        const double far = glm::dot(-view.turn[2], place - view.centre);
-        const double reach = std::max(thinnest, radius * view.focal / far);
-        if (at->x + reach < 0.0 || at->y + reach < 0.0 || at->x - reach > view.width ||
-            at->y - reach > view.height)
-            return;
-        const int left = static_cast<int>(std::max(at->x - reach, 0.0));
-        const int right = static_cast<int>(std::min(at->x + reach, view.width - 1.0));
-        const int top = static_cast<int>(std::max(at->y - reach, 0.0));
-        const int bottom = static_cast<int>(std::min(at->y + reach, view.height - 1.0));
-        for (int y = top; y <= bottom; y++)
-            for (int x = left; x <= right; x++) {
-                const DVec2 off = DVec2(x + 0.5, y + 0.5) - *at;
-                float& here =
-                    depth[static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x)];
-                if (glm::dot(off, off) <= reach * reach)
-                    here = std::min(here, static_cast<float>(far - radius));
-            }
-    }
-};
-
-WoodDepth depth_of(const Tree& tree, const std::vector<uint8_t>& is_stem, const SeenThings& things,
-                   const PinholeView& whole) {
-    WoodDepth wood{fitted(whole, kDepthEdge), {}};
-    const PinholeView& view = wood.view;
-    wood.depth.assign(static_cast<size_t>(view.width) * static_cast<size_t>(view.height),
-                      std::numeric_limits<float>::max());
+// All wood but the stem, and the things.
+DepthPicture depth_of(const Tree& tree, const std::vector<uint8_t>& is_stem, const SeenThings& things,
+                      const PinholeView& whole) {
+    DepthPicture wood(fitted(whole, kDepthEdge));
+    const PinholeView& view = wood.view();
     const DVec3 ahead = -view.turn[2];
     for (const NodeId id : tree.depth_first()) {
         const Node& node = tree.node(id);
@@ -167,8 +122,8 @@ BarkSurvey survey_bark(const Tree& tree, const TrunkChart& chart, const PhotoMod
         } catch (const Error&) {
             continue;  // a lens without a middle; such photos gave no points either
         }
-        const WoodDepth wood = depth_of(tree, is_stem, others, view);
-        const double scale = wood.view.focal / view.focal;
+        const DepthPicture wood = depth_of(tree, is_stem, others, view);
+        const double scale = wood.view().focal / view.focal;
         const DVec3 ahead = -view.turn[2];
         parallel_for(cells, kCells, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; i++) {
@@ -184,7 +139,8 @@ BarkSurvey survey_bark(const Tree& tree, const TrunkChart& chart, const PhotoMod
                              at->y <= camera.height - margin))
                     continue;
                 const auto straight = view.project(spots[i]->place);
-                if (!straight || wood.hides(*straight * scale, 0.5 * survey.cell / pixel * scale + 0.5, far))
+                if (!straight ||
+                    wood.hides(*straight * scale, 0.5 * survey.cell / pixel * scale + 0.5, far / kBefore))
                     continue;
                 std::vector<Glimpse>& known = survey.glimpses[i];
                 const Glimpse glimpse{p, cosine / pixel, pixel};

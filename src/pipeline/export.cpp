@@ -15,6 +15,8 @@
 #include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
+#include "mesh/linear_light.h"
+#include "photos/leaf_look.h"
 
 namespace treerec {
 
@@ -24,6 +26,7 @@ enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
 
 // Where a coarser level takes over, in heights of the tree: as in nodes/tree_levels.gd.
 constexpr double kSwitch[kMostLevels - 1] = {2.5, 6.0, 14.0, 30.0};
+constexpr double kShade = 0.7;              // of stored colours: leaf.gdshader's, deep in the crown
 constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
 
 Format format_of(const std::string& path) {
@@ -44,6 +47,14 @@ bool is_own_model(const std::string& path, std::string_view mark) {
     stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.resize(static_cast<size_t>(stream.gcount()));
     return begin.find(mark) != std::string::npos;
+}
+
+// The course over its peak, and what leaf.gdshader makes of shade.
+LeafTint leaf_tint(const LeafColours& colours) {
+    return [colours](const Vec3& place, float openness) {
+        const double shade = linear_of(kShade + (1.0 - kShade) * static_cast<double>(openness));
+        return Vec3(shade * course_at(colours, static_cast<double>(place.y)) / course_peak(colours));
+    };
 }
 
 // A model of several files names all but one of them itself: none of these may be somebody else's.
@@ -188,7 +199,25 @@ std::vector<NamedPicture> TreeExporter::pictures_for(size_t kind) const {
     for (NamedPicture& picture : pictures)
         for (const NamedPicture& own : options_.bark)
             if (own.name == picture.name) picture = own;
+    if (recoloured(kind)) recolour_leaves(pictures, uses_blade_picture(kinds_[kind].rules));
     return pictures;
+}
+
+bool TreeExporter::recoloured(size_t kind) const {
+    return options_.leaf_colours && options_.leaf_colours->seen() && look_of(kind) == look_of(0);
+}
+
+// So much lighter that the tints' factors, which glTF wants to be 0..1, bring them to the measured mean.
+void TreeExporter::recolour_leaves(std::vector<NamedPicture>& pictures, bool blade) const {
+    const LeafColours& colours = *options_.leaf_colours;
+    Image albedo = (blade ? make_blade_textures(options_.textures, kTextureSize / 2, kTextureSeed)
+                          : make_leaf_textures(options_.textures, kTextureSize, kTextureSeed))
+                       .albedo;
+    recolour(albedo, colours.albedo * course_peak(colours));
+    auto png = std::make_shared<const std::vector<uint8_t>>(encode_png(albedo));
+    for (NamedPicture& picture : pictures)
+        if (picture.name == "leaf_albedo")
+            picture = {picture.name, {reinterpret_cast<const char*>(png->data()), png->size()}, png};
 }
 
 void TreeExporter::write(const std::string& path) {
@@ -236,8 +265,12 @@ void TreeExporter::write(const std::string& path) {
     model.preset = options_.textures;
     model.pictures_beside = options_.pictures_beside;
     model.pictures = pictures_[0];
+    const auto tint_of = [&](size_t kind) {
+        return recoloured(kind) ? leaf_tint(*options_.leaf_colours) : LeafTint();
+    };
+    model.leaf_tint = tint_of(0);
     for (size_t kind = 1; kind < kinds_.size(); kind++)
-        model.other_materials.push_back({kinds_[kind].text, pictures_[kind]});
+        model.other_materials.push_back({kinds_[kind].text, pictures_[kind], tint_of(kind)});
     model.extras = {{"height_m", measured().height},
                     {"dbh_m", measured().dbh},
                     {"nodes", static_cast<double>(measured().nodes)},

@@ -9,6 +9,7 @@
 #include "exchange/material_textures.h"
 #include "foliage/leaves.h"
 #include "mesh/mesh.h"
+#include "photos/leaf_colours.h"
 #include "progress.h"
 #include "tree/measure.h"
 #include "tree/tree.h"
@@ -24,6 +25,8 @@ struct ExportOptions {
     bool pictures_beside = false;      // of a .glb: in a folder, as those of a .gltf are
     // The tree's own bark (encode_bark()), instead of the preset's.
     std::vector<NamedPicture> bark = {};
+    // Of the leaves that have no look of their own, instead of the preset's; passed over where not seen().
+    std::optional<LeafColours> leaf_colours = {};
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
@@ -54,6 +57,8 @@ class TreeExporter {
     int card_level(size_t kind);
     std::string look_of(size_t kind) const;
     std::vector<NamedPicture> pictures_for(size_t kind) const;
+    bool recoloured(size_t kind) const;
+    void recolour_leaves(std::vector<NamedPicture>& pictures, bool blade) const;
     struct Coarser {
         Mesh bark;
         std::vector<Mesh> leaves;

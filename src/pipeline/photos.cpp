@@ -25,7 +25,8 @@ constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
 constexpr double kPointsEnd = 0.85;  // of the cloud's part
 constexpr double kCloudEnd = 0.93;
-constexpr double kTreeEnd = 0.97;
+constexpr double kTreeEnd = 0.96;
+constexpr double kBarkEnd = 0.985;
 
 using json = nlohmann::json;
 
@@ -138,6 +139,38 @@ PhotoBark look_at_bark(const PhotosResult& result, size_t hold_out, Progress* pr
     }
 }
 
+// The points of leaves, without what grows around the foot, in the tree's frame.
+std::vector<DVec3> leaf_places(const Reconstruction& tree) {
+    std::vector<Vec3> points;
+    for (size_t i = 0; i < tree.wood.size(); i++)
+        if (!tree.wood[i]) points.push_back(tree.cloud.positions[i]);
+    std::vector<uint8_t> outside(points.size(), 0);
+    for (const int32_t i : points_outside(tree.foliage, points))
+        outside[static_cast<size_t>(i)] = 1;
+    std::vector<DVec3> places;
+    for (size_t i = 0; i < points.size(); i++)
+        if (!outside[i]) places.emplace_back(points[i]);
+    return places;
+}
+
+// As look_at_bark().
+LeafColours look_at_leaves(const PhotosResult& result, size_t hold_out, Progress* progress) {
+    LeafColours none;
+    none.why_not =
+        "The photos were not matched pixel by pixel, so that it is not known where they show leaves.";
+    if (result.made.pairs == 0) return none;
+    try {
+        const PhotoModel model = without_held_out(read_photo_model(result.photos.model, progress), hold_out);
+        return leaf_colours_of_photos(leaf_places(result.tree), result.tree.tree.frame(), model,
+                                      result.photos_folder, things_of(result, progress), {}, progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        none.why_not = error.what();
+        return none;
+    }
+}
+
 // Its pictures, or none: not those of another time either.
 void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder) {
     const bool made = bark && bark->textures;
@@ -199,7 +232,8 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
         left_out = readable.warnings;
     }
     SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
-        growing(progress, kCloudEnd, kTreeEnd), looking(progress, kTreeEnd, 1.0);
+        growing(progress, kCloudEnd, kTreeEnd), looking(progress, kTreeEnd, kBarkEnd),
+        tinting(progress, kBarkEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
     result.photos_folder = folder;
     result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
@@ -219,6 +253,10 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     if (options.bark) result.bark = look_at_bark(result, options.cloud.hold_out, &looking);
     if (result.bark && !result.bark->textures)
         result.tree.warnings.push_back("The tree has drawn bark. " + result.bark->why_not);
+    if (options.leaf_colours) result.leaf_colours = look_at_leaves(result, options.cloud.hold_out, &tinting);
+    // Bare trees bear drawn leaves, too. Without dense points, the bark says why.
+    if (result.leaf_colours && !result.leaf_colours->seen() && result.made.pairs > 0)
+        result.tree.warnings.push_back("The leaves have drawn colors. " + result.leaf_colours->why_not);
     write_bark(result.bark, utf8_of(path_of(out) / "bark"));
     std::vector<std::string> before = result.photos.warnings;
     before.insert(before.end(), result.made.warnings.begin(), result.made.warnings.end());

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "photos/bark_picture.h"
+#include "photos/leaf_colours.h"
 #include "photos/make_cloud.h"
 #include "photos/run_colmap.h"
 #include "pipeline/reconstruct.h"
@@ -17,6 +18,7 @@ struct PhotosOptions {
     MakeCloudOptions cloud;
     ReconstructOptions reconstruct;  // a known length is one in the cloud's coordinates
     bool bark = false;               // take the bark's pictures out of the photos, where they are good enough
+    bool leaf_colours = false;       // and the leaves' colours
 };
 
 // How finely photos are matched.
@@ -29,7 +31,8 @@ struct PhotosResult {
     bool sized_by_gps = false;      // the scale is that of photos.gps
     std::string photos_folder;      // where those lie that were read: given, taken out of a film, converted
     std::string cloud;              // the file that the tree was made of, in `out`
-    std::optional<PhotoBark> bark;  // where the options ask for it
+    std::optional<PhotoBark> bark;  // where the options ask for it,
+    std::optional<LeafColours> leaf_colours;  // and for them
 };
 
 // photos: their folder, or a film of a walk around the tree, or a folder with one, whose frames become photos

@@ -105,6 +105,31 @@ Json bark_json(const PhotoBark& bark) {
             {"area_m2", bark.area}};
 }
 
+Json leaf_colours_json(const LeafColours& colours) {
+    const auto color = [](const DVec3& v) { return Json{v.x, v.y, v.z}; };
+    Json json = {{"from", colours.seen() ? "photos" : "drawn"},
+                 {"why_drawn", colours.seen() ? Json() : Json(colours.why_not)},
+                 {"photos", colours.photos},
+                 {"points", colours.points}};
+    if (!colours.seen()) return json;
+    json.update({{"albedo", color(colours.albedo)},
+                 {"as_seen", color(colours.as_seen)},
+                 {"greenest", color(colours.greenest)},
+                 {"least_green", color(colours.least_green)},
+                 {"tone_spread", colours.tone_spread},
+                 {"low", color(colours.low)},
+                 {"high", color(colours.high)},
+                 {"low_height_m", colours.low_height},
+                 {"high_height_m", colours.high_height},
+                 {"bands", Json::array()}});
+    for (const LeafBand& band : colours.bands)
+        json["bands"].push_back({{"low_m", band.low},
+                                 {"high_m", band.high},
+                                 {"color", color(band.colour)},
+                                 {"points", band.points}});
+    return json;
+}
+
 Json photos_json(const ReportDetails& details) {
     const ColmapRun& run = *details.photos;
     Json cameras = Json::array();
@@ -263,6 +288,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
                 details.outline_lacks.empty() ? Json(nullptr) : Json(details.outline_lacks);
     }
     if (details.bark) json["bark"] = bark_json(*details.bark);
+    if (details.leaf_colours) json["leaf_colors"] = leaf_colours_json(*details.leaf_colours);
     return dump(json);
 }
 

@@ -7,6 +7,7 @@
 
 #include "exchange/tree_files.h"
 #include "photos/bark_picture.h"
+#include "photos/leaf_colours.h"
 #include "photos/run_colmap.h"
 #include "pipeline/judge_outline.h"
 #include "pipeline/reconstruct.h"
@@ -28,6 +29,7 @@ struct ReportDetails {
     std::string title = {};                        // of the page; else the scan's name
     std::optional<Image> outline_sheet = {};       // fidelity_sheet(), for the page
     std::optional<PhotoBark> bark = {};            // where it was looked for in the photos
+    std::optional<LeafColours> leaf_colours = {};  // likewise
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
@@ -64,6 +66,10 @@ struct ReportDetails {
 //   outline_lacks is a sentence, or null where nobody asked)}: of a scan that was made of photos alone
 //   bark {from "photos" or "drawn", why_drawn (a sentence, or null), photos, pixel_mm, detail_mm (null where
 //   no photo shows any), area_m2}: where it was looked for in photos (photos/bark_picture.h)
+//   leaf_colors {from "photos" or "drawn", why_drawn (a sentence, or null), photos, points, and where they
+//   are the photos', as linear light: albedo [r g b], as_seen, greenest, least_green, tone_spread, low, high
+//   (factors of albedo at low_height_m and high_height_m), bands [{low_m, high_m, color, points}]}: where
+//   they were looked for in photos (photos/leaf_colours.h)
 std::string report_json(const Reconstruction& result, const ReportDetails& details);
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].

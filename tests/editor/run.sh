@@ -65,7 +65,7 @@ make_project() {
     cp -r project/addons/tree_reconstruction "$work/project/addons/"
     mkdir "$work/project/addons/editor_test"
     cp -r tests/editor/test_plugin tests/editor/scenarios "$work/project/addons/editor_test/"
-    cp tests/godot/error_collector.gd tests/godot/photo_files.gd tests/godot/trunk_photos.gd tests/godot/photo_model.gd \
+    cp tests/godot/error_collector.gd tests/godot/photo_files.gd tests/godot/trunk_photos.gd tests/godot/leafy_photos.gd tests/godot/photo_model.gd \
         "$work/project/addons/editor_test/test_plugin/"
     # Nobody should see it in the pictures.
     touch "$work/project/addons/editor_test/.gdignore"

@@ -6,7 +6,9 @@ const PhotoFolder := preload("res://addons/tree_reconstruction/editor/photos/pho
 const PhotoLog := preload("res://addons/tree_reconstruction/editor/photos/photo_log.gd")
 const Widgets := preload("res://addons/tree_reconstruction/editor/dock/widgets.gd")
 const PhotoBark := preload("res://addons/tree_reconstruction/editor/photos/photo_bark.gd")
+const PhotoLeaves := preload("res://addons/tree_reconstruction/editor/photos/photo_leaves.gd")
 const PhotoFiles := preload("./photo_files.gd")
+const LeafyPhotos := preload("./leafy_photos.gd")
 const TrunkPhotos := preload("./trunk_photos.gd")
 
 const TARGET: String = "res://photo_test_tree.res"
@@ -164,13 +166,50 @@ func test_photos_give_their_bark() -> void:
 	_shut()
 
 
+func test_photos_give_their_leaf_colors() -> void:
+	_open()
+	_files = LeafyPhotos.new(folder.path_join("leafy"))
+	_panel.colmap = _files.colmap
+	Widgets.choose(_panel._time, "quick")
+	Widgets.choose(_panel._bark, false)
+	_panel._height.value = 2.5
+	_begin()
+	await _wait()
+	check(_made != null, "No tree was made: " + _panel.message.text)
+	var leaves: ShaderMaterial = PhotoLeaves.of(_made) as ShaderMaterial
+	if leaves == null:
+		check(false, "It has drawn leaves: %s" % "; ".join(_panel.making.get_warnings()))
+		_shut()
+		return
+	check_equal(leaves.resource_path, "res://photo_test_tree_leaves.res", "the leaves' file")
+	_panel.say_where(_made, false)
+	check(leaves.resource_path in _panel.message.text, "It says: " + _panel.message.text)
+	check(not "drawn colors" in _panel.message.text, "It says: " + _panel.message.text)
+	var measured: Dictionary = _made.provenance["report"]["leaf_colors"]
+	var wanted: Color = LeafyPhotos.LEAF.srgb_to_linear()
+	# Lit leaves are somewhat lighter than all are.
+	var light: float = measured["albedo"][1] / wanted.g
+	check(light > 1.0 and light < 1.4, "They are %.2f as light as they should be." % light)
+	check_near(
+		measured["albedo"][0] / measured["albedo"][1], wanted.r / wanted.g, 0.05, "red over green"
+	)
+	var again: TreeReconstruction = (
+		ResourceLoader.load(TARGET, "", ResourceLoader.CACHE_MODE_IGNORE_DEEP) as TreeReconstruction
+	)
+	check(PhotoLeaves.is_made(PhotoLeaves.of(again)), "The tree's file has forgotten its leaves.")
+	_shut()
+
+
 func test_bark_that_is_not_wanted_is_drawn() -> void:
 	_open()
 	Widgets.choose(_panel._bark, false)
+	Widgets.choose(_panel._leaf_colors, false)
 	_begin()
 	await _wait()
 	check(_made != null, "No tree was made: " + _panel.message.text)
 	check(not _made.provenance["report"].has("bark"), "It was looked for.")
+	check(not _made.provenance["report"].has("leaf_colors"), "Leaves were looked for.")
+	check(PhotoLeaves.of(_made) == null, "It has leaves of photos.")
 	check(not "drawn bark" in "; ".join(_panel.making.get_warnings()), "It complains of it.")
 	_shut()
 

@@ -3,12 +3,13 @@ extends SceneTree
 ## a folder of JPEGs, with the truth beside it. Needs a renderer:
 ##
 ##     godot --path project --script tests/photos/garden.gd -- TRUTH.txt FOLDER [--photos=40]
-##         [--leafy] [--width=1600] [--seed=1] [--masks]
+##         [--leafy] [--width=1600] [--seed=1] [--masks] [--leaf-tint=1.5,0.72,0.6]
 ##
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
 ## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
 ## right, down and ahead) and the focal length in pixels; with --masks, FOLDER/masks what is tree in
-## each, white on black, whatever stands before it.
+## each, white on black, whatever stands before it. --leaf-tint is what the oak's leaves are
+## multiplied by, as colors are stored.
 
 # The long side of a photo by its short one.
 const SHAPE: float = 1.5
@@ -35,6 +36,8 @@ void fragment() {
 	COLOR = vec4(texture(scene, from * shape.x / shape / 2.0 + 0.5).rgb * exposure, 1.0);
 }
 """
+
+const OAK_LEAF: String = "res://addons/tree_reconstruction/presets/oak_leaf.tres"
 
 var _random: RandomNumberGenerator = RandomNumberGenerator.new()
 var _scene: SubViewport = SubViewport.new()
@@ -193,6 +196,11 @@ func _build(tree: TreeReconstruction, size: Vector2i) -> void:
 	node.leaves = leafy
 	tree.leaf_preset = "oak"
 	node.reconstruction = tree
+	if _options.has("leaf-tint"):
+		var material: ShaderMaterial = load(OAK_LEAF).duplicate()
+		var parts: PackedFloat64Array = _options["leaf-tint"].split_floats(",")
+		material.set_shader_parameter(&"tint", Color(parts[0], parts[1], parts[2]))
+		node.leaf_material = material
 	_scene.add_child(node)
 	_add_light()
 	_add_ground()

@@ -62,6 +62,7 @@ TEST_F(PhotosCli, PhotosBecomeATree) {
     // They are no pictures, and nothing in them was matched; what was made at another time is not left there.
     EXPECT_TRUE(has(outcome.error, "The tree has drawn bark. The photos were not matched")) << outcome.error;
     EXPECT_TRUE(has(get("out/report.json"), "\"from\": \"drawn\"")) << get("out/report.json");
+    EXPECT_TRUE(has(get("out/report.json"), "so that it is not known where they show leaves."));
     put("out/bark/albedo.png", "old");
     // Nor has anybody asked their sky for its word: that it can't tell is no warning.
     EXPECT_FALSE(has(outcome.error, "not judged")) << outcome.error;
@@ -133,6 +134,7 @@ TEST_F(PhotosCli, WrongWordsAreTold) {
     EXPECT_EQ(run("photos photos -o out --time never").code, 2);
     EXPECT_EQ(run("photos photos -o out --matcher surf").code, 2);
     EXPECT_EQ(run("photos photos -o out --bark birch").code, 2);
+    EXPECT_EQ(run("photos photos -o out --leaf-colors green").code, 2);
     EXPECT_EQ(run("photos photos -o out --show-matches a.jpg").code, 1);
     EXPECT_EQ(run("photos photos -o out --show-matches a.jpg,b.jpg").code, 1) << "they are no pictures";
     EXPECT_EQ(run("photos photos -o out --known-length 1,2").code, 2);

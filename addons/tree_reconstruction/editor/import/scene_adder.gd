@@ -7,6 +7,7 @@ signal added(nodes: Array[TreeInstance3D])
 
 const ScanFiles: GDScript = preload("./scan_files.gd")
 const PhotoBark := preload("../photos/photo_bark.gd")
+const PhotoLeaves := preload("../photos/photo_leaves.gd")
 
 # How far away the view may look at the ground, in metres.
 const _REACH: float = 200.0
@@ -92,6 +93,7 @@ func add(trees: Array[TreeReconstruction], place: Vector3) -> Array[TreeInstance
 		var node: TreeInstance3D = TreeInstance3D.new()
 		node.reconstruction = trees[i]
 		node.bark_material = PhotoBark.of(trees[i])
+		node.leaf_material = PhotoLeaves.of(trees[i])
 		node.name = _name_of(trees[i])
 		node.position = place + offsets[i]
 		if parent is Node3D:

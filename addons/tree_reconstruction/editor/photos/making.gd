@@ -10,6 +10,7 @@ const Session := preload("../session.gd")
 const Jobs := preload("../jobs.gd")
 const PhotoFolder := preload("photo_folder.gd")
 const PhotoBark := preload("photo_bark.gd")
+const PhotoLeaves := preload("photo_leaves.gd")
 
 ## The folder that is worked in, while it runs and after.
 var work: String = ""
@@ -88,6 +89,7 @@ func get_stage() -> String:
 		"Sky": tr("Looking for the sky"),
 		"Thin wood": tr("Matching twigs"),
 		"Bark": tr("Taking the bark out of the photos"),
+		"Leaf colors": tr("Taking the leaves' colors out of the photos"),
 	}
 	# What comes before them is quick, and what comes after makes the tree.
 	var stage: String = tr("Making the tree")
@@ -113,12 +115,19 @@ static func _make(
 		made.resource_name = tree_path.get_file().get_basename()
 		if not running.cancelled and _has_bark(worker):
 			PhotoBark.give(made, PhotoBark.make(folder.path_join("bark"), made.get_leaf_look()))
+		if not running.cancelled and _has_leaf_colors(worker):
+			PhotoLeaves.give(made, PhotoLeaves.make(worker.get_report()["leaf_colors"], made))
 	return made
 
 
 static func _has_bark(worker: TreeReconstructor) -> bool:
 	var bark: Dictionary = worker.get_report().get("bark", {})
 	return bark.get("from", "") == "photos"
+
+
+static func _has_leaf_colors(worker: TreeReconstructor) -> bool:
+	var colors: Dictionary = worker.get_report().get("leaf_colors", {})
+	return colors.get("from", "") == "photos"
 
 
 func _on_made(made: TreeReconstruction, _ended: Jobs.Job, tree_path: String) -> void:
@@ -128,20 +137,21 @@ func _on_made(made: TreeReconstruction, _ended: Jobs.Job, tree_path: String) -> 
 			null, Session.Sentences.translate(_worker.get_error_message(), get_translation_domain())
 		)
 		return
-	var bark: String = ""
+	var beside: PackedStringArray = []
 	var error: Error = ERR_ALREADY_EXISTS
 	if not FileAccess.file_exists(tree_path):
-		# First, so that the tree's file can name it.
-		bark = _save_bark(made, tree_path)
+		# First, so that the tree's file can name them.
+		beside = [_save_bark(made, tree_path), _save_leaves(made, tree_path)]
 		error = ResourceSaver.save(made, tree_path, ResourceSaver.FLAG_COMPRESS)
 	if error != OK:
-		if not bark.is_empty():
-			DirAccess.remove_absolute(bark)
+		for path: String in beside:
+			if not path.is_empty():
+				DirAccess.remove_absolute(path)
 		_end(null, tr("%s can't be written: %s.") % [tree_path, error_string(error)])
 		return
 	made.take_over_path(tree_path)
 	if Engine.is_editor_hint():
-		for path: String in [bark, tree_path]:
+		for path: String in beside + PackedStringArray([tree_path]):
 			if not path.is_empty():
 				EditorInterface.get_resource_filesystem().update_file(path)
 	_end(made, "")
@@ -167,6 +177,27 @@ func _save_bark(made: TreeReconstruction, tree_path: String) -> String:
 			(
 				tr("The tree has drawn bark: %s can't be written: %s.")
 				% [PhotoBark.free_path(tree_path), error_string(error)]
+			)
+		)
+		return ""
+	return material.resource_path
+
+
+# The file of its leaves' material, likewise.
+func _save_leaves(made: TreeReconstruction, tree_path: String) -> String:
+	if not _has_leaf_colors(_worker):
+		return ""
+	var material: ShaderMaterial = PhotoLeaves.of(made) as ShaderMaterial
+	if material == null:
+		_warnings.append(tr("The leaves have drawn colors: their picture can't be read."))
+		return ""
+	var error: Error = PhotoLeaves.save(material, tree_path)
+	if error != OK:
+		PhotoLeaves.give(made, null)
+		_warnings.append(
+			(
+				tr("The leaves have drawn colors: %s can't be written: %s.")
+				% [PhotoLeaves.free_path(tree_path), error_string(error)]
 			)
 		)
 		return ""

@@ -7,6 +7,7 @@ const Session := preload("../session.gd")
 const PhotosPanel := preload("photos_panel.gd")
 const Menu := preload("folder_menu.gd")
 const PhotoFolder := preload("photo_folder.gd")
+const PhotoLeaves := preload("photo_leaves.gd")
 const SceneAdder := preload("../import/scene_adder.gd")
 const FreePlace := preload("../import/free_place.gd")
 
@@ -53,11 +54,13 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	_menu.chosen.connect(open)
 	plugin.add_context_menu_plugin(EditorContextMenuPlugin.CONTEXT_SLOT_FILESYSTEM, _menu)
 	session.photos_wanted.connect(open.bind(""))
+	session.tree_changed.connect(_on_tree_changed)
 	plugin.get_tree().process_frame.connect(_on_frame)
 
 
 func exit() -> void:
 	_plugin.get_tree().process_frame.disconnect(_on_frame)
+	_session.tree_changed.disconnect(_on_tree_changed)
 	_session.photos_wanted.disconnect(open)
 	_plugin.remove_context_menu_plugin(_menu)
 	_menu = null
@@ -84,8 +87,30 @@ func open(folder: String) -> void:
 		)
 
 
+## Has the leaves of the edited tree keep the colors of its photos when they are of another kind
+## now, by a step or its undoing.
+static func suit_leaves(session: Session) -> void:
+	if session.node == null or session.tree == null:
+		return
+	var material: ShaderMaterial = session.node.leaf_material as ShaderMaterial
+	if not PhotoLeaves.is_outdated(material, session.tree):
+		return
+	if not PhotoLeaves.suit(material, session.tree) or not PhotoLeaves.is_file(material):
+		return
+	var error: Error = ResourceSaver.save(material)
+	if error != OK:
+		session.say(
+			session.tr("%s can't be written: %s.") % [material.resource_path, error_string(error)],
+			Session.Kind.ERROR
+		)
+
+
 func _on_frame() -> void:
 	panel.update()
+
+
+func _on_tree_changed() -> void:
+	suit_leaves(_session)
 
 
 func _on_begins() -> void:

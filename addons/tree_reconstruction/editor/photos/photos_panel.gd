@@ -19,6 +19,7 @@ const PhotoLog := preload("photo_log.gd")
 const Circle := preload("circle.gd")
 const Making := preload("making.gd")
 const PhotoBark := preload("photo_bark.gd")
+const PhotoLeaves := preload("photo_leaves.gd")
 
 const _LOG_SECONDS: float = 0.5
 
@@ -44,6 +45,7 @@ var _time: OptionButton
 var _order: OptionButton
 var _matcher: OptionButton
 var _bark: OptionButton
+var _leaf_colors: OptionButton
 var _height: SpinBox
 var _target: LineEdit = LineEdit.new()
 var _options: GridContainer = GridContainer.new()
@@ -163,12 +165,15 @@ func _add_options() -> void:
 	Widgets.choose(_matcher, "sift")
 	_bark = Widgets.choice(["From the photos", "Drawn"], [true, false])
 	Widgets.choose(_bark, true)
+	_leaf_colors = Widgets.choice(["From the photos", "Drawn"], [true, false])
+	Widgets.choose(_leaf_colors, true)
 	_height = Widgets.number(0.0, 100.0, 0.01, "m")
 	_height.allow_greater = true
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
 	_add_option("Bark", tips["bark"], _bark)
 	_add_option("Compare", tips["order"], _order)
+	_add_option("Leaf colors", tips["leaf_colors"], _leaf_colors)
 	_add_option("Compare by", tips["matcher"], _matcher)
 	_add_option(
 		"Height of the tree",
@@ -253,6 +258,7 @@ func _on_begin() -> void:
 		"order": _order.get_selected_metadata(),
 		"matcher": _matcher.get_selected_metadata(),
 		"bark": _bark.get_selected_metadata(),
+		"leaf_colors": _leaf_colors.get_selected_metadata(),
 	}
 	if not colmap.is_empty():
 		options["colmap"] = colmap
@@ -291,6 +297,9 @@ func say_where(tree: TreeReconstruction, is_in_scene: bool) -> void:
 	var bark: Material = PhotoBark.of(tree)
 	if bark != null:
 		sentences.append(tr("Its bark is that of the photos: %s.") % bark.resource_path)
+	var leaves: Material = PhotoLeaves.of(tree)
+	if leaves != null:
+		sentences.append(tr("Its leaves have the colors of the photos: %s.") % leaves.resource_path)
 	if not is_in_scene:
 		sentences.append(tr("Drag it from the FileSystem dock into a scene."))
 	sentences.append(

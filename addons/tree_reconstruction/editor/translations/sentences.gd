@@ -272,6 +272,11 @@ const PATTERNS: PackedStringArray = [
 		"Too little of the trunk is seen: %s square metres of its clear part, in no piece of %s x %s cm"
 		+ " and some more around it. Take more photos of it, all around."
 	),
+	"The leaves have drawn colors. %s",
+	"The photos were not matched pixel by pixel, so that it is not known where they show leaves.",
+	"No leaves were found in the photos.",
+	"The photos show too few leaves: %s points of them, and colors need %s.",
+	"The photos show too few leaves: %s points of them in %s photos, and colors need %s in %s.",
 	(
 		"This tree does not say what it was made of, so it is not known from where it was photographed."
 		+ " Choose the folder of its COLMAP model."

@@ -2,7 +2,7 @@
 extends "../../test_plugin/scenario.gd"
 ## A tree from photos, with a program that stands in for COLMAP.
 
-const TrunkPhotos: GDScript = preload("../../test_plugin/trunk_photos.gd")
+const LeafyPhotos: GDScript = preload("../../test_plugin/leafy_photos.gd")
 const ADDER: String = "res://addons/tree_reconstruction/editor/import/scene_adder.gd"
 const TREE: String = "res://my_photos.res"
 const SETTING: String = "tree_reconstruction/photos/colmap"
@@ -28,7 +28,7 @@ func _button(text: String) -> Control:
 
 func _open() -> void:
 	await step("the dock leads to photos where no tree is selected")
-	_files = TrunkPhotos.new(OS.get_environment("TREE_EDITOR_TEST").path_join("phone"))
+	_files = LeafyPhotos.new(OS.get_environment("TREE_EDITOR_TEST").path_join("phone"))
 	EditorInterface.get_editor_settings().set_setting(SETTING, _files.colmap)
 	EditorInterface.set_main_screen_editor("3D")
 	await user.key("ctrl+n")
@@ -100,6 +100,13 @@ func _make() -> void:
 			"ShaderMaterial",
 			"what the FileSystem dock takes it for"
 		)
+	await step("its leaves have the colors of its photos, by another file")
+	var leaves: ShaderMaterial = node.leaf_material as ShaderMaterial
+	if check(leaves != null, "It has drawn leaves."):
+		check_equal(leaves.resource_path, TREE.get_basename() + "_leaves.res", "the leaves' file")
+		check(
+			leaves.get_shader_parameter(&"picture_gain") != Vector3.ONE, "They have drawn colors."
+		)
 	await user.frames(30)
 	await picture("photos-made")
 	check_equal(
@@ -130,6 +137,32 @@ func _compare() -> void:
 	await until(func() -> bool: return found.call() == null, "the photos are gone")
 
 
+# Other leaves get the same colors, and undo gives back the first.
+func _choose_leaves(node: TreeInstance3D) -> void:
+	await step("other leaves have the colors of the photos, too")
+	var selection: EditorSelection = EditorInterface.get_selection()
+	selection.clear()
+	selection.add_node(node)
+	if not await until(func() -> bool: return session().node == node, "the tree is edited"):
+		return
+	var leaves: ShaderMaterial = node.leaf_material as ShaderMaterial
+	if not check(leaves != null, "It has drawn leaves."):
+		return
+	var first: String = _picture_of(leaves)
+	session().set_value("Leaf Preset", session().tree, &"leaf_preset", "birch")
+	await until(
+		func() -> bool: return _picture_of(leaves).ends_with("/birch_leaf_albedo.png"),
+		"the birch's picture has them"
+	)
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("ctrl+z")
+	await until(func() -> bool: return _picture_of(leaves) == first, "undo brings the first back")
+
+
+static func _picture_of(material: ShaderMaterial) -> String:
+	return (material.get_shader_parameter(&"albedo_texture") as Texture2D).resource_path
+
+
 func _end() -> void:
 	await step("the tree goes with undo, and its file stays")
 	var root: Node = EditorInterface.get_edited_scene_root()
@@ -139,7 +172,9 @@ func _end() -> void:
 	await user.key("ctrl+shift+z")
 	check_equal(root.get_child_count(), 1, "trees after redo")
 	check((root.get_child(0) as TreeInstance3D).bark_material != null, "Redo has lost its bark.")
+	check((root.get_child(0) as TreeInstance3D).leaf_material != null, "Redo has lost its leaves.")
 	check(FileAccess.file_exists(TREE), "The tree's file is gone.")
+	await _choose_leaves(root.get_child(0) as TreeInstance3D)
 	await step("from the FileSystem dock it comes with its bark, too")
 	await user.key("ctrl+z")
 	var adder: RefCounted = (load(ADDER) as GDScript).new(EditorInterface.get_editor_undo_redo())
@@ -147,6 +182,7 @@ func _end() -> void:
 	adder.add(trees, Vector3.ZERO)
 	if check_equal(root.get_child_count(), 1, "trees"):
 		check((root.get_child(0) as TreeInstance3D).bark_material != null, "It has drawn bark.")
+		check((root.get_child(0) as TreeInstance3D).leaf_material != null, "It has drawn leaves.")
 	# The scene is nothing to keep.
 	EditorInterface.save_scene_as("res://photo_scene.tscn", false)
 	await user.frames(10)

@@ -1,0 +1,20 @@
+// Leaf pictures in the colours that photos gave.
+#pragma once
+
+#include "geometry/vec.h"
+#include "mesh/image.h"
+#include "photos/leaf_colours.h"
+
+namespace treerec {
+
+// The picture with its veins and shades, each channel of its stored levels multiplied by one number, so that
+// the opaque part's mean is `mean` (linear light). picture: RGBA, sRGB. Returns those numbers.
+DVec3 recolour(Image& picture, const DVec3& mean);
+
+// What leaves at a height (metres above the root) are multiplied by: the course of the colours.
+DVec3 course_at(const LeafColours& colours, double height);
+
+// The largest factor of the course, by channel: with pictures that are by it lighter, factors are 0..1.
+DVec3 course_peak(const LeafColours& colours);
+
+}  // namespace treerec
