@@ -22,6 +22,7 @@ constexpr const char* kMethod = "points 5";  // another number where another clo
 constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
+constexpr double kMarkersEnd = 0.62;
 constexpr double kCloudEnd = 0.93;
 constexpr double kTreeEnd = 0.97;
 
@@ -113,6 +114,43 @@ PhotoBark look_at_bark(const PhotosResult& result, size_t hold_out, Progress* pr
     }
 }
 
+// What the photos' printed markers are in the model.
+MarkerScale ask_markers(const PhotosResult& result, const std::string& out, const PhotosOptions& options,
+                        Progress* progress) {
+    const PhotoModel model =
+        without_held_out(read_photo_model(result.photos.model, progress), options.cloud.hold_out);
+    const SeenMarkers seen = markers_of_photos(model, result.photos_folder,
+                                               utf8_of(path_of(out) / "colmap" / "markers.json"), progress);
+    MarkerScale scale = measure_markers(model, seen.photos, options.marker_side);
+    scale.unreadable = seen.unreadable;
+    return scale;
+}
+
+// The tree's size by what the user told, by markers or by GPS, the first of these that there is, and what is
+// to be said of the others. told: the user has given a scale; tree: has the one that was taken.
+std::vector<std::string> size_sentences(const PhotosResult& result, bool told) {
+    std::vector<std::string> sentences;
+    const MarkerScale& marker = result.marker;
+    const GpsScale& gps = result.photos.gps;
+    const double scale = result.tree.orient.metres_per_unit;
+    if (const std::string sentence = marker_sentence(marker, told); !sentence.empty())
+        sentences.push_back(sentence);
+    if (!told && !result.sized_by_marker && gps.photos > 0)
+        sentences.push_back(gps_sentence(gps, result.tree.measured.height));
+    const auto compare = [&](const char* one, double other, const char* name) {
+        if (const std::string sentence = disagreement(scale, one, other, name); !sentence.empty())
+            sentences.push_back(sentence);
+    };
+    const double by_gps = gps.usable() ? gps.metres_per_unit : 0.0;
+    if (told) {
+        compare("the size that was told", marker.metres_per_unit(), "its marker");
+        compare("the size that was told", by_gps, "the photos' GPS");
+    } else if (result.sized_by_marker) {
+        compare("its marker", by_gps, "the photos' GPS");
+    }
+    return sentences;
+}
+
 // Its pictures, or none: not those of another time either.
 void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder) {
     const bool made = bark && bark->textures;
@@ -173,11 +211,13 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
         folder = readable.folder;
         left_out = readable.warnings;
     }
-    SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
-        growing(progress, kCloudEnd, kTreeEnd), looking(progress, kTreeEnd, 1.0);
+    SubProgress placing(progress, begin, kColmapEnd), marking(progress, kColmapEnd, kMarkersEnd),
+        making(progress, kMarkersEnd, kCloudEnd), growing(progress, kCloudEnd, kTreeEnd),
+        looking(progress, kTreeEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
     result.photos_folder = folder;
     result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
+    result.marker = ask_markers(result, out, options, &marking);
     making.update(0.0, "Cloud");
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
@@ -186,11 +226,13 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     const GpsScale& gps = result.photos.gps;
     const OrientOptions& orient = reconstruct.orient;
     const bool has_scale = orient.metres_per_unit || orient.known_height || orient.known_length;
-    result.sized_by_gps = !has_scale && gps.usable();
+    result.sized_by_marker = !has_scale && result.marker.usable();
+    result.sized_by_gps = !has_scale && !result.sized_by_marker && gps.usable();
+    if (result.sized_by_marker) reconstruct.orient.metres_per_unit = result.marker.metres_per_unit();
     if (result.sized_by_gps) reconstruct.orient.metres_per_unit = gps.metres_per_unit;
     result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
-    if (!has_scale && gps.photos > 0)
-        result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
+    for (const std::string& sentence : size_sentences(result, has_scale))
+        result.tree.warnings.push_back(sentence);
     if (options.bark) result.bark = look_at_bark(result, options.cloud.hold_out, &looking);
     if (result.bark && !result.bark->textures)
         result.tree.warnings.push_back("The tree has drawn bark. " + result.bark->why_not);
