@@ -267,6 +267,15 @@ std::optional<FoundMarker> read_marker(const GreyPicture& picture, const Outline
     return marker;
 }
 
+bool has_inside(const Outline& outline, const DVec2& place) {
+    for (size_t k = 0; k < 4; k++) {
+        const DVec2 edge = outline[(k + 1) % 4] - outline[k], to = place - outline[k];
+        // The corners' order may start anywhere, and runs clockwise.
+        if (edge.x * to.y - edge.y * to.x < 0.0) return false;
+    }
+    return true;
+}
+
 // Each pixel the mean of times x times ones.
 GreyPicture reduced_by(const GreyPicture& picture, int times) {
     GreyPicture small(picture.width / times, picture.height / times);
@@ -294,7 +303,7 @@ double FoundMarker::mean_side() const {
 
 std::vector<FoundMarker> find_markers(const GreyPicture& picture, const MarkerOptions& options,
                                       const Progress* progress) {
-    std::vector<FoundMarker> markers;
+    std::vector<FoundMarker> found, markers;
     if (picture.width < 3 || picture.height < 3) return markers;
     const double longer = std::max(picture.width, picture.height);
     const int times = std::max(1, static_cast<int>(std::lround(longer / std::max(64, options.most_pixels))));
@@ -307,15 +316,19 @@ std::vector<FoundMarker> find_markers(const GreyPicture& picture, const MarkerOp
             corner *= times;
         const std::optional<FoundMarker> marker = read_marker(picture, outline, 1.5 * times + 0.5);
         if (!marker) continue;
-        const auto same = std::find_if(markers.begin(), markers.end(), [&](const FoundMarker& other) {
-            return other.id == marker->id &&
-                   glm::distance(other.centre(), marker->centre()) < 0.5 * marker->mean_side();
-        });
-        if (same == markers.end())
-            markers.push_back(*marker);
-        else if (marker->mended < same->mended)
-            *same = *marker;
+        found.push_back(*marker);
     }
+    // The largest first: cells of a marker may happen to look like another one, and the same one is found in
+    // windows of several sizes.
+    std::stable_sort(found.begin(), found.end(), [](const FoundMarker& a, const FoundMarker& b) {
+        return a.mended != b.mended ? a.mended < b.mended : a.mean_side() > b.mean_side();
+    });
+    for (const FoundMarker& marker : found)
+        if (std::none_of(markers.begin(), markers.end(), [&](const FoundMarker& other) {
+                return has_inside(other.corners, marker.centre()) ||
+                       has_inside(marker.corners, other.centre());
+            }))
+            markers.push_back(marker);
     std::stable_sort(markers.begin(), markers.end(), [](const FoundMarker& a, const FoundMarker& b) {
         return a.id != b.id ? a.id < b.id : a.centre().x < b.centre().x;
     });

@@ -157,6 +157,9 @@ void measure_sides(MeasuredMarker& marker) {
     double squares = 0.0;
     for (const double length : lengths)
         squares += (length - marker.side) * (length - marker.side);
+    marker.bent = 0.5 *
+                  glm::length(marker.corners[0] + marker.corners[2] - marker.corners[1] - marker.corners[3]) /
+                  marker.side;
     marker.uneven = std::sqrt(squares / static_cast<double>(lengths.size())) / marker.side;
 }
 
@@ -171,9 +174,9 @@ MeasuredMarker measure(int id, const std::vector<Sight>& sights) {
     MeasuredMarker marker;
     marker.id = id;
     marker.photos = sights.size();
-    const std::string name = "The marker " + std::to_string(id);
     if (sights.size() < MarkerScale::kLeastPhotos) {
-        marker.why_not = name + " tells no size: it is in one photo alone, and two or more are needed.";
+        marker.why_not = "The marker " + std::to_string(id) +
+                         " tells no size: it is in one photo alone, and two are needed at least.";
         return marker;
     }
     std::vector<const Sight*> kept = largest_agreement(sights);
@@ -190,21 +193,20 @@ MeasuredMarker measure(int id, const std::vector<Sight>& sights) {
         for (size_t i = 0; i < j; i++)
             marker.parallax = std::max(marker.parallax, angle_between(*kept[i], *kept[j], marker.corners[0]));
     if (kept.size() < MarkerScale::kLeastPhotos) {
-        marker.why_not =
-            name +
-            " tells no size: the photos that show it do not agree on where it is, or see it from "
-            "one side alone. Did it move, or are there two of them?";
+        marker.why_not = "The marker " + std::to_string(id) +
+                         " tells no size: the photos that show it do not agree on where it is, or were taken "
+                         "from one side. It must not move, and no other one may be like it.";
         return marker;
     }
     measure_sides(marker);
     if (marker.parallax < MarkerScale::kLeastParallax)
-        marker.why_not =
-            name +
-            " tells no size: the photos that show it were taken from too near to each other. Take "
-            "some more from farther to both sides.";
-    else if (!(marker.uneven <= MarkerScale::kMostUneven))
-        marker.why_not = name + " tells no size: in the photos it is no square, by " +
-                         percent(marker.uneven) + " %. It has to lie flat, and to stay where it is.";
+        marker.why_not = "The marker " + std::to_string(id) +
+                         " tells no size: the photos that show it were taken from too near to each other. "
+                         "Take more of them, from both sides.";
+    else if (!(std::max(marker.uneven, marker.bent) <= MarkerScale::kMostUneven))
+        marker.why_not = "The marker " + std::to_string(id) +
+                         " tells no size: in the photos it is no square. It has to lie flat, and to stay "
+                         "where it is.";
     return marker;
 }
 
@@ -274,13 +276,12 @@ std::string marker_sentence(const MarkerScale& scale, bool told) {
     if (scale.told_side > 0.0) {
         if (usable > 0) return {};
         if (scale.markers.empty())
-            return (scale.unreadable > 0 ? std::to_string(scale.unreadable) +
-                                               " of the photos could not be looked at for markers. "
-                                         : std::string()) +
-                   "No photo shows a marker whose size was told: all of its black square has to be seen, "
-                   "with "
-                   "white around it, large enough for 24 pixels, in two photos or more. Markers are those of "
-                   "ArUco's DICT_4X4_50.";
+            return scale.unreadable > 0
+                       ? "No photo shows a marker whose size was told, and " +
+                             std::to_string(scale.unreadable) + " of them could not be looked at for one."
+                       : "No photo shows a marker whose size was told. It is one of ArUco's DICT_4X4_50, and "
+                         "two photos or more must show all of it, at least 24 pixels wide, with white around "
+                         "it.";
         // What is said of the one that is seen most.
         const auto most = std::max_element(
             scale.markers.begin(), scale.markers.end(),
@@ -288,19 +289,19 @@ std::string marker_sentence(const MarkerScale& scale, bool told) {
         return most->why_not;
     }
     if (usable == 0 || told) return {};
-    return (usable == 1 ? "A printed marker (id " : "Printed markers (ids ") + ids + ") " +
-           (usable == 1 ? "is" : "are") + " in " + std::to_string(photos) +
-           " photos: tell the side of the black square, and the tree gets its size by it (--marker of the "
-           "program, Marker's side in the editor).";
+    return "A printed marker (id " + ids + ") is in " + std::to_string(photos) +
+           " photos: tell the side of its black square (--marker, or Marker's side in the editor), and the "
+           "tree "
+           "gets its size by it.";
 }
 
-std::string disagreement(double scale, const std::string& one, double other_scale, const std::string& other) {
+std::string disagreement(const std::string& one, double scale, const std::string& other, double other_scale) {
     constexpr double kMost = 0.05;
     if (!(scale > 0.0) || !(other_scale > 0.0)) return {};
     const double by = scale / other_scale - 1.0;
     if (std::abs(by) <= kMost) return {};
-    return "The tree is " + percent(std::abs(by)) + " % " + (by > 0.0 ? "larger" : "smaller") + " by " + one +
-           " than by " + other + "; what it has is the size by " + one + ".";
+    return "By " + one + ", which was taken, the tree is " + percent(std::abs(by)) + " % " +
+           (by > 0.0 ? "higher" : "lower") + " than by " + other + ".";
 }
 
 }  // namespace treerec

@@ -20,6 +20,7 @@ struct MeasuredMarker {
     double parallax = 0.0;           // degrees: the widest angle between two of their lines of sight
     double side = 0.0;               // in the model's unit, the mean of four; 0 where it can't be measured
     double uneven = 0.0;             // how unlike its sides and diagonals / sqrt(2) are: deviation by mean
+    double bent = 0.0;               // how far its diagonals are apart in their middles, by its side
     std::array<DVec3, 4> corners{};  // in the model's coordinates, in the order of FoundMarker
     std::string why_not;             // a sentence where it tells no size
 
@@ -27,8 +28,8 @@ struct MeasuredMarker {
 };
 
 struct MarkerScale {
-    // Corners that are found to a part of a pixel make a square of a print to 2 %, unless it is bent, or the
-    // photos are wrong about it.
+    // Of `uneven` and `bent`: corners that are found to a part of a pixel make a square of a print to 2 %,
+    // unless it is bent, or the photos are wrong about it.
     static constexpr double kMostUneven = 0.05;
     static constexpr double kLeastParallax = 4.0;  // degrees
     static constexpr size_t kLeastPhotos = 2;
@@ -50,12 +51,12 @@ struct MarkerScale {
 // median of their sides, weighed by photos. side: of the printed black square, metres; 0 is not known.
 MarkerScale measure_markers(const PhotoModel& model, std::span<const PhotoMarkers> seen, double side);
 
-// "A marker (id 3) is in 14 photos: ...": what a user should know of it, or nothing. told: the user has told
-// another size, so that the marker need not.
+// Why markers tell no size though their side is told, or that they would if it were; else nothing. told: the
+// user has told the tree's size otherwise.
 std::string marker_sentence(const MarkerScale& scale, bool told);
 
-// A sentence where two scales, in metres per unit of the model, differ by more than 5 %; else nothing.
-// one, other: "the marker", "the photos' GPS".
-std::string disagreement(double scale, const std::string& one, double other_scale, const std::string& other);
+// A sentence where two scales, in metres per unit of the model, differ by more than 5 %; else nothing. one:
+// the one that was taken; both as in "the printed marker".
+std::string disagreement(const std::string& one, double scale, const std::string& other, double other_scale);
 
 }  // namespace treerec

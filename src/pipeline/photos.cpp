@@ -137,16 +137,16 @@ std::vector<std::string> size_sentences(const PhotosResult& result, bool told) {
         sentences.push_back(sentence);
     if (!told && !result.sized_by_marker && gps.photos > 0)
         sentences.push_back(gps_sentence(gps, result.tree.measured.height));
-    const auto compare = [&](const char* one, double other, const char* name) {
-        if (const std::string sentence = disagreement(scale, one, other, name); !sentence.empty())
+    const auto compare = [&](const char* one, const char* other, double other_scale) {
+        if (const std::string sentence = disagreement(one, scale, other, other_scale); !sentence.empty())
             sentences.push_back(sentence);
     };
     const double by_gps = gps.usable() ? gps.metres_per_unit : 0.0;
     if (told) {
-        compare("the size that was told", marker.metres_per_unit(), "its marker");
-        compare("the size that was told", by_gps, "the photos' GPS");
+        compare("the size that was told", "the printed marker", marker.metres_per_unit());
+        compare("the size that was told", "the photos' GPS", by_gps);
     } else if (result.sized_by_marker) {
-        compare("its marker", by_gps, "the photos' GPS");
+        compare("the printed marker", "the photos' GPS", by_gps);
     }
     return sentences;
 }
