@@ -290,9 +290,7 @@ std::string marker_sentence(const MarkerScale& scale, bool told) {
     }
     if (usable == 0 || told) return {};
     return "A printed marker (id " + ids + ") is in " + std::to_string(photos) +
-           " photos: tell the side of its black square (--marker, or Marker's side in the editor), and the "
-           "tree "
-           "gets its size by it.";
+           " photos: with the side of its black square (--marker) the tree gets its size by it.";
 }
 
 std::string disagreement(const std::string& one, double scale, const std::string& other, double other_scale) {
@@ -300,8 +298,10 @@ std::string disagreement(const std::string& one, double scale, const std::string
     if (!(scale > 0.0) || !(other_scale > 0.0)) return {};
     const double by = scale / other_scale - 1.0;
     if (std::abs(by) <= kMost) return {};
-    return "By " + one + ", which was taken, the tree is " + percent(std::abs(by)) + " % " +
-           (by > 0.0 ? "higher" : "lower") + " than by " + other + ".";
+    const std::string percents = percent(std::abs(by));
+    return by > 0.0
+               ? "By " + one + ", the tree is " + percents + " % higher than by " + other + "; the former was taken."
+               : "By " + one + ", the tree is " + percents + " % lower than by " + other + "; the former was taken.";
 }
 
 }  // namespace treerec

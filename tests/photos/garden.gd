@@ -334,6 +334,9 @@ func _add_marker(side: float) -> void:
 		quit(1)
 		return
 	var picture: Image = Image.load_from_file(path)
+	var metres: Vector2 = Vector2(picture.get_size()) / MARKER_PIXELS
+	# Each mipmap of another size would leave out a row, and show the marker that much larger.
+	picture.resize(4096, 4096, Image.INTERPOLATE_LANCZOS)
 	picture.generate_mipmaps()
 	var paper: StandardMaterial3D = StandardMaterial3D.new()
 	paper.albedo_texture = ImageTexture.create_from_image(picture)
@@ -341,7 +344,7 @@ func _add_marker(side: float) -> void:
 	paper.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
 	paper.roughness = 1.0
 	var page: QuadMesh = QuadMesh.new()
-	page.size = Vector2(picture.get_size()) / MARKER_PIXELS
+	page.size = metres
 	page.material = paper
 	var wood: BoxMesh = BoxMesh.new()
 	wood.size = Vector3(page.size.x + 0.02, page.size.y + 0.02, 0.02)
