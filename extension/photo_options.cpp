@@ -39,7 +39,8 @@ TypedArray<Dictionary> list_options() {
          "Takes the bark's pictures out of the photos; without it, or where these are too coarse, the tree "
          "has the drawn bark of its kind."},
         {"marker_side", 0.0, PROPERTY_HINT_RANGE, "0,10,0.0001,or_greater,suffix:m",
-         "The side of the black square of printed markers that the photos show: it sets the tree's size. 0 is "
+         "The side of the black square of printed markers that the photos show: it sets the tree's size. 0 "
+         "is "
          "not known."},
         {"colmap", "", PROPERTY_HINT_GLOBAL_FILE, "",
          "The program COLMAP, or the folder that it is in; empty looks for it."},

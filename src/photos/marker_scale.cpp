@@ -299,9 +299,10 @@ std::string disagreement(const std::string& one, double scale, const std::string
     const double by = scale / other_scale - 1.0;
     if (std::abs(by) <= kMost) return {};
     const std::string percents = percent(std::abs(by));
-    return by > 0.0
-               ? "By " + one + ", the tree is " + percents + " % higher than by " + other + "; the former was taken."
-               : "By " + one + ", the tree is " + percents + " % lower than by " + other + "; the former was taken.";
+    return by > 0.0 ? "By " + one + ", the tree is " + percents + " % higher than by " + other +
+                          "; the former was taken."
+                    : "By " + one + ", the tree is " + percents + " % lower than by " + other +
+                          "; the former was taken.";
 }
 
 }  // namespace treerec

@@ -8,8 +8,8 @@ extends SceneTree
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
 ## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
 ## right, down and ahead) and the focal length in pixels; with --masks, FOLDER/masks what is tree in
-## each, white on black, whatever stands before it. With --marker, a printed marker whose black square
-## is so many metres wide leans on a board near the tree's foot.
+## each, white on black, whatever stands before it. With --marker, a printed marker whose black
+## square is so many metres wide leans on a board near the tree's foot.
 
 # The long side of a photo by its short one.
 const SHAPE: float = 1.5

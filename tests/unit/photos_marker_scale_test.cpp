@@ -177,8 +177,9 @@ TEST(MarkerScale, IsHintedAtWhereItsSideIsNotTold) {
 TEST(MarkerScale, TwoScalesThatDisagreeAreSaid) {
     EXPECT_EQ(disagreement("the printed marker", 1.0, "the photos' GPS", 1.04), "");
     EXPECT_EQ(disagreement("the printed marker", 1.0, "the photos' GPS", 0.0), "");
-    EXPECT_EQ(disagreement("the printed marker", 1.2, "the photos' GPS", 1.0),
-              "By the printed marker, the tree is 20 % higher than by the photos' GPS; the former was taken.");
+    EXPECT_EQ(
+        disagreement("the printed marker", 1.2, "the photos' GPS", 1.0),
+        "By the printed marker, the tree is 20 % higher than by the photos' GPS; the former was taken.");
     EXPECT_TRUE(has(disagreement("the printed marker", 0.9, "the photos' GPS", 1.0), "10 % lower"));
 }
 

@@ -331,9 +331,7 @@ const PATTERNS: PackedStringArray = [
 		"The photos' GPS does not tell the size: it is too vague for a circle as small as theirs, or its"
 		+ " places do not agree with the photos."
 	),
-	(
-		"No photo shows a marker whose size was told, and %s of them could not be looked at for one."
-	),
+	"No photo shows a marker whose size was told, and %s of them could not be looked at for one.",
 	(
 		"No photo shows a marker whose size was told. It is one of ArUco's DICT_4X4_50, and two photos or"
 		+ " more must show all of it, at least 24 pixels wide, with white around it."
