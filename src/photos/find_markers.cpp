@@ -145,6 +145,7 @@ std::optional<Edges> refine(const GreyPicture& picture, const Outline& rough, do
             if (!meet(before.middle, before.way, after.middle, after.way, next[k])) return {};
             if (!(glm::distance(next[k], rough[k]) < 2.0 * uncertain + 0.2 * mean_side(rough))) return {};
         }
+        if (!is_convex(next)) return {};
         edges.outline = next;
     }
     return edges;

@@ -209,10 +209,9 @@ bool four_lines(const Loop& loop, const std::vector<DVec2>& corners, double leas
         if (!meet(before.middle, before.way, after.middle, after.way, outline[k])) return false;
     }
     const double side = mean_side(outline);
-    if (!(side >= least_side)) return false;
+    if (!(side >= least_side) || !is_convex(outline)) return false;
     for (size_t k = 0; k < 4; k++) {
-        const DVec2 &a = outline[(k + 3) % 4], &b = outline[k], &c = outline[(k + 1) % 4];
-        if (!(cross(b - a, c - b) > 0.05 * glm::distance(a, b) * glm::distance(b, c))) return false;
+        const DVec2 &b = outline[k], &c = outline[(k + 1) % 4];
         // Blur rounds corners by no more than that.
         if (glm::distance(b, c) < 0.3 * side || glm::distance(b, corners[k]) > 0.25 * side + 2.0)
             return false;
@@ -235,6 +234,15 @@ double mean_side(const Outline& outline) {
     for (size_t k = 0; k < 4; k++)
         sum += glm::distance(outline[k], outline[(k + 1) % 4]);
     return 0.25 * sum;
+}
+
+bool is_convex(const Outline& outline) {
+    constexpr double kSine = 0.05;
+    for (size_t k = 0; k < 4; k++) {
+        const DVec2 in = outline[k] - outline[(k + 3) % 4], out = outline[(k + 1) % 4] - outline[k];
+        if (!(cross(in, out) > kSine * glm::length(in) * glm::length(out))) return false;
+    }
+    return true;
 }
 
 std::vector<Outline> dark_outlines(const GreyPicture& picture, double least_side, const Progress* progress) {

@@ -18,6 +18,9 @@ bool meet(const DVec2& a, const DVec2& b, const DVec2& c, const DVec2& d, DVec2&
 
 double mean_side(const Outline& outline);
 
+// Whether it turns clockwise at each corner, by 3 degrees or more.
+bool is_convex(const Outline& outline);
+
 // The outlines of connected pixels that are darker than the mean of a window around them, in windows of
 // several sizes, as far as four straight lines follow them: a marker may be found several times.
 // least_side: pixels. Throws Cancelled.
