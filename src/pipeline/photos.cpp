@@ -1,5 +1,6 @@
 #include "pipeline/photos.h"
 
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -141,7 +142,10 @@ std::vector<std::string> size_sentences(const PhotosResult& result, bool told) {
         if (const std::string sentence = disagreement(one, scale, other, other_scale); !sentence.empty())
             sentences.push_back(sentence);
     };
-    const double by_gps = gps.usable() ? gps.metres_per_unit : 0.0;
+    // What GPS may well be off by is no disagreement.
+    const bool gps_differs =
+        gps.usable() && std::abs(scale / gps.metres_per_unit - 1.0) > 2.0 * gps.relative_error;
+    const double by_gps = gps_differs ? gps.metres_per_unit : 0.0;
     if (told) {
         compare("the size that was told", "the printed marker", marker.metres_per_unit());
         compare("the size that was told", "the photos' GPS", by_gps);
