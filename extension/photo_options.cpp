@@ -1,3 +1,4 @@
+#include <cmath>
 #include <godot_cpp/core/class_db.hpp>
 #include <iterator>
 #include <string>
@@ -40,6 +41,10 @@ TypedArray<Dictionary> list_options() {
         {"leaf_colors", true, PROPERTY_HINT_NONE, "",
          "Gives the leaves the colors that the photos show, by height; without it, or where the photos show "
          "too few leaves, they have the drawn colors of their kind."},
+        {"marker_side", 0.0, PROPERTY_HINT_RANGE, "0,10,0.0001,or_greater,suffix:m",
+         "The side of the black square of printed markers that the photos show: it sets the tree's size. 0 "
+         "is "
+         "not known."},
         {"colmap", "", PROPERTY_HINT_GLOBAL_FILE, "",
          "The program COLMAP, or the folder that it is in; empty looks for it."},
     };
@@ -74,7 +79,8 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
         const Variant value = p_options[name];
         const bool is_word = value.get_type() == Variant::STRING || value.get_type() == Variant::STRING_NAME;
         const Variant::Type wanted = Variant::Type(int(option["type"]));
-        if (value.get_type() != wanted && !(is_word && wanted == Variant::STRING)) {
+        const bool is_number = value.get_type() == Variant::INT && wanted == Variant::FLOAT;
+        if (value.get_type() != wanted && !is_number && !(is_word && wanted == Variant::STRING)) {
             throw treerec::Error("The option \"" + to_std(String(name)) + "\" must be of type " +
                                  to_std(Variant::get_type_name(wanted)) + ".");
         }
@@ -90,6 +96,11 @@ ParsedPhotoOptions parse_photo_options(const Dictionary& p_options) {
     pipeline.colmap.effort = treerec::parse_photo_effort(to_std(String(values["time"])));
     pipeline.cloud = treerec::cloud_options_of(pipeline.colmap.effort);
     pipeline.cloud.dense = bool(values["dense"]);
+    const double side = values["marker_side"];
+    if (!std::isfinite(side) || side < 0.0) {
+        throw treerec::Error("The option \"marker_side\" must be a finite number that isn't negative.");
+    }
+    pipeline.marker_side = side;
     pipeline.bark = bool(values["bark"]);
     pipeline.leaf_colours = bool(values["leaf_colors"]);
     pipeline.reconstruct = options.tree.pipeline;

@@ -1,5 +1,6 @@
 #include "tree_reconstructor.h"
 
+#include <algorithm>
 #include <godot_cpp/classes/json.hpp>
 #include <godot_cpp/classes/time.hpp>
 #include <utility>
@@ -7,7 +8,10 @@
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
+#include "photos/marker_code.h"
+#include "photos/marker_page.h"
 #include "pipeline/export.h"
+#include "pipeline/marker_file.h"
 #include "pipeline/photos.h"
 #include "pipeline/report.h"
 #include "reconstruct_options.h"
@@ -85,7 +89,7 @@ Ref<TreeReconstruction> TreeReconstructor::_reconstruct(const std::function<Task
         treerec::Reconstruction result = task.run(&reconstructing, details);
         listener.update(kReportBegins, "Reporting");
         details.scan_path = to_std(String(task.provenance["source"]));
-        if (details.sized_by_gps) {
+        if (details.sized_by_gps || details.sized_by_marker) {
             // The cloud alone does not tell it when the tree is made again.
             Dictionary options = task.provenance["options"];
             options["scale"] = result.orient.metres_per_unit;
@@ -156,6 +160,8 @@ Ref<TreeReconstruction> TreeReconstructor::reconstruct_photos(const String& p_ph
             treerec::PhotosResult made = treerec::reconstruct_photos(photos, folder, pipeline, p_progress);
             r_details.photos = std::move(made.photos);
             r_details.photo_pairs = made.made.pairs;
+            r_details.marker = std::move(made.marker);
+            r_details.sized_by_marker = made.sized_by_marker;
             r_details.sized_by_gps = made.sized_by_gps;
             r_details.bark = std::move(made.bark);
             r_details.leaf_colours = std::move(made.leaf_colours);
@@ -219,6 +225,23 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
         treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
                              uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_look()), &listener,
                              *p_tree->get_leaf_density(), p_levels, p_pictures_beside);
+        return OK;
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return FAILED;
+    }
+}
+
+Error TreeReconstructor::save_marker(const String& p_path, int64_t p_id, double p_side) {
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
+    try {
+        // No id that is none becomes one.
+        const int id = p_id < 0 ? -1 : int(std::min<int64_t>(p_id, treerec::kMarkerCount));
+        const std::string path = file_path(p_path);
+        treerec::require_marker_format(path);
+        treerec::require_writable(path);
+        treerec::write_marker(path, id, p_side);
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());
@@ -293,6 +316,8 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::export_file, DEFVAL(1), DEFVAL(false));
     ClassDB::bind_method(D_METHOD("save_html_report", "path", "folders"),
                          &TreeReconstructor::save_html_report, DEFVAL(Dictionary()));
+    ClassDB::bind_method(D_METHOD("save_marker", "path", "id", "side"), &TreeReconstructor::save_marker,
+                         DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_photo_option_list"),

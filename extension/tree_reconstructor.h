@@ -20,8 +20,8 @@
 
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
-// export_file() and save_html_report() may run on any thread, one at a time; the other methods may be called
-// from any other thread meanwhile.
+// export_file(), save_html_report() and save_marker() may run on any thread, one at a time; the other methods
+// may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -42,6 +42,7 @@ class TreeReconstructor : public godot::RefCounted {
                              int p_levels = 1, bool p_pictures_beside = false);
     godot::Error save_html_report(const godot::String& p_path,
                                   const godot::Dictionary& p_folders = godot::Dictionary());
+    godot::Error save_marker(const godot::String& p_path, int64_t p_id, double p_side);
     godot::TypedArray<godot::Dictionary> load_photo_views(const godot::Ref<TreeReconstruction>& p_tree,
                                                           const godot::String& p_model = "");
     godot::Dictionary load_photo(const godot::Dictionary& p_view, const godot::String& p_folder,

@@ -64,6 +64,9 @@ void run_lstring(const std::vector<std::string>& words);
 const Command& grow_command();
 void run_grow(const std::vector<std::string>& words);
 
+const Command& marker_command();
+void run_marker(const std::vector<std::string>& words);
+
 const Command& textures_command();
 void run_textures(const std::vector<std::string>& words);
 

@@ -21,6 +21,7 @@ struct Entry {
 std::vector<Entry> entries() {
     return {{reconstruct_command(), run_reconstruct},
             {photos_command(), run_photos},
+            {marker_command(), run_marker},
             {info_command(), run_info},
             {edit_command(), run_edit},
             {lighten_command(), run_lighten},

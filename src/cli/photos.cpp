@@ -79,6 +79,10 @@ std::vector<Option> all_options() {
          "(default photos)"},
         {"--sparse", "", "no dense points: the cloud has the few that placed the cameras"},
         {"--colmap", "PROGRAM", "COLMAP, or its folder (default: $COLMAP, PATH, the usual folders)"},
+        {"--marker", "SIDE",
+         "the side of the black square of printed markers in the photos, such as 150mm, 6in or 0.15 "
+         "(metres);\n"
+         "sets the scale ('treerec marker' makes one to print)"},
         {"--known-length", "LIST",
          "a length in cloud.ply that sets the scale: x,y,z,x,y,z,metres (photos have none but their GPS)"}};
     for (const Option& option : reconstruct_command().options)
@@ -96,6 +100,14 @@ void print_photos(const PhotosResult& result) {
         std::printf("; %zu points, of %zu pairs of photos\n", result.made.points, result.made.pairs);
     else
         std::printf("; %zu points\n", result.made.points);
+    for (const MeasuredMarker& marker : result.marker.markers)
+        if (marker.usable() && result.marker.usable())
+            std::printf("marker %d in %zu photos, %zu agree: its side and diagonals to %.1f %%\n", marker.id,
+                        marker.photos, marker.kept, 100.0 * marker.uneven);
+    if (result.marker.usable())
+        std::printf("%s: a unit of cloud.ply is %.4f m, give or take %.1f %%\n",
+                    result.sized_by_marker ? "the scale is the marker's" : "by the marker",
+                    result.marker.metres_per_unit(), 100.0 * result.marker.spread);
     if (result.bark && result.bark->textures)
         std::printf("bark from %zu photos, with pixels of %.1f mm\n", result.bark->photos,
                     1000.0 * result.bark->pixel);
@@ -164,6 +176,7 @@ void run_photos(const std::vector<std::string>& words) {
     options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
     options.cloud = cloud_options_of(options.colmap.effort);
     options.cloud.dense = !arguments.has("--sparse");
+    options.marker_side = length_from(arguments, "--marker", 0.0, 1e-3, 100.0);
     options.cloud.hold_out = arguments.whole("--hold-out", 0, 2, 1000);
     const std::string masks = arguments.text("--masks", "");
     if (std::error_code failure; !masks.empty() && !std::filesystem::is_directory(path_of(masks), failure))
@@ -209,6 +222,8 @@ void run_photos(const std::vector<std::string>& words) {
     details.scan_path = result.cloud;
     details.photos = result.photos;
     details.photo_pairs = result.made.pairs;
+    details.marker = result.marker;
+    details.sized_by_marker = result.sized_by_marker;
     details.sized_by_gps = result.sized_by_gps;
     details.bark = result.bark;
     details.leaf_colours = result.leaf_colours;

@@ -46,6 +46,15 @@ constexpr std::pair<std::string_view, double> kUnits[] = {
     {"m", 1.0},     {"cm", 0.01},  {"mm", 0.001}, {"km", 1000.0}, {"ft", 0.3048}, {"us-ft", 1200.0 / 3937.0},
     {"in", 0.0254}, {"yd", 0.9144}};
 
+// "1 mm", "100 m".
+std::string length_text(double metres) {
+    char text[32];
+    const bool small = metres < 1.0;
+    const std::to_chars_result end = std::to_chars(text, text + sizeof text, small ? 1000.0 * metres : metres,
+                                                   std::chars_format::general, 6);
+    return std::string(text, end.ptr) + (small ? " mm" : " m");
+}
+
 double unit_from(const Arguments& arguments) {
     const std::string word = arguments.text("--unit", "");
     std::string known;
@@ -115,6 +124,27 @@ ReconstructOptions reconstruct_options_from(const Arguments& arguments) {
     // Enough for the summary; a report tells more exactly.
     if (!arguments.has("--report")) options.score_points = 1500;
     return options;
+}
+
+double length_from(const Arguments& arguments, const std::string& option, double otherwise, double least,
+                   double most) {
+    if (!arguments.has(option)) return otherwise;
+    const std::string word = arguments.text(option, "");
+    double value = 0.0;
+    const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+    std::string_view unit(end, static_cast<size_t>(word.data() + word.size() - end));
+    while (!unit.empty() && unit.front() == ' ')
+        unit.remove_prefix(1);
+    if (unit.empty()) unit = "m";
+    for (const auto& [name, metres] : kUnits) {
+        if (failure != std::errc() || name != unit) continue;
+        value *= metres;
+        if (value >= least && value <= most) return value;
+        throw UsageError(option + " is from " + length_text(least) + " to " + length_text(most) + ", not " +
+                         quote_word(word) + ".");
+    }
+    throw UsageError(option + " needs a length, such as 200mm, 8in or 0.2 (metres), not " + quote_word(word) +
+                     ".");
 }
 
 void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds) {

@@ -22,6 +22,11 @@ auto as_usage(Call call) {
 // Throws UsageError.
 ReconstructOptions reconstruct_options_from(const Arguments& arguments);
 
+// "200mm", "8 in" or "0.2", which are metres: a length in metres; `otherwise` without the option. least,
+// most: metres. Throws UsageError.
+double length_from(const Arguments& arguments, const std::string& option, double otherwise, double least,
+                   double most);
+
 // The tree's figures on stdout, and the files that were written.
 void print_summary(const Reconstruction& result, const std::vector<std::string>& outs, double seconds);
 

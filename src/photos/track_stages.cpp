@@ -4,13 +4,13 @@
 #include <atomic>
 #include <charconv>
 #include <filesystem>
-#include <mutex>
 #include <utility>
 
 #include "error.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
+#include "photos/count_done.h"
 #include "photos/feature_tracks.h"
 #include "photos/match_pair.h"
 #include "photos/pair_files.h"
@@ -33,28 +33,6 @@ constexpr double kImporting = 0.1;                    // of the matching: COLMAP
 constexpr double kSame = 1.0;                         // pixels of the pictures that are tracked
 constexpr const char* kUsualCorners = "corners in a usual photo: ";
 
-// Tells how many things are done, from any thread.
-class Counter {
-  public:
-    Counter(Progress* progress, double begin, double end, const char* stage, size_t all)
-        : progress_(progress), begin_(begin), end_(end), stage_(stage), all_(all) {}
-    void add(size_t count) {
-        if (!progress_) return;
-        const std::lock_guard lock(mutex_);
-        done_ += count;
-        const double share = static_cast<double>(done_) / static_cast<double>(std::max<size_t>(all_, 1));
-        progress_->update(begin_ + (end_ - begin_) * share, stage_);
-        progress_->count(done_, all_);
-    }
-
-  private:
-    Progress* progress_;
-    double begin_, end_;
-    const char* stage_;
-    size_t all_, done_ = 0;
-    std::mutex mutex_;
-};
-
 // Those of photos that can't be read have no corners.
 std::vector<PhotoFeatures> corners_of(ColmapWork& work, double begin, double end) {
     Progress* const progress = work.job.progress();
@@ -65,7 +43,7 @@ std::vector<PhotoFeatures> corners_of(ColmapWork& work, double begin, double end
     const std::vector<PhotoFile>& photos = work.photos.photos;
     std::vector<PhotoFeatures> features(photos.size());
     std::atomic<size_t> unreadable = 0;
-    Counter counter(progress, begin, end, "Features", photos.size());
+    CountDone counter(progress, begin, end, "Features", photos.size());
     parallel_for(photos.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
             if (progress) progress->check();
@@ -157,7 +135,7 @@ Tracked track_pairs(ColmapWork& work, const std::string& basis, double begin, do
     const std::vector<Pair> pairs = choose_photo_pairs(features, choosing, progress);
     work.job.note("-- " + std::to_string(usual) + " corners in a usual photo, " +
                   std::to_string(pairs.size()) + " pairs to track");
-    Counter counter(progress, corners_end, end, "Matching", pairs.size());
+    CountDone counter(progress, corners_end, end, "Matching", pairs.size());
     size_t again = 0;
     for (size_t first = 0; first < pairs.size(); first += kChunk) {
         const std::vector<Pair> chunk(

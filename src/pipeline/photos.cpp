@@ -1,5 +1,6 @@
 #include "pipeline/photos.h"
 
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -24,6 +25,7 @@ constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
 constexpr double kPointsEnd = 0.85;  // of the cloud's part
+constexpr double kMarkersEnd = 0.62;
 constexpr double kCloudEnd = 0.93;
 constexpr double kTreeEnd = 0.96;
 constexpr double kBarkEnd = 0.985;
@@ -171,6 +173,46 @@ LeafColours look_at_leaves(const PhotosResult& result, size_t hold_out, Progress
     }
 }
 
+// What the photos' printed markers are in the model.
+MarkerScale ask_markers(const PhotosResult& result, const std::string& out, const PhotosOptions& options,
+                        Progress* progress) {
+    const PhotoModel model =
+        without_held_out(read_photo_model(result.photos.model, progress), options.cloud.hold_out);
+    const SeenMarkers seen = markers_of_photos(model, result.photos_folder,
+                                               utf8_of(path_of(out) / "colmap" / "markers.json"), progress);
+    MarkerScale scale = measure_markers(model, seen.photos, options.marker_side);
+    scale.unreadable = seen.unreadable;
+    return scale;
+}
+
+// The tree's size by what the user told, by markers or by GPS, the first of these that there is, and what is
+// to be said of the others. told: the user has given a scale; tree: has the one that was taken.
+std::vector<std::string> size_sentences(const PhotosResult& result, bool told) {
+    std::vector<std::string> sentences;
+    const MarkerScale& marker = result.marker;
+    const GpsScale& gps = result.photos.gps;
+    const double scale = result.tree.orient.metres_per_unit;
+    if (const std::string sentence = marker_sentence(marker, told); !sentence.empty())
+        sentences.push_back(sentence);
+    if (!told && !result.sized_by_marker && gps.photos > 0)
+        sentences.push_back(gps_sentence(gps, result.tree.measured.height));
+    const auto compare = [&](const char* one, const char* other, double other_scale) {
+        if (const std::string sentence = disagreement(one, scale, other, other_scale); !sentence.empty())
+            sentences.push_back(sentence);
+    };
+    // What GPS may well be off by is no disagreement.
+    const bool gps_differs =
+        gps.usable() && std::abs(scale / gps.metres_per_unit - 1.0) > 2.0 * gps.relative_error;
+    const double by_gps = gps_differs ? gps.metres_per_unit : 0.0;
+    if (told) {
+        compare("the size that was told", "the printed marker", marker.metres_per_unit());
+        compare("the size that was told", "the photos' GPS", by_gps);
+    } else if (result.sized_by_marker) {
+        compare("the printed marker", "the photos' GPS", by_gps);
+    }
+    return sentences;
+}
+
 // Its pictures, or none: not those of another time either.
 void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder) {
     const bool made = bark && bark->textures;
@@ -231,12 +273,13 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
         folder = readable.folder;
         left_out = readable.warnings;
     }
-    SubProgress placing(progress, begin, kColmapEnd), making(progress, kColmapEnd, kCloudEnd),
-        growing(progress, kCloudEnd, kTreeEnd), looking(progress, kTreeEnd, kBarkEnd),
-        tinting(progress, kBarkEnd, 1.0);
+    SubProgress placing(progress, begin, kColmapEnd), marking(progress, kColmapEnd, kMarkersEnd),
+        making(progress, kMarkersEnd, kCloudEnd), growing(progress, kCloudEnd, kTreeEnd),
+        looking(progress, kTreeEnd, kBarkEnd), tinting(progress, kBarkEnd, 1.0);
     result.photos = run_colmap(folder, out, colmap, &placing);
     result.photos_folder = folder;
     result.photos.warnings.insert(result.photos.warnings.begin(), left_out.begin(), left_out.end());
+    result.marker = ask_markers(result, out, options, &marking);
     making.update(0.0, "Cloud");
     result.cloud = utf8_of(path_of(out) / "cloud.ply");
     result.made = make_or_take_cloud(folder, out, result, options.cloud, &making);
@@ -245,11 +288,13 @@ PhotosResult reconstruct_photos(const std::string& photos, const std::string& ou
     const GpsScale& gps = result.photos.gps;
     const OrientOptions& orient = reconstruct.orient;
     const bool has_scale = orient.metres_per_unit || orient.known_height || orient.known_length;
-    result.sized_by_gps = !has_scale && gps.usable();
+    result.sized_by_marker = !has_scale && result.marker.usable();
+    result.sized_by_gps = !has_scale && !result.sized_by_marker && gps.usable();
+    if (result.sized_by_marker) reconstruct.orient.metres_per_unit = result.marker.metres_per_unit();
     if (result.sized_by_gps) reconstruct.orient.metres_per_unit = gps.metres_per_unit;
     result.tree = reconstruct_file(result.cloud, reconstruct, &growing);
-    if (!has_scale && gps.photos > 0)
-        result.tree.warnings.push_back(gps_sentence(gps, result.tree.measured.height));
+    for (const std::string& sentence : size_sentences(result, has_scale))
+        result.tree.warnings.push_back(sentence);
     if (options.bark) result.bark = look_at_bark(result, options.cloud.hold_out, &looking);
     if (result.bark && !result.bark->textures)
         result.tree.warnings.push_back("The tree has drawn bark. " + result.bark->why_not);

@@ -130,6 +130,23 @@ Json leaf_colours_json(const LeafColours& colours) {
     return json;
 }
 
+Json marker_json(const MarkerScale& scale) {
+    Json markers = Json::array();
+    for (const MeasuredMarker& marker : scale.markers)
+        markers.push_back({{"id", marker.id},
+                           {"photos", marker.photos},
+                           {"kept", marker.kept},
+                           {"parallax_degrees", marker.parallax},
+                           {"side_units", marker.side > 0.0 ? Json(marker.side) : Json()},
+                           {"uneven", marker.uneven},
+                           {"why_not", marker.why_not.empty() ? Json() : Json(marker.why_not)}});
+    return {{"photos", scale.photos},
+            {"side_m", scale.told_side > 0.0 ? Json(scale.told_side) : Json()},
+            {"metres_per_unit", scale.usable() ? Json(scale.metres_per_unit()) : Json()},
+            {"spread", scale.spread},
+            {"markers", markers}};
+}
+
 Json photos_json(const ReportDetails& details) {
     const ColmapRun& run = *details.photos;
     Json cameras = Json::array();
@@ -146,10 +163,17 @@ Json photos_json(const ReportDetails& details) {
                {"kept", run.gps.kept},
                {"metres_per_unit", run.gps.metres_per_unit},
                {"relative_error", run.gps.relative_error}};
-    return {{"photos", run.photos},         {"placed", run.registered},
-            {"missing", run.missing},       {"colmap", run.version},
-            {"pairs", details.photo_pairs}, {"widest_gap", gap},
-            {"cameras", cameras},           {"gps", gps}};
+    Json marker;
+    if (details.marker && !details.marker->markers.empty()) marker = marker_json(*details.marker);
+    return {{"photos", run.photos},
+            {"placed", run.registered},
+            {"missing", run.missing},
+            {"colmap", run.version},
+            {"pairs", details.photo_pairs},
+            {"widest_gap", gap},
+            {"cameras", cameras},
+            {"gps", gps},
+            {"marker", marker}};
 }
 
 Json outline_json(const OutlineJudgement& outline, double r_s) {
@@ -240,6 +264,7 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["metres_per_unit"] = result.orient.metres_per_unit;
     json["scale_guessed"] = result.orient.scale_guessed;
     json["scale_unknown"] = result.orient.scale_unknown;
+    json["scale_from_marker"] = details.sized_by_marker;
     json["scale_from_gps"] = details.sized_by_gps;
     json["origin"] = vector_json(result.tree.frame().origin);
     Json trees = Json::array();

@@ -8,6 +8,7 @@
 #include "exchange/tree_files.h"
 #include "photos/bark_picture.h"
 #include "photos/leaf_colours.h"
+#include "photos/marker_scale.h"
 #include "photos/run_colmap.h"
 #include "pipeline/judge_outline.h"
 #include "pipeline/reconstruct.h"
@@ -23,6 +24,8 @@ struct ReportDetails {
     size_t leaf_count = 0;
     std::optional<ColmapRun> photos = {};          // where the scan was made of some
     size_t photo_pairs = 0;                        // that were matched pixel by pixel
+    std::optional<MarkerScale> marker = {};        // of these photos
+    bool sized_by_marker = false;                  // the scale is that of the marker
     bool sized_by_gps = false;                     // the scale is that of photos->gps
     std::optional<OutlineJudgement> outline = {};  // where masks of the photos, or their sky, tell of it
     std::string outline_lacks = {};                // a sentence: why photos that were asked don't
@@ -40,8 +43,8 @@ struct ReportDetails {
 //   points_read, points (after cleaning), leaf_points and leaf_share (of these), leaf_column (of the file,
 //   that told them; else null), foliage_cells, removed {step: points} up, up_detected, up_from_photos (whose
 //   cameras told it; else 0), tilt_degrees (of the sky from the axis `up`), metres_per_unit, scale_guessed,
-//   scale_unknown (guessed, and the scan tells nothing of its scale), scale_from_gps (the photos' places set
-//   it), origin [x y z in scan coordinates]
+//   scale_unknown (guessed, and the scan tells nothing of its scale), scale_from_marker (a printed marker set
+//   it), scale_from_gps (the photos' places did), origin [x y z in scan coordinates]
 //   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
 //   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
 //   completed_branches, completed_length_m (option complete: what was added afterwards)
@@ -58,7 +61,10 @@ struct ReportDetails {
 //   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
 //   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
 //   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
-//   says where it was taken; photos/gps_scale.h), outline {photos (that judge), by ("masks", or "sky": then
+//   says where it was taken; photos/gps_scale.h), marker {photos (that show any), side_m (null: not told),
+//   metres_per_unit (null: unknown), spread, markers [{id, photos, kept (that agree), parallax_degrees,
+//   side_units (null: not measured), uneven, why_not (a sentence, or null)}]} (null where no photo shows one;
+//   photos/marker_scale.h), outline {photos (that judge), by ("masks", or "sky": then
 //   R_3d, Q and precision are upper bounds, and recall and iou null), hold_out (every how many one; 0: the
 //   tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), R_s, Q, recall, precision,
 //   iou, by_photo

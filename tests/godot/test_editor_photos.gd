@@ -122,6 +122,31 @@ func test_photos_become_a_tree() -> void:
 	_shut()
 
 
+func test_a_marker_is_printed_and_asked_for() -> void:
+	_open()
+	var path: String = folder.path_join("marker.svg")
+	_panel._marker.value = 123.4
+	_panel.save_marker(path)
+	check("123.4 mm" in FileAccess.get_file_as_string(path), "The page has another side.")
+	check(path in _panel.message.text, "It says: " + _panel.message.text)
+	_panel.save_marker(folder.path_join("marker.doc"))
+	check(".svg or .png" in _panel.message.text, "It says: " + _panel.message.text)
+	_panel._marker.value = 0.0
+	_panel.save_marker(path)
+	check("150 mm" in FileAccess.get_file_as_string(path), "The page has not the usual side.")
+	_panel._marker.value = 123.4
+	_begin()
+	check(not _panel._marker.editable, "It can be changed while it is used.")
+	await _wait()
+	check(_panel._marker.editable, "It can't be changed any more.")
+	if _made != null:
+		check_near(_made.provenance["photo_options"]["marker_side"], 0.1234, 1e-9, "the side")
+		check(not _made.provenance["report"]["scale_from_marker"], "It has a marker's size.")
+	_panel.say_where(_made, false)
+	check("No photo shows a marker" in _panel.message.text, "It says: " + _panel.message.text)
+	_shut()
+
+
 func test_photos_give_their_bark() -> void:
 	_open()
 	_files = TrunkPhotos.new(folder.path_join("trunk"))

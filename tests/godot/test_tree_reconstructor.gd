@@ -310,3 +310,18 @@ func test_options_are_described() -> void:
 	var plain: TreeReconstruction = TreeReconstructor.new().reconstruct_file(path)
 	var spelt_out: TreeReconstruction = TreeReconstructor.new().reconstruct_file(path, defaults)
 	check_equal(spelt_out.skeleton, plain.skeleton, "the tree with all defaults spelt out")
+
+
+func test_a_marker_is_saved_to_print() -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var path: String = folder.path_join("marker.png")
+	check_equal(worker.save_marker(path, 3, 0.1), OK, "saving a marker")
+	check_equal(Image.load_from_file(path).get_size(), Vector2i(2480, 3508), "A4 at 300 dpi")
+	check_equal(worker.save_marker(folder.path_join("marker.svg")), OK, "saving the usual one")
+	for wrong: Array in [["marker.txt", 0, 0.1], ["marker.svg", 50, 0.1], ["marker.svg", -1, 0.1]]:
+		check_equal(
+			worker.save_marker(folder.path_join(wrong[0]), wrong[1], wrong[2]), FAILED, str(wrong)
+		)
+	for side: float in [0.0, -1.0, NAN, INF, 0.7]:
+		check_equal(worker.save_marker(path, 0, side), FAILED, "a side of %f" % side)
+		check("side is from 20 to 600 mm" in worker.get_error_message(), worker.get_error_message())

@@ -4,12 +4,15 @@ extends SceneTree
 ##
 ##     godot --path project --script tests/photos/garden.gd -- TRUTH.txt FOLDER [--photos=40]
 ##         [--leafy] [--width=1600] [--seed=1] [--masks] [--leaf-tint=1.5,0.72,0.6]
+##         [--marker=0.3]
 ##
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
 ## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
 ## right, down and ahead) and the focal length in pixels; with --masks, FOLDER/masks what is tree in
 ## each, white on black, whatever stands before it. --leaf-tint is what the oak's leaves are
 ## multiplied by, as colors are stored.
+## With --marker, a printed marker whose black square is so many metres wide leans on a board near
+## the tree's foot.
 
 # The long side of a photo by its short one.
 const SHAPE: float = 1.5
@@ -21,6 +24,8 @@ const DISTORTION: float = -0.03
 const STOPS: float = 0.25
 # Of the sky behind a tree alone: no wood and no leaf has a hue near it.
 const KEY: Color = Color(1.0, 0.0, 1.0)
+# Pixels of a printed marker to a metre: 300 dpi.
+const MARKER_PIXELS: float = 300.0 / 0.0254
 # How much of a photo's height the tree takes.
 const FILLING: float = 0.8
 
@@ -205,6 +210,8 @@ func _build(tree: TreeReconstruction, size: Vector2i) -> void:
 	_add_light()
 	_add_ground()
 	_add_things(tree.get_aabb())
+	if _options.has("marker"):
+		_add_marker(_options["marker"].to_float())
 	_add_lens(size)
 
 
@@ -326,6 +333,43 @@ func _add_things(box: AABB) -> void:
 			_other(hedge if k % 2 == 0 else stone),
 			_random.randf_range(0.0, TAU)
 		)
+
+
+# A page that leans back a little, as large as it is printed, on a board.
+func _add_marker(side: float) -> void:
+	var path: String = "user://garden_marker.png"
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	if worker.save_marker(path, 7, side) != OK:
+		printerr(worker.get_error_message())
+		quit(1)
+		return
+	var picture: Image = Image.load_from_file(path)
+	var metres: Vector2 = Vector2(picture.get_size()) / MARKER_PIXELS
+	# Each mipmap of another size would leave out a row, and show the marker that much larger.
+	picture.resize(4096, 4096, Image.INTERPOLATE_LANCZOS)
+	picture.generate_mipmaps()
+	var paper: StandardMaterial3D = StandardMaterial3D.new()
+	paper.albedo_texture = ImageTexture.create_from_image(picture)
+	paper.albedo_color = Color(0.9, 0.9, 0.88)
+	paper.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
+	paper.roughness = 1.0
+	var page: QuadMesh = QuadMesh.new()
+	page.size = metres
+	page.material = paper
+	var wood: BoxMesh = BoxMesh.new()
+	wood.size = Vector3(page.size.x + 0.02, page.size.y + 0.02, 0.02)
+	wood.material = _noise(Color(0.25, 0.17, 0.1), Color(0.62, 0.5, 0.36), 1.2)
+	var board: MeshInstance3D = MeshInstance3D.new()
+	board.mesh = wood
+	var sheet: MeshInstance3D = MeshInstance3D.new()
+	sheet.mesh = page
+	sheet.position = Vector3(0, 0, 0.0105)
+	board.add_child(sheet)
+	var away: float = deg_to_rad(100.0)
+	board.basis = Basis(Vector3.UP, away + PI * 0.5) * Basis(Vector3.RIGHT, deg_to_rad(-20.0))
+	var out: Vector3 = Vector3.RIGHT.rotated(Vector3.UP, away)
+	board.position = out * 0.9 + Vector3.UP * (0.5 * page.size.y + 0.02)
+	_scene.add_child(board)
 
 
 func _on_circle(angle: float, radius: float) -> Vector3:

@@ -257,7 +257,8 @@ TEST_F(PhotosGpsCli, PhotosWithPlacesGiveTheSize) {
     EXPECT_NEAR(report["photos"]["gps"]["relative_error"].get<double>(), 3.0 / (16.0 * 3.0), 1e-3);
     // What the user says goes first.
     const test::Outcome told = run("photos photos -o out --sparse --height 5");
-    EXPECT_FALSE(has(told.error, "GPS")) << told.error;
+    EXPECT_FALSE(has(told.error, "The size comes from")) << told.error;
+    EXPECT_TRUE(has(told.error, "% lower than by the photos' GPS; the former was taken.")) << told.error;
     EXPECT_FALSE(nlohmann::json::parse(get("out/report.json"))["scale_from_gps"].get<bool>());
 }
 

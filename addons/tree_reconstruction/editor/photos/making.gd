@@ -85,6 +85,7 @@ func get_stage() -> String:
 		"Features": tr("Looking for features"),
 		"Matching": tr("Comparing photos"),
 		"Cameras": tr("Finding the cameras"),
+		"Markers": tr("Looking for printed markers"),
 		"Dense points": tr("Matching pixels"),
 		"Sky": tr("Looking for the sky"),
 		"Thin wood": tr("Matching twigs"),

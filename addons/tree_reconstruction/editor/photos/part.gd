@@ -36,6 +36,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	_adder.added.connect(session.view.show_whole.unbind(1))
 	panel = PhotosPanel.new(session)
 	panel.folder_wanted.connect(_choose_folder)
+	panel.marker_wanted.connect(_choose_marker)
 	panel.made.connect(_on_made)
 	panel.begins.connect(_on_begins)
 	window = AcceptDialog.new()
@@ -145,6 +146,22 @@ func _choose_folder() -> void:
 	)
 	_chooser.dir_selected.connect(panel.show_folder)
 	_chooser.file_selected.connect(panel.show_folder)
+	window.add_child(_chooser)
+	_chooser.popup_centered_clamped(Vector2i(900, 600))
+
+
+func _choose_marker() -> void:
+	_close_chooser()
+	_chooser = EditorFileDialog.new()
+	# It is for a printer, not for the game.
+	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
+	_chooser.file_mode = EditorFileDialog.FILE_MODE_SAVE_FILE
+	_chooser.title = tr("Save Marker to Print")
+	_chooser.filters = PackedStringArray(
+		["*.svg;" + tr("Drawing in millimetres"), "*.png;" + tr("Picture at 300 dpi")]
+	)
+	_chooser.current_file = "marker.svg"
+	_chooser.file_selected.connect(panel.save_marker)
 	window.add_child(_chooser)
 	_chooser.popup_centered_clamped(Vector2i(900, 600))
 

@@ -6,6 +6,8 @@ extends VBoxContainer
 
 ## The user wants to choose the folder of photos.
 signal folder_wanted
+## The user wants to choose a file for a marker to print.
+signal marker_wanted
 ## The work is about to begin: what it needs to know besides is set now.
 signal begins
 ## A tree was made, and lies in a file.
@@ -20,6 +22,10 @@ const Circle := preload("circle.gd")
 const Making := preload("making.gd")
 const PhotoBark := preload("photo_bark.gd")
 const PhotoLeaves := preload("photo_leaves.gd")
+
+## Of a marker to print whose side the user has not told: as large as A4 has room for with a white
+## border as wide as one of its cells.
+const MARKER_MILLIMETRES: float = 150.0
 
 const _LOG_SECONDS: float = 0.5
 
@@ -47,6 +53,8 @@ var _matcher: OptionButton
 var _bark: OptionButton
 var _leaf_colors: OptionButton
 var _height: SpinBox
+var _marker: SpinBox
+var _print_marker: Button
 var _target: LineEdit = LineEdit.new()
 var _options: GridContainer = GridContainer.new()
 var _bar: ProgressBar = ProgressBar.new()
@@ -169,6 +177,21 @@ func _add_options() -> void:
 	Widgets.choose(_leaf_colors, true)
 	_height = Widgets.number(0.0, 100.0, 0.01, "m")
 	_height.allow_greater = true
+	_marker = Widgets.number(0.0, 600.0, 0.1, "mm")
+	_marker.allow_greater = true
+	_print_marker = (
+		Widgets
+		. button(
+			"Save Marker to Print…",
+			(
+				"Saves a page with a marker of this side, or of 150 mm, to be printed at 100 %. Put it beside"
+				+ " the tree before you take the photos: two of them must show all of it, from"
+				+ " different sides."
+			),
+			&"Save"
+		)
+	)
+	_print_marker.pressed.connect(marker_wanted.emit)
 	_target.text_changed.connect(_update_buttons.unbind(1))
 	_add_option("Time", tips["time"], _time)
 	_add_option("Bark", tips["bark"], _bark)
@@ -183,8 +206,45 @@ func _add_options() -> void:
 		),
 		_height
 	)
+	_add_option("Marker's side", tips["marker_side"], _marker_line())
 	_add_option("Save as", "The tree's file in the project. What is there already stays.", _target)
 	add_child(_options)
+
+
+func _marker_line() -> Control:
+	var line: HBoxContainer = HBoxContainer.new()
+	_marker.size_flags_horizontal = Control.SIZE_EXPAND_FILL
+	for option: Dictionary in TreeReconstructor.get_photo_option_list():
+		if option.name == "marker_side":
+			_marker.tooltip_text = option.description
+	line.add_child(_marker)
+	line.add_child(_print_marker)
+	return line
+
+
+## Writes the marker to print, and says so.
+func save_marker(path: String) -> void:
+	var side: float = _marker.value if _marker.value > 0.0 else MARKER_MILLIMETRES
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	if worker.save_marker(path, 0, side / 1000.0) != OK:
+		var sentence: String = Session.Sentences.translate(
+			worker.get_error_message(), get_translation_domain()
+		)
+		_say(sentence, &"error_color")
+		_session.say(sentence, Session.Kind.ERROR)
+		return
+	_say(
+		(
+			tr(
+				(
+					"The marker was saved as %s. Print it at 100 %%, measure its black square, and set"
+					+ " Marker's side to that."
+				)
+			)
+			% path
+		),
+		&"font_color"
+	)
 
 
 func _add_option(title: String, tip: String, control: Control) -> void:
@@ -264,6 +324,8 @@ func _on_begin() -> void:
 		options["colmap"] = colmap
 	if _height.value > 0.0:
 		options["known_height"] = _height.value
+	if _marker.value > 0.0:
+		options["marker_side"] = _marker.value / 1000.0
 	_started = Time.get_ticks_msec()
 	message.text = ""
 	circle.visible = false
@@ -396,6 +458,7 @@ func _update_buttons() -> void:
 	end.visible = running
 	_running.visible = running
 	_browse.disabled = running
+	_marker.editable = not running
 	for control: Node in _options.get_children():
 		if control is OptionButton:
 			(control as OptionButton).disabled = running

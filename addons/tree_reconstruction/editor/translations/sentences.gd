@@ -336,6 +336,35 @@ const PATTERNS: PackedStringArray = [
 		"The photos' GPS does not tell the size: it is too vague for a circle as small as theirs, or its"
 		+ " places do not agree with the photos."
 	),
+	"No photo shows a marker whose size was told, and %s of them could not be looked at for one.",
+	(
+		"No photo shows a marker whose size was told. It is one of ArUco's DICT_4X4_50, and two photos or"
+		+ " more must show all of it, at least 24 pixels wide, with white around it."
+	),
+	"The marker %s tells no size: it is in one photo alone, and two are needed at least.",
+	(
+		"The marker %s tells no size: the photos that show it do not agree on where it is, or were taken"
+		+ " from one side. It must not move, and no other one may be like it."
+	),
+	(
+		"The marker %s tells no size: the photos that show it were taken from too near to each other."
+		+ " Take more of them, from both sides."
+	),
+	(
+		"The marker %s tells no size: in the photos it is no square. It has to lie flat, and to stay"
+		+ " where it is."
+	),
+	(
+		"A printed marker (id %s) is in %s photos: with the side of its black square (in New Tree from"
+		+ " Photos: Marker's side) the tree gets its size by it."
+	),
+	"A marker is written to a file that ends in .svg or .png, not '%s'.",
+	"A marker's side is from %s to %s mm.",
+	"By %s, the tree is %s % higher than by %s; the former was taken.",
+	"By %s, the tree is %s % lower than by %s; the former was taken.",
+	"the printed marker",
+	"the photos' GPS",
+	"the size that was told",
 	"None of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more. %s",
 	(
 		"Only %s of the %s HEIC photos in '%s' could be converted, and a tree needs %s photos or more."
@@ -398,6 +427,7 @@ const _GAP: String = "%s"
 ## tests/tools/editor_strings.py checks that there are no others.
 const IN_EDITOR: Dictionary[String, String] = {
 	"(--one-tree)": "(in the Import dock: switch Separate Trees off)",
+	"(--marker)": "(in New Tree from Photos: Marker's side)",
 	"(--tree)": "(in the Import dock: Tree in File)",
 	"leave out --classes.": "clear Classes in the Import dock.",
 	"--classes all reads these too.": "'all' for Classes in the Import dock reads these too.",

@@ -50,6 +50,18 @@ func _open() -> void:
 		await user.key("Escape")
 		await until(func() -> bool: return dialog("Choose Photos") == null, "it closes")
 	await picture("photos-window")
+	await step("a marker to print is saved where the user says")
+	var page: String = OS.get_environment("TREE_EDITOR_TEST").path_join("to print.svg")
+	await press(_button("Save Marker to Print…"))
+	if await until(
+		func() -> bool: return dialog("Save Marker to Print") != null, "a dialog asks for a file"
+	):
+		(dialog("Save Marker to Print") as EditorFileDialog).current_path = page
+		await user.frames(5)
+		await user.key("Return")
+		await until(func() -> bool: return FileAccess.file_exists(page), "the page is there")
+		await user.frames(10)
+		await picture("photos-marker")
 
 
 func _make() -> void:
