@@ -3,6 +3,7 @@
 #include "error.h"
 #include "geometry/parallel.h"
 #include "photos/quiet_progress.h"
+#include "photos/sky_blends.h"
 #include "photos/sky_mask.h"
 #include "photos/sparse_points.h"
 #include "photos/thin_points.h"
@@ -56,6 +57,8 @@ void refine(PointCloud& cloud, const PhotoModel& model, const std::vector<DVec3>
             keep[i] = !sky.is_sky(cloud.frame.origin + DVec3(cloud.positions[i]));
     });
     cloud.keep_only(keep);
+    made.sky = sky.colour();
+    drop_sky_blends(cloud, made.sky, progress);
     made.thin = add_thin_wood(
         cloud, made.cell, find_thin_wood(model, sparse, photos, sky, options.thin_wood, &looking), progress);
     // Rings of points around twigs are denser than they are sure.

@@ -205,6 +205,15 @@ PhotoSky sky_in(const LoadedPhoto& loaded, const DVec3& sky, int margin) {
                 any |= grown[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(x)];
             shown[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] = !any;
         }
+    DVec3 sum(0.0);
+    size_t count = 0;
+    for (size_t i = 0; i < all; i++) {
+        if (!shown[i]) continue;
+        const uint8_t* p = picture.pixels.data() + static_cast<size_t>(picture.channels) * i;
+        sum += DVec3(p[0], p[1], p[2]);
+        count++;
+    }
+    if (count > 0) found.colour = sum / static_cast<double>(count);
     found.mask = std::move(shown);
     return found;
 }
@@ -267,6 +276,17 @@ bool SkyCarver::is_before_sky(const DVec3& p, const DVec3& way, double radius) c
     }
     return sky >= options_.least_photos &&
            static_cast<double>(sky) >= options_.least_beside * static_cast<double>(shown);
+}
+
+DVec3 SkyCarver::colour() const {
+    DVec3 colour(0.0);
+    for (int part = 0; part < 3; part++) {
+        std::vector<double> levels;
+        for (const PhotoSky& view : views_)
+            if (view.colour != DVec3(0.0)) levels.push_back(view.colour[part]);
+        if (!levels.empty()) colour[part] = quantile(levels, 0.5);
+    }
+    return colour;
 }
 
 }  // namespace treerec

@@ -22,6 +22,7 @@ struct PhotoSky {
     int width = 0;       // of the mask
     int height = 0;
     std::vector<uint8_t> mask;  // 1 for the sky, rows from the top; empty where no sky is sure
+    DVec3 colour{0.0};          // of the sky in the mean, 0 to 255; zeros where there is none
 
     // What the photo shows where a point is, given in the camera's coordinates.
     Shown shown_at(const DVec3& in_camera) const;
@@ -55,6 +56,9 @@ class SkyCarver {
     // trunk has it there at the outline alone. way: along
     // it, a unit vector; radius: in the model's unit.
     bool is_before_sky(const DVec3& p, const DVec3& way, double radius) const;
+
+    // The sky's colour in most photos, 0 to 255; zeros where no photo shows it.
+    DVec3 colour() const;
 
   private:
     std::vector<PhotoSky> views_;

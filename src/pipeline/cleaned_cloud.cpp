@@ -61,7 +61,8 @@ void save_cleaned_scan(const std::string& path, const std::string& scan, const R
         throw Error("'" + path + "' is the scan itself, which would be overwritten; choose another name.");
     SubProgress loading(progress, 0.0, kLoaded), writing(progress, kLoaded, 1.0);
     PointCloud cloud = load_scan(scan, options, frame, std::numeric_limits<size_t>::max(), &loading, cache);
-    if (!foliage.empty() && !cloud.labels.leaf_is_one) label_foliage(cloud, foliage, writing);
+    if (!foliage.empty() && (!cloud.labels.leaf_is_one || cloud.labels.by_colour))
+        label_foliage(cloud, foliage, writing);
     writing.update(0.0, "Writing");
     write_cleaned_cloud(path, cloud, &writing);
     writing.update(1.0, "Writing");

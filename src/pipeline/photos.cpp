@@ -13,6 +13,7 @@
 #include "photos/heic_photos.h"
 #include "photos/photo_folder.h"
 #include "photos/run_stage.h"
+#include "pipeline/label_photo_leaves.h"
 #include "pipeline/wood_outlines.h"
 #include "scan/read_cloud.h"
 
@@ -20,7 +21,7 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 6";  // another number where another cloud comes out
+constexpr const char* kMethod = "points 8";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
@@ -65,6 +66,7 @@ std::optional<MadeCloud> read_note(const std::string& text) {
         made.pairs = note.at("pairs").get<size_t>();
         made.thin = note.at("thin").get<size_t>();
         made.outlines = note.at("outlines").get<size_t>();
+        made.leafy = note.at("leafy").get<bool>();
         made.cell = note.at("cell").get<double>();
         made.warnings = note.at("warnings").get<std::vector<std::string>>();
         return made;
@@ -75,20 +77,21 @@ std::optional<MadeCloud> read_note(const std::string& text) {
 
 // Puts what the photos' outlines tell of the wood's thickness into the cloud, by a first tree of it. That
 // there is none yet, as where it has to be told which, is no reason for a cloud to fail.
-size_t measure_wood(const PhotosResult& result, const std::string& folder, size_t hold_out,
-                    Progress* progress) {
+void tell_more(const PhotosResult& result, const std::string& folder, size_t hold_out, MadeCloud& made,
+               Progress* progress) {
     SubProgress growing(progress, 0.0, 0.5), looking(progress, 0.5, 1.0);
     try {
         const Reconstruction first = reconstruct_tree(result.cloud, {}, &growing);
         PointCloud cloud = read_cloud(result.cloud);
+        made.leafy = label_photo_leaves(cloud, first.tree, made.sky, &looking);
         const PhotoModel model = without_held_out(read_photo_model(result.photos.model, &looking), hold_out);
-        const size_t places = measure_outlines(cloud, first.tree, model, folder, &looking);
-        if (places > 0) write_cloud(result.cloud, cloud, {}, &looking);
-        return places;
+        made.outlines = measure_outlines(cloud, first.tree, model, folder, &looking);
+        if (made.leafy || made.outlines > 0) write_cloud(result.cloud, cloud, {}, &looking);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error&) {
-        return 0;
+        made.leafy = false;
+        made.outlines = 0;
     }
 }
 
@@ -103,10 +106,10 @@ MadeCloud make_or_take_cloud(const std::string& folder, const std::string& out, 
     stage.begin();
     SubProgress pointing(progress, 0.0, kPointsEnd), measuring(progress, kPointsEnd, 1.0);
     MadeCloud made = make_cloud(result.photos.model, folder, result.cloud, options, &pointing);
-    if (made.pairs > 0) made.outlines = measure_wood(result, folder, options.hold_out, &measuring);
-    const json note = {{"points", made.points},    {"left_out", made.left_out}, {"pairs", made.pairs},
-                       {"thin", made.thin},        {"cell", made.cell},         {"outlines", made.outlines},
-                       {"warnings", made.warnings}};
+    if (made.pairs > 0) tell_more(result, folder, options.hold_out, made, &measuring);
+    const json note = {{"points", made.points}, {"left_out", made.left_out}, {"pairs", made.pairs},
+                       {"thin", made.thin},     {"cell", made.cell},         {"outlines", made.outlines},
+                       {"leafy", made.leafy},   {"warnings", made.warnings}};
     stage.finish(note.dump(-1, ' ', false, json::error_handler_t::replace));
     return made;
 }

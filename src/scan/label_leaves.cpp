@@ -49,7 +49,7 @@ bool stands_in(const PointCloud& cloud, uint8_t wood, uint8_t leaf) {
 
 LabelledLeaves find_labelled_leaves(const PointCloud& cloud) {
     LabelledLeaves found;
-    if (cloud.labels.empty()) return found;
+    if (cloud.labels.empty() || cloud.labels.by_colour) return found;
     std::array<size_t, 256> counts{};
     for (const uint8_t label : cloud.labels.values)
         counts[label]++;

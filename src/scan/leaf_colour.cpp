@@ -79,6 +79,19 @@ std::vector<float> excess_green(const std::vector<Color8>& colours,
     return green;
 }
 
+std::vector<float> shares_of(const std::vector<uint8_t>& labels, const std::vector<uint32_t>& cell_of_point,
+                             size_t cells) {
+    std::vector<uint32_t> points(cells, 0), labelled(cells, 0);
+    for (size_t i = 0; i < labels.size(); i++) {
+        points[cell_of_point[i]]++;
+        labelled[cell_of_point[i]] += labels[i] == 1;
+    }
+    std::vector<float> shares(cells, 0.0F);
+    for (size_t v = 0; v < cells; v++)
+        if (points[v] > 0) shares[v] = static_cast<float>(labelled[v]) / static_cast<float>(points[v]);
+    return shares;
+}
+
 GreenGroups part_greens(const std::vector<float>& green, const std::vector<uint32_t>& weights,
                         const std::vector<Vec3>& points, const std::vector<uint32_t>& cell_of_point) {
     std::array<double, kColourBins> histogram{};

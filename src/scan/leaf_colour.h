@@ -1,6 +1,7 @@
 // Leaves that are told by their green. Internal to scan/.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,10 +20,18 @@ struct GreenGroups {
     double share = 0.0;   // of the green one
 };
 
-// Excess green (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995) of the mean colour of each cell. colours:
-// by point.
+// Excess green (2 g - r - b) / (r + g + b) (Woebbecke et al. 1995).
+inline double excess_green(const Color8& c) {
+    return (2 * c[1] - c[0] - c[2]) / std::max(1.0, static_cast<double>(c[0] + c[1] + c[2]));
+}
+
+// The same of the mean colour of each cell. colours: by point.
 std::vector<float> excess_green(const std::vector<Color8>& colours,
                                 const std::vector<uint32_t>& cell_of_point, size_t cells);
+
+// By cell: the share of its points that have a label of 1.
+std::vector<float> shares_of(const std::vector<uint8_t>& labels, const std::vector<uint32_t>& cell_of_point,
+                             size_t cells);
 
 // Parts the cells in two by Otsu's threshold (1979). They are leaves and the rest where one group is green
 // and hardly any lies between the two; where light has bleached or dimmed the colours, as in photos against

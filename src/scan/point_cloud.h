@@ -25,6 +25,9 @@ struct PointLabels {
     std::string column;           // its name
     bool leaf_is_one = false;     // else there may be two values, and which is which is still to be found out
     std::vector<uint8_t> values;  // by point; empty where there are no labels
+    // They tell what has not the colour of the stem's bark in photos: a hint beside all others, for what is
+    // hidden among leaves has their colour.
+    bool by_colour = false;
 
     bool empty() const { return values.empty(); }
 };

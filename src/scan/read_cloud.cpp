@@ -236,6 +236,7 @@ void convert_labels(const RawCloud& raw, PointCloud& cloud) {
     if (meaning != LabelMeaning::kEither && shares != numbers) meaning = LabelMeaning::kEither;
     if (!in_words && (meaning == LabelMeaning::kEither ? wholes : shares) != numbers) return;
     cloud.labels.column = raw.label_column;
+    cloud.labels.by_colour = is_label_by_colour(raw.label_column);
     cloud.labels.leaf_is_one = in_words || meaning != LabelMeaning::kEither;
     cloud.labels.values.reserve(raw.labels.size());
     for (const float label : raw.labels) {

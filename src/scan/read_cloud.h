@@ -60,9 +60,9 @@ PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes,
 
 // Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
 // there is more than places), .las (1.2; without normals and labels). Only PLY has the points' radii, and the
-// cloud's spacing and `comment`, one line without its end, in its header. Labels become a column "leaf" where
-// 1 is one, else one of their own name. Scan coordinates, axes and units, to 1e-8 of the cloud's extent.
-// Writes beside and renames. Throws Error, or Cancelled.
+// cloud's spacing and `comment`, one line without its end, in its header. Labels become a column "leaf" (or
+// "leaf_by_colour") where 1 is one, else one of their own name. Scan coordinates, axes and units, to 1e-8 of
+// the cloud's extent. Writes beside and renames. Throws Error, or Cancelled.
 void write_cloud(const std::string& path, const PointCloud& cloud, std::string_view comment = {},
                  const Progress* progress = nullptr);
 

@@ -39,8 +39,9 @@ constexpr NameRole kSureNames[] = {
     {"normalx", kRoleNx},    {"normaly", kRoleNy}, {"normalz", kRoleNz},   {"woodradius", kRoleRadius},
 };
 // Of labels: those whose name says which value is the leaf go before the others.
-constexpr std::string_view kLeafNames[] = {"foliage",       "leaf",       "leaves",       "isleaf",
-                                           "scalarfoliage", "scalarleaf", "scalarleaves", "scalarisleaf"};
+constexpr std::string_view kLeafNames[] = {"foliage",    "leaf",         "leaves",
+                                           "isleaf",     "leafbycolour", "scalarfoliage",
+                                           "scalarleaf", "scalarleaves", "scalarisleaf"};
 constexpr std::string_view kWoodNames[] = {"wood", "iswood", "scalarwood", "scalariswood"};
 constexpr std::string_view kLabelNames[] = {
     "classification",       "label",       "labels",           "leafwood", "woodleaf",
@@ -105,6 +106,10 @@ LabelMeaning label_meaning(std::string_view name) {
     };
     if (is_one_of(kLeafNames)) return LabelMeaning::kLeaf;
     return is_one_of(kWoodNames) ? LabelMeaning::kWood : LabelMeaning::kEither;
+}
+
+bool is_label_by_colour(std::string_view name) {
+    return plain(name) == "leafbycolour";
 }
 
 double label_of_word(std::string_view word) {

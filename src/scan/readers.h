@@ -42,6 +42,8 @@ std::vector<int8_t> roles_from_names(const std::vector<std::string>& names);
 // What the values of a column of labels mean, by its name: 1 is a leaf, 1 is wood, or the values tell.
 enum class LabelMeaning { kLeaf, kWood, kEither };
 LabelMeaning label_meaning(std::string_view name);
+// Whether a column of that name holds labels by colour (PointLabels::by_colour).
+bool is_label_by_colour(std::string_view name);
 // A label that is a word: "leaf", "needles", "stem", … as these values; NaN for other words.
 inline constexpr double kWoodWord = 1000.0;
 inline constexpr double kLeafWord = 1001.0;

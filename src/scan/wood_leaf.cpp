@@ -330,6 +330,10 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         green = excess_green(cloud.colors, cell_of_point, count);
         groups = part_greens(green, weights, samples.points, cells.of_point);
     }
+    if (cloud.labels.by_colour) {
+        green = shares_of(cloud.labels.values, cell_of_point, count);
+        groups = {true, false, 0.5, 0.5, groups.share};
+    }
     if (groups.tinted && !frond_like &&
         agreement(logits, share, green, groups, weights, cells, progress) < kLeastAgreement) {
         tell_by_tint(green, groups, cells, cell_of_point, result, progress);
@@ -391,9 +395,8 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         bool is_leaf = leaf[v] != 0;
         // A frond's brown tip is no wood.
         if (result.by_colour && !limbs.fronds && leaf[v] == (cell_logits[v] > threshold)) {
-            const Color8& c = cloud.colors[i];
-            const double sum = std::max(1, c[0] + c[1] + c[2]);
-            const float own = greenness((2 * c[1] - c[0] - c[2]) / sum, groups);
+            const float own = greenness(
+                cloud.labels.by_colour ? cloud.labels.values[i] : excess_green(cloud.colors[i]), groups);
             is_leaf = cell_logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
         }
         result.leaf[i] = is_leaf;

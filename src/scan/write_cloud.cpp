@@ -62,6 +62,7 @@ int decimals_for(const Bounds& bounds) {
 
 // Of a column that a reader takes for labels again (label_meaning()).
 std::string label_name(const PointLabels& labels) {
+    if (labels.by_colour) return "leaf_by_colour";
     if (labels.leaf_is_one) return "leaf";
     std::string name;
     for (const char c : labels.column)

@@ -10,6 +10,7 @@
 #include "cli_runner.h"
 #include "exchange/material_textures.h"
 #include "geometry/random.h"
+#include "photos/sky_blends.h"
 #include "photos/sky_mask.h"
 
 namespace treerec {
@@ -122,20 +123,26 @@ TEST(SkyMask, IsNowhereWhereThereIsNone) {
     EXPECT_TRUE(sky_in({&photo, &camera, Image(2, 2, 3), 0.01}, {0, 0, 1}, 1).mask.empty());
 }
 
-class SkyCarving : public test::InFolder {};
+class SkyCarving : public test::InFolder {
+  protected:
+    void SetUp() override {
+        InFolder::SetUp();
+        model.cameras = {lens()};
+        for (int i = 0; i < 12; i++) {
+            model.photos.push_back(photo_at(30.0 * i));
+            std::vector<uint8_t> ignored;
+            const std::vector<uint8_t> png = encode_png(drawn(model.photos.back(), ignored));
+            put(model.photos.back().name, std::string(png.begin(), png.end()));
+        }
+        for (int i = 0; i < 50; i++)
+            sparse.emplace_back(0.2 * std::cos(i), 0.2 * std::sin(i), -1.0 + 0.04 * i);
+    }
+
+    PhotoModel model;
+    std::vector<DVec3> sparse;
+};
 
 TEST_F(SkyCarving, TakesWhatIsNotThereAlone) {
-    PhotoModel model;
-    model.cameras = {lens()};
-    std::vector<DVec3> sparse;
-    for (int i = 0; i < 12; i++) {
-        model.photos.push_back(photo_at(30.0 * i));
-        std::vector<uint8_t> ignored;
-        const std::vector<uint8_t> png = encode_png(drawn(model.photos.back(), ignored));
-        put(model.photos.back().name, std::string(png.begin(), png.end()));
-    }
-    for (int i = 0; i < 50; i++)
-        sparse.emplace_back(0.2 * std::cos(i), 0.2 * std::sin(i), -1.0 + 0.04 * i);
     // One is missing.
     std::filesystem::remove(path(model.photos[3].name));
     const SkyCarver carver(model, sparse, folder_.string());
@@ -149,6 +156,51 @@ TEST_F(SkyCarving, TakesWhatIsNotThereAlone) {
     }
     EXPECT_FALSE(carver.is_sky({1e9, 0.0, 1e9}));
     EXPECT_FALSE(SkyCarver(model, sparse, path("nowhere")).is_sky({0.0, 1.0, 1.0}));
+}
+
+TEST_F(SkyCarving, KnowsHowLightTheSkyIs) {
+    const DVec3 colour = SkyCarver(model, sparse, folder_.string()).colour();
+    for (int part = 0; part < 3; part++)
+        EXPECT_NEAR(colour[part], 175.0 + 10.0 * part, 10.0);
+    EXPECT_EQ(SkyCarver(model, sparse, path("nowhere")).colour(), DVec3(0.0));
+}
+
+TEST(SkyBlends, GoFromAmongDarkerPointsAndLightBarkStays) {
+    Random random(8);
+    PointCloud cloud;
+    std::vector<uint8_t> stays;
+    const auto add = [&](const DVec3& p, double grey, bool stay) {
+        const auto level = static_cast<uint8_t>(grey);
+        cloud.positions.emplace_back(p);
+        cloud.colors.push_back({level, level, level});
+        stays.push_back(stay);
+    };
+    // A crown of dark leaves with light edges, and the white stem of a birch with black marks.
+    for (int i = 0; i < 4000; i++) {
+        const DVec3 p(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(3.0, 5.0));
+        const bool edge = random.below(5) == 0;
+        add(p, edge ? random.uniform(155.0, 205.0) : random.uniform(50.0, 110.0), !edge);
+    }
+    for (int i = 0; i < 4000; i++) {
+        const double angle = random.uniform(0.0, 2.0 * kPi);
+        const DVec3 p(0.2 * std::cos(angle), 0.2 * std::sin(angle), random.uniform(0.0, 2.0));
+        add(p, random.below(5) == 0 ? random.uniform(20.0, 60.0) : random.uniform(175.0, 205.0), true);
+    }
+    const PointCloud before = cloud;
+    const auto edges = static_cast<size_t>(std::count(stays.begin(), stays.end(), 0));
+    EXPECT_EQ(drop_sky_blends(cloud, DVec3(210.0)), edges);
+    PointCloud wanted = before;
+    wanted.keep_only(stays);
+    EXPECT_EQ(cloud.positions, wanted.positions);
+    EXPECT_EQ(cloud.colors, wanted.colors);
+    // A sky as dark as what stands before it tells nothing, nor does none, nor do points without colours.
+    cloud = before;
+    EXPECT_EQ(drop_sky_blends(cloud, DVec3(90.0)), 0u);
+    EXPECT_EQ(drop_sky_blends(cloud, DVec3(0.0)), 0u);
+    cloud.colors.clear();
+    EXPECT_EQ(drop_sky_blends(cloud, DVec3(210.0)), 0u);
+    PointCloud none;
+    EXPECT_EQ(drop_sky_blends(none, DVec3(210.0)), 0u);
 }
 
 }  // namespace
