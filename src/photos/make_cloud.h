@@ -26,8 +26,9 @@ struct MadeCloud {
     size_t left_out = 0;  // of the model's, that too few photos saw, or that fit these badly
     size_t pairs = 0;  // of photos that were matched pixel by pixel; 0: the cloud has the model's own points
     size_t thin = 0;   // places of thin wood
-    size_t outlines = 0;  // places of wood whose thickness the photos' outlines told (pipeline/photos.h)
-    double cell = 0.0;    // of the dense points, in the model's unit; 0 without
+    size_t outlines =
+        0;              // places of wood whose thickness the photos' outlines told (pipeline/wood_outlines.h)
+    double cell = 0.0;  // of the dense points, in the model's unit; 0 without
     std::vector<std::string> warnings;
 };
 

@@ -78,18 +78,20 @@ std::optional<MadeCloud> read_note(const std::string& text) {
 size_t measure_wood(const PhotosResult& result, const std::string& folder, size_t hold_out,
                     Progress* progress) {
     SubProgress growing(progress, 0.0, 0.5), looking(progress, 0.5, 1.0);
+    Reconstruction first;
     try {
-        const Reconstruction first = reconstruct_tree(result.cloud, {}, &growing);
-        PointCloud cloud = read_cloud(result.cloud);
-        const PhotoModel model = without_held_out(read_photo_model(result.photos.model, &looking), hold_out);
-        const size_t places = measure_outlines(cloud, first.tree, model, folder, &looking);
-        if (places > 0) write_cloud(result.cloud, cloud, {}, &looking);
-        return places;
+        first = reconstruct_tree(result.cloud, {}, &growing);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error&) {
+        // The tree that is made next says so.
         return 0;
     }
+    PointCloud cloud = read_cloud(result.cloud);
+    const PhotoModel model = without_held_out(read_photo_model(result.photos.model, &looking), hold_out);
+    const size_t places = measure_outlines(cloud, first.tree, model, folder, &looking);
+    if (places > 0) write_cloud(result.cloud, cloud, {}, &looking);
+    return places;
 }
 
 // The cloud that is there from the same, or a new one.
