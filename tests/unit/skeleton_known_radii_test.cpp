@@ -93,9 +93,10 @@ TEST(KnownRadii, ATrunkWithFurrowsKeepsItsOwn) {
         add_cone(cloud, random, {0, 0, 0}, {0, 3, 0}, 0.15, 0.14, 0.02, 0.002);
         know(cloud, 0.0);
         for (int furrow = 0; furrow < 24; furrow++)
-            for (int i = 0; i < 400; i++) {
-                const double angle = 2.0 * kPi * furrow / 24.0, up = 3.0 * i / 400.0;
-                const double radius = 0.15 - 0.01 * up / 3.0 + 0.001 * random.normal();
+            for (int i = 0; i < 1200; i++) {
+                const double angle = 2.0 * kPi * furrow / 24.0, up = 3.0 * i / 1200.0;
+                // A furrow is deeper than the bark beside it.
+                const double radius = 0.145 - 0.01 * up / 3.0 + 0.001 * random.normal();
                 cloud.positions.emplace_back(radius * std::cos(angle), up, radius * std::sin(angle));
             }
         know(cloud, 0.005);
@@ -190,6 +191,9 @@ TEST(KnownRadii, OrderRepetitionThreadsAndPlacesThatAreNoneDoNotMatter) {
     }
     cloud.positions.emplace_back(std::nanf(""), 1.0F, 0.0F);
     cloud.radii.push_back(0.05F);
+    // The copies come first.
+    std::reverse(cloud.positions.begin(), cloud.positions.end());
+    std::reverse(cloud.radii.begin(), cloud.radii.end());
     for (const int threads : {1, 4}) {
         set_thread_count(threads);
         EXPECT_TRUE(same_tree(skeletonize(cloud, thinned_to(kSpacing)).tree, first)) << threads;
