@@ -27,7 +27,7 @@ struct MadeCloud {
     size_t pairs = 0;  // of photos that were matched pixel by pixel; 0: the cloud has the model's own points
     DVec3 sky{0.0};    // its colour, 0 to 255; zeros where no photo shows it
     size_t thin = 0;   // places of thin wood
-    size_t outlines = 0;  // places of wood whose thickness the photos' outlines told (pipeline/photos.h)
+    size_t outlines = 0;  // places of wood whose thickness the photos' outlines told (wood_outlines.h)
     bool leafy = false;   // its points are labelled as leaves or wood, likewise
     double cell = 0.0;    // of the dense points, in the model's unit; 0 without
     std::vector<std::string> warnings;

@@ -18,7 +18,8 @@ struct OutlineOptions {
     size_t least_photos = 5;    // that show a place
 };
 
-// A place on the axis of wood about as thick as that.
+// A place on the axis of wood about as thick as that. What is no place (no radius above 0, no finite number)
+// is not measured.
 struct WoodPlace {
     DVec3 position{0.0};  // in the model
     DVec3 way{0.0};       // along the wood, a unit vector

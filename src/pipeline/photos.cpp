@@ -21,7 +21,7 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 8";  // another number where another cloud comes out
+constexpr const char* kMethod = "points 9";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;
@@ -75,24 +75,25 @@ std::optional<MadeCloud> read_note(const std::string& text) {
     }
 }
 
-// Puts what the photos' outlines tell of the wood's thickness into the cloud, by a first tree of it. That
-// there is none yet, as where it has to be told which, is no reason for a cloud to fail.
+// Puts what a first tree lets the photos tell into the cloud: which points are leaves, and how thick the wood
+// is. That there is no such tree yet, as where it has to be told which, is no reason for a cloud to fail.
 void tell_more(const PhotosResult& result, const std::string& folder, size_t hold_out, MadeCloud& made,
                Progress* progress) {
     SubProgress growing(progress, 0.0, 0.5), looking(progress, 0.5, 1.0);
+    Reconstruction first;
     try {
-        const Reconstruction first = reconstruct_tree(result.cloud, {}, &growing);
-        PointCloud cloud = read_cloud(result.cloud);
-        made.leafy = label_photo_leaves(cloud, first.tree, made.sky, &looking);
-        const PhotoModel model = without_held_out(read_photo_model(result.photos.model, &looking), hold_out);
-        made.outlines = measure_outlines(cloud, first.tree, model, folder, &looking);
-        if (made.leafy || made.outlines > 0) write_cloud(result.cloud, cloud, {}, &looking);
+        first = reconstruct_tree(result.cloud, {}, &growing);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error&) {
-        made.leafy = false;
-        made.outlines = 0;
+        // The tree that is made next says so.
+        return;
     }
+    PointCloud cloud = read_cloud(result.cloud);
+    const PhotoModel model = without_held_out(read_photo_model(result.photos.model, &looking), hold_out);
+    made.leafy = label_photo_leaves(cloud, first.tree, made.sky, &looking);
+    made.outlines = measure_outlines(cloud, first.tree, model, folder, &looking);
+    if (made.leafy || made.outlines > 0) write_cloud(result.cloud, cloud, {}, &looking);
 }
 
 // The cloud that is there from the same, or a new one.

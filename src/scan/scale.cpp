@@ -132,6 +132,8 @@ void settle_height(PointCloud& cloud, const OrientOptions& options, OrientReport
     const double factor = *options.known_height / range.size();
     for (Vec3& p : cloud.positions)
         p = Vec3(DVec3(p) * factor);
+    for (float& radius : cloud.radii)
+        radius *= static_cast<float>(factor);
     cloud.frame.metres_per_unit *= factor;
     report.metres_per_unit = cloud.frame.metres_per_unit;
 }

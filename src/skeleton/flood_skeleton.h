@@ -15,9 +15,10 @@ inline double automatic_branch(double extent) {
     return std::max(kLeast, kShare * extent);
 }
 
-// points: thinned to result.spacing, in `frame`. factor: by how much the
-// cloud was enlarged (scan/usual_size.h), which the lengths in sentences leave out. Fills all of `result` but
-// the spacing. Throws Error for a voxel that does not suit the tree, Cancelled on request.
+// points: the cloud's, thinned to result.spacing. cloud: metres, Y up; the tree gets its frame, and the radii
+// that it knows (skeleton/known_radii.h). factor: by how much the cloud was enlarged (scan/usual_size.h),
+// which the lengths in sentences leave out. Fills all of `result` but the spacing. Throws Error for a voxel
+// that does not suit the tree, Cancelled on request.
 void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
                     double factor, SkeletonResult& result, StageClock& clock, Progress* listener);
 

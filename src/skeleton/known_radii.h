@@ -16,7 +16,8 @@ namespace treerec {
 // own surface is lost; but each photo shows how wide it is.
 class KnownRadii {
   public:
-    // cloud: metres, Y up; it has to stay. spacing: between its points, metres. Throws Cancelled.
+    // cloud: metres, Y up; of several points at one place the thickest counts. spacing: between its points,
+    // metres. Throws Cancelled.
     KnownRadii(const PointCloud& cloud, double spacing, const Progress* progress);
 
     // Stations amid points of known radius get it, as measured. What was measured as far thicker, and is a
@@ -31,9 +32,9 @@ class KnownRadii {
   private:
     std::optional<double> around(const Station& station) const;
 
-    const PointCloud& cloud_;
     double spacing_;
-    std::optional<PointTree> tree_;  // of all points; none where none is known
+    std::vector<float> radii_;       // by point of the tree; 0 where it is not known
+    std::optional<PointTree> tree_;  // of all places; none where no radius is known
 };
 
 // Links wood of known radius (scale.radius) to the nearest other wood that is about as thick or thicker,

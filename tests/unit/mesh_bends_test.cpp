@@ -167,5 +167,55 @@ TEST(BranchTubes, TheBarkOfACollarDoesNotWind) {
     }
 }
 
+// How far the drawn bark of an upright stem is from its nodes' radii, at most, over these, from the first
+// ring above the ground on: below it the stem is drawn down into the ground.
+double left_out(const std::vector<double>& radii, double apart, double from) {
+    Tree tree;
+    NodeId at = tree.add_root({0, 0, 0}, radii[0], kTrunkFlag);
+    for (size_t i = 1; i < radii.size(); i++)
+        at = tree.add_child(at, {0.0, apart * static_cast<double>(i), 0.0}, radii[i], kTrunkFlag);
+    const Mesh mesh = build_branch_tubes(tree);
+    std::vector<DVec2> rings;  // height and radius
+    for (size_t v = 0; v < mesh.positions.size(); v++) {
+        const DVec3 p(mesh.positions[v]);
+        if (rings.empty() || p.y > rings.back().x + 1e-6) rings.emplace_back(p.y, std::hypot(p.x, p.z));
+    }
+    double most = 0.0;
+    size_t next = 1, seen = 0;
+    for (size_t i = 1; i + 2 < radii.size(); i++) {
+        const double y = apart * static_cast<double>(i);
+        if (y < std::max(from, rings[1].x)) continue;
+        while (next + 1 < rings.size() && rings[next].x < y)
+            next++;
+        const DVec2 &low = rings[next - 1], &high = rings[next];
+        const double drawn = glm::mix(low.y, high.y, (y - low.x) / (high.x - low.x));
+        most = std::max(most, std::abs(drawn / radii[i] - 1.0));
+        seen++;
+    }
+    EXPECT_GT(seen, radii.size() / 2);
+    return most;
+}
+
+// A foot gets thinner fast at first and then ever more slowly, and a trunk at once above a fork; from ring to
+// ring it is a cone.
+TEST(BranchTubes, AStoutTrunkIsAsThickAsItWasMeasured) {
+    for (const double radius : {0.06, 0.15, 0.4}) {
+        for (const double reach : {0.2, 0.4, 0.8}) {
+            std::vector<double> flare;
+            for (int i = 0; i <= 80; i++)
+                flare.push_back(radius * (1.0 - 0.002 * i + 0.9 * std::exp(-0.05 * i / reach)));
+            EXPECT_LT(left_out(flare, 0.05, 0.0), 0.07) << radius << ", a foot of " << reach << " m";
+        }
+        for (const double above : {0.85, 0.75, 0.65}) {
+            std::vector<double> forked;
+            for (int i = 0; i <= 80; i++)
+                forked.push_back(radius * (1.0 - 0.002 * i) * (i > 40 ? above : 1.0));
+            // It has no foot, and is given one.
+            EXPECT_LT(left_out(forked, 0.5 * radius, 2.0 * radius), 0.07)
+                << radius << ", above a fork " << above;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace treerec

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "drawn_bark.h"
 #include "error.h"
 #include "exchange/material_textures.h"
 #include "file_bytes.h"
@@ -31,15 +32,7 @@ constexpr double kAway = 1.5;
 constexpr double kBench = 0.45;  // metres: the radius of one that goes around the stem
 constexpr double kBenchLow = 0.95, kBenchHigh = 1.05;
 
-// Rough at all scales, as bark is, with cracks up and down.
-DVec3 bark_at(const DVec3& place) {
-    const DVec2 p(std::atan2(place.z, place.x) / (2.0 * std::numbers::pi) + 0.5, 0.25 * place.y + 0.1);
-    double tone = 0.0, strength = 0.22;
-    for (int i = 0; i < 6; i++, strength *= 0.72)
-        tone += strength * texture::noise(p, 24 << i, 32 << i, 7 + static_cast<uint64_t>(i));
-    const double crack = std::abs(texture::noise(p, 40, 16, 99)) < 0.08 ? 0.5 : 1.0;
-    return glm::clamp(crack * (0.45 + 0.8 * tone) * DVec3(1.0, 0.85, 0.7), 0.0, 1.0);
-}
+using test::bark_at;
 
 // A stem that stands in the middle of a circle of photos of it.
 class PhotoBarkTest : public ::testing::Test {

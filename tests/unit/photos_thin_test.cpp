@@ -149,6 +149,46 @@ TEST(Ridges, LieInTheMiddleOfLinesAndAreAsWide) {
     }
 }
 
+// What a lens and a sensor that blur by 1.15 pixels at half height make of a line.
+GreyPicture blurred_line(double width, double angle, const DVec2& place, bool light) {
+    constexpr int kSize = 120;
+    const DVec2 across(-std::sin(angle), std::cos(angle));
+    const double sigma = 1.15 / (2.0 * std::sqrt(2.0 * std::log(2.0)));
+    const auto cover = [&](double off) {
+        const double scale = 1.0 / (sigma * std::sqrt(2.0));
+        return 0.5 * (std::erf((off + 0.5 * width) * scale) - std::erf((off - 0.5 * width) * scale));
+    };
+    GreyPicture picture(kSize, kSize);
+    for (int y = 0; y < kSize; y++)
+        for (int x = 0; x < kSize; x++) {
+            const double sum = cover(glm::dot(DVec2(x, y) - place, across));
+            const double side = light ? 70.0 : 200.0, line = light ? 200.0 : 70.0;
+            picture.row(y)[x] = static_cast<uint8_t>(std::lround(glm::mix(side, line, sum)));
+        }
+    return picture;
+}
+
+TEST(Ridges, AreAsWideAsTheLinesBeforeTheLensBlurredThem) {
+    Random random(21);
+    for (const double width : {0.8, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0})
+        for (const bool light : {false, true}) {
+            double wide = 0.0, count = 0.0;
+            for (int turn = 0; turn < 6; turn++) {
+                const GreyPicture picture = blurred_line(
+                    width, random.uniform(0.0, kPi),
+                    DVec2(60.0 + random.uniform(-1.0, 1.0), 60.0 + random.uniform(-1.0, 1.0)), light);
+                for (const auto& row : find_ridges(pyramid_over(picture)))
+                    for (const Ridge& ridge : row) {
+                        wide += ridge.width;
+                        count += 1.0;
+                    }
+            }
+            ASSERT_GT(count, 300.0) << width;
+            EXPECT_NEAR(wide / count, width, (width < 1.2 ? 0.2 : 0.12) * width)
+                << (light ? "light" : "dark");
+        }
+}
+
 TEST(Ridges, AreNotInPlainPicturesNorAtEdges) {
     GreyPicture plain(100, 100), edge(100, 100);
     for (int y = 0; y < 100; y++)
