@@ -16,7 +16,6 @@ constexpr int kReach = 10;         // pixels: sideways
 constexpr int kReachUp = 4;        // pixels: a hand shakes up and down
 constexpr double kTexture = 30.0;  // mean squared slope of a block that can be found again
 constexpr double kFar = 0.75;      // of the blocks' motions, in the order of their lengths
-constexpr size_t kSmoothed = 5;    // frames before and after: what comes back within a second is a shake
 constexpr double kNoise = 0.002;   // of the picture's width: what a block's place is sure to
 
 int difference(const Image& a, const Image& b, int ax, int ay, int bx, int by) {
@@ -106,8 +105,8 @@ std::vector<size_t> choose_frames(std::span<const FrameLook> frames, const Frame
     for (size_t i = 0; i < frames.size(); i++)
         sums[i + 1] = sums[i] + (std::isfinite(frames[i].moved) ? frames[i].moved : 0.0);
     for (size_t i = 1; i < frames.size(); i++) {
-        const size_t first = i > kSmoothed ? i - kSmoothed : 0,
-                     last = std::min(i + kSmoothed + 1, frames.size());
+        const size_t first = i > choice.smoothed ? i - choice.smoothed : 0,
+                     last = std::min(i + choice.smoothed + 1, frames.size());
         const double usual = std::abs(sums[last] - sums[first]) / static_cast<double>(last - first);
         way[i] = way[i - 1] + (usual > kNoise ? usual : 0.0);
     }

@@ -20,9 +20,10 @@ struct FrameChoice {
     // near; a phone sees 50 (upright) to 65 degrees of its width, so this is 3 to 5 degrees of the walk: what
     // tracking wants (papers/002, 4.4: 3 to 8).
     double step = 0.06;
-    size_t least = 48;   // of a film in which that much moves at all: a circle in steps of 7.5 degrees
-    size_t most = 120;   // in steps of 3 degrees
-    double still = 0.5;  // of the picture's width in the whole film: less is no walk
+    size_t least = 48;    // of a film in which that much moves at all: a circle in steps of 7.5 degrees
+    size_t most = 120;    // in steps of 3 degrees
+    double still = 0.5;   // of the picture's width in the whole film: less is no walk
+    size_t smoothed = 5;  // frames before and after: what comes back within them is a shake
 };
 
 // How the picture moved between two frames (grey, of the same size), in shares of its width: of blocks with

@@ -12,6 +12,7 @@
 #include "photos/choose_frames.h"
 #include "photos/film_frames.h"
 #include "photos/photo_folder.h"
+#include "photos/photo_picture.h"
 #include "photos_standin.h"
 
 namespace treerec {
@@ -125,8 +126,9 @@ TEST(PhotosFilm, OddFilmsAreNone) {
 
 class PhotosFilmFile : public test::WithStandIn<test::Cli> {
   protected:
-    // Makes a film of a walk past a wall with ffmpeg; false where that is not installed.
-    bool film(const std::string& name, int frames, double pace) const {
+    // Makes a film of a walk past a wall with ffmpeg; false where that is not installed. pace: pixels from frame
+    // to frame, of 320; rate: frames of a second.
+    bool film(const std::string& name, int frames, double pace, int rate = 10) const {
         if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) return false;
         const Image all = wall(11);
         std::ofstream out(folder_ / "frames.pgm", std::ios::binary);
@@ -139,10 +141,20 @@ class PhotosFilmFile : public test::WithStandIn<test::Cli> {
         out.close();
         const std::string command =
             "cd '" + folder_.string() +
-            "' && ffmpeg -v error -y -f image2pipe -framerate 10 -c:v pgm -i frames.pgm "
+            "' && ffmpeg -v error -y -f image2pipe -framerate " +
+            std::to_string(rate) +
+            " -c:v pgm -i frames.pgm "
             "-c:v mpeg4 -q:v 2 film.mp4 && mv film.mp4 \"./$NAME\"";
         ::setenv("NAME", name.c_str(), 1);
         return std::system(command.c_str()) == 0;
+    }
+
+    // The photos' names in out/frames, in their order.
+    std::vector<std::string> frames() const {
+        std::vector<std::string> names;
+        for (const PhotoFile& photo : list_photos(path("out/frames")).photos)
+            names.push_back(photo.name);
+        return names;
     }
 };
 
@@ -153,17 +165,18 @@ TEST_F(PhotosFilmFile, AWalkBecomesPhotos) {
     const FilmPhotos photos = photos_of_film(path(name), path("out"));
     EXPECT_GE(photos.photos, 45U);
     EXPECT_LE(photos.photos, 120U);
-    EXPECT_TRUE(fs::exists(folder_ / "out" / "frames" / "frame_0001.jpg"));
+    const std::vector<std::string> names = frames();
+    ASSERT_EQ(names.size(), photos.photos);
     EXPECT_FALSE(fs::exists(folder_ / "out" / "colmap" / "film.pgm"));
-    const auto written = fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg");
+    const auto written = fs::last_write_time(folder_ / "out" / "frames" / names[0]);
     const FilmPhotos again = photos_of_film(path(name), path("out"));
     EXPECT_EQ(again.photos, photos.photos);
     EXPECT_NEAR(again.seconds, photos.seconds, 1e-3);
-    EXPECT_EQ(fs::last_write_time(folder_ / "out" / "frames" / "frame_0001.jpg"), written);
+    EXPECT_EQ(fs::last_write_time(folder_ / "out" / "frames" / names[0]), written);
     // A frame that somebody took away is made again.
-    fs::remove(folder_ / "out" / "frames" / "frame_0002.jpg");
+    fs::remove(folder_ / "out" / "frames" / names[1]);
     EXPECT_EQ(photos_of_film(path(name), path("out")).photos, photos.photos);
-    EXPECT_TRUE(fs::exists(folder_ / "out" / "frames" / "frame_0002.jpg"));
+    EXPECT_EQ(frames(), names);
     // A folder with it in it means the same.
     fs::create_directories(folder_ / "phone");
     fs::rename(folder_ / name, folder_ / "phone" / name);
@@ -181,15 +194,50 @@ TEST_F(PhotosFilmFile, AWalkBecomesPhotos) {
     EXPECT_NE(beside.warnings[0].find("name the film"), std::string::npos) << beside.warnings[0];
 }
 
+// What a photo shows is what the film shows at the time that its name tells, also where that isn't looked at
+// as often as it has frames: a place beside it would be seen by whoever knows where the camera was.
+TEST_F(PhotosFilmFile, NamesTellWhereInTheFilmTheyAre) {
+    constexpr double kPace = 2.0;
+    if (!film("walk.mp4", 630, kPace, 30)) GTEST_SKIP() << "ffmpeg is not installed.";
+    photos_of_film(path("walk.mp4"), path("out"));
+    const Image all = wall(11);
+    const std::vector<std::string> names = frames();
+    ASSERT_GE(names.size(), 40U);
+    for (size_t i = 0; i < names.size(); i += 5) {
+        double seconds = -1.0;
+        ASSERT_EQ(std::sscanf(names[i].c_str(), "frame_%lfs.jpg", &seconds), 1) << names[i];
+        const Image shown = read_photo(path("out/frames/" + names[i]));
+        double best = INFINITY;
+        int found = -1;
+        for (int frame = 0; frame < 630; frame++) {
+            const Image there = view(all, 10.0 + kPace * frame, 320, 96);
+            double sum = 0.0;
+            for (int y = 8; y < 96; y += 16)
+                for (int x = 0; x < 320; x++)
+                    sum += std::abs(static_cast<double>(*shown.at(x, y)) - static_cast<double>(*there.at(x, y)));
+            if (sum < best) {
+                best = sum;
+                found = frame;
+            }
+        }
+        EXPECT_EQ(found, static_cast<int>(std::floor(30.0 * seconds + 0.05))) << names[i];
+    }
+}
+
+// From one tenth of a second to the next more moves than is found again.
+TEST_F(PhotosFilmFile, AQuickWalkIsOne) {
+    if (!film("walk.mp4", 90, 8.0, 30)) GTEST_SKIP() << "ffmpeg is not installed.";
+    EXPECT_GE(photos_of_film(path("walk.mp4"), path("out")).photos, 30U);
+    EXPECT_EQ(frames().front().substr(0, 10), "frame_0000");
+}
+
 TEST_F(PhotosFilmFile, TheProgramTakesAFilm) {
     if (!film("walk.mp4", 300, 4.0)) GTEST_SKIP() << "ffmpeg is not installed.";
     // The stand-in's model is of these photos.
-    std::vector<std::string> names;
-    for (int i = 1; i <= 12; i++) {
-        char name[32];
-        std::snprintf(name, sizeof name, "frame_%04d.jpg", i);
-        names.emplace_back(name);
-    }
+    photos_of_film(path("walk.mp4"), path("out"));
+    std::vector<std::string> names = frames();
+    ASSERT_GE(names.size(), 12U);
+    names.resize(12);
     fs::remove_all(folder_ / "models");
     test::write_tiny_model(folder_ / "models" / "0", {names});
     const test::Outcome outcome = run("photos walk.mp4 -o out --sparse");
