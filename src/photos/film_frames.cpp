@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <span>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -223,12 +224,16 @@ std::vector<FrameLook> look_at(const std::string& path, Progress* progress) {
     return looks;
 }
 
-// "select='eq(n,3)+eq(n,17)'".
+// "(eq(n,3)+eq(n,17))": in halves, since ffmpeg adds up no more than a hundred in a row.
+std::string sum_of(std::span<const size_t> chosen) {
+    if (chosen.size() == 1) return "eq(n," + std::to_string(chosen[0]) + ")";
+    const size_t half = chosen.size() / 2;
+    return "(" + sum_of(chosen.first(half)) + "+" + sum_of(chosen.subspan(half)) + ")";
+}
+
+// Of one frame or more.
 std::string selection_of(const std::vector<size_t>& chosen) {
-    std::string words = "select='";
-    for (size_t i = 0; i < chosen.size(); i++)
-        words += (i > 0 ? "+eq(n," : "eq(n,") + std::to_string(chosen[i]) + ")";
-    return words + "'";
+    return "select='" + sum_of(chosen) + "'";
 }
 
 // Goes when its work is done or given up.

@@ -51,17 +51,28 @@ Image view(const Image& wall, double left, int width = 160, int height = 90) {
 TEST(PhotosFilm, MotionIsFoundToAPartOfAPixel) {
     const Image all = wall(3);
     for (const double moved : {0.0, 0.4, -1.3, 3.0, -6.75, 8.5}) {
-        const double found = motion_between(view(all, 400.0), view(all, 400.0 - moved)) * 160.0;
-        EXPECT_NEAR(found, moved, 0.25) << moved;
+        const SideMotion found = motion_between(view(all, 400.0), view(all, 400.0 - moved));
+        EXPECT_NEAR(found.left * 160.0, moved, 0.25) << moved;
+        EXPECT_NEAR(found.right * 160.0, moved, 0.25) << moved;
     }
     // An even sky tells nothing, and what stays before a background that moves does not count.
-    EXPECT_EQ(motion_between(Image(160, 90, 1), Image(160, 90, 1)), 0.0);
+    EXPECT_EQ(motion_between(Image(160, 90, 1), Image(160, 90, 1)).right, 0.0);
     Image before = view(all, 400.0), after = view(all, 396.0);
     for (int y = 0; y < 90; y++)
         for (int x = 48; x < 112; x++)
             *before.at(x, y) = *after.at(x, y) = *all.at(x, y);
-    EXPECT_NEAR(motion_between(before, after) * 160.0, 4.0, 0.25);
-    EXPECT_EQ(motion_between(Image(16, 16, 1), Image(17, 16, 1)), 0.0);
+    EXPECT_NEAR(motion_between(before, after).right * 160.0, 4.0, 0.25);
+    EXPECT_NEAR(motion_between(before, after).left * 160.0, 0.0, 0.25);
+    // What lies before the tree moves to the other side.
+    const Image ground_before = view(all, 700.0), ground_after = view(all, 706.0);
+    for (int y = 45; y < 90; y++)
+        for (int x = 0; x < 160; x++) {
+            *before.at(x, y) = *ground_before.at(x, y);
+            *after.at(x, y) = *ground_after.at(x, y);
+        }
+    EXPECT_NEAR(motion_between(before, after).right * 160.0, 4.0, 0.25);
+    EXPECT_NEAR(motion_between(before, after).left * 160.0, -6.0, 0.25);
+    EXPECT_EQ(motion_between(Image(16, 16, 1), Image(17, 16, 1)).left, 0.0);
 }
 
 TEST(PhotosFilm, SharpnessFallsWithBlur) {
@@ -90,7 +101,10 @@ TEST(PhotosFilm, FramesAreAStepOfTheWalkApart) {
         for (int i = 0; i < 600; i++) {
             if (random.uniform() < 0.02) walks = !walks;
             const double shake = i % 2 ? 0.003 : -0.003;
-            frames.push_back({side * (walks ? pace : 0.0) + shake, random.uniform()});
+            // What lies before the tree goes the other way, or isn't seen for a while.
+            const double far = side * (walks ? pace : 0.0) + shake,
+                         near = i % 200 < 100 ? shake - 0.9 * side * (walks ? pace : 0.0) : shake;
+            frames.push_back({{std::min(far, near), std::max(far, near)}, random.uniform()});
             at += walks ? pace : 0.0;
             way.push_back(at);
         }
@@ -113,38 +127,40 @@ TEST(PhotosFilm, FramesAreAStepOfTheWalkApart) {
 
 TEST(PhotosFilm, OddFilmsAreNone) {
     EXPECT_TRUE(choose_frames({}).empty());
-    const std::vector<FrameLook> still(500, FrameLook{0.0, 1.0});
+    const std::vector<FrameLook> still(500, FrameLook{{0.0, 0.0}, 1.0});
     EXPECT_TRUE(choose_frames(still).empty());
     std::vector<FrameLook> shaken(500);
     for (size_t i = 0; i < shaken.size(); i++)
-        shaken[i] = {i % 2 ? 0.02 : -0.02, 1.0};
+        shaken[i] = i % 2 ? FrameLook{{0.02, 0.02}, 1.0} : FrameLook{{-0.02, -0.02}, 1.0};
     EXPECT_TRUE(choose_frames(shaken).empty());
-    std::vector<FrameLook> broken(500, FrameLook{0.01, 1.0});
-    broken[7] = {NAN, NAN};
+    std::vector<FrameLook> broken(500, FrameLook{{0.01, 0.01}, 1.0});
+    broken[7] = {{NAN, NAN}, NAN};
     EXPECT_FALSE(choose_frames(broken).empty());
 }
 
 class PhotosFilmFile : public test::WithStandIn<test::Cli> {
   protected:
-    // Makes a film of a walk past a wall with ffmpeg; false where that is not installed. pace: pixels from frame
-    // to frame, of 320; rate: frames of a second.
+    static constexpr double kWall = 1265.0;  // pixels
+
+    // Makes a film of a walk past a wall with ffmpeg; false where that is not installed. pace: pixels from
+    // frame to frame, of 320, and back again at the wall's end; rate: frames of a second.
     bool film(const std::string& name, int frames, double pace, int rate = 10) const {
         if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) return false;
         const Image all = wall(11);
         std::ofstream out(folder_ / "frames.pgm", std::ios::binary);
         for (int i = 0; i < frames; i++) {
-            const Image picture = view(all, 10.0 + pace * i, 320, 96);
+            const double way = std::fmod(pace * i, 2.0 * kWall);
+            const Image picture = view(all, 10.0 + std::min(way, 2.0 * kWall - way), 320, 96);
             out << "P5\n320 96\n255\n";
             out.write(reinterpret_cast<const char*>(picture.pixels.data()),
                       static_cast<std::streamsize>(picture.pixels.size()));
         }
         out.close();
-        const std::string command =
-            "cd '" + folder_.string() +
-            "' && ffmpeg -v error -y -f image2pipe -framerate " +
-            std::to_string(rate) +
-            " -c:v pgm -i frames.pgm "
-            "-c:v mpeg4 -q:v 2 film.mp4 && mv film.mp4 \"./$NAME\"";
+        const std::string command = "cd '" + folder_.string() +
+                                    "' && ffmpeg -v error -y -f image2pipe -framerate " +
+                                    std::to_string(rate) +
+                                    " -c:v pgm -i frames.pgm "
+                                    "-c:v mpeg4 -q:v 2 film.mp4 && mv film.mp4 \"./$NAME\"";
         ::setenv("NAME", name.c_str(), 1);
         return std::system(command.c_str()) == 0;
     }
@@ -214,7 +230,8 @@ TEST_F(PhotosFilmFile, NamesTellWhereInTheFilmTheyAre) {
             double sum = 0.0;
             for (int y = 8; y < 96; y += 16)
                 for (int x = 0; x < 320; x++)
-                    sum += std::abs(static_cast<double>(*shown.at(x, y)) - static_cast<double>(*there.at(x, y)));
+                    sum +=
+                        std::abs(static_cast<double>(*shown.at(x, y)) - static_cast<double>(*there.at(x, y)));
             if (sum < best) {
                 best = sum;
                 found = frame;
@@ -222,6 +239,12 @@ TEST_F(PhotosFilmFile, NamesTellWhereInTheFilmTheyAre) {
         }
         EXPECT_EQ(found, static_cast<int>(std::floor(30.0 * seconds + 0.05))) << names[i];
     }
+}
+
+// More photos than ffmpeg adds up in a row.
+TEST_F(PhotosFilmFile, ALongWalkIsManyPhotos) {
+    if (!film("walk.mp4", 300, 8.0)) GTEST_SKIP() << "ffmpeg is not installed.";
+    EXPECT_GT(photos_of_film(path("walk.mp4"), path("out")).photos, 105U);
 }
 
 // From one tenth of a second to the next more moves than is found again.
