@@ -15,8 +15,7 @@ constexpr int kBlock = 16;         // pixels
 constexpr int kReach = 10;         // pixels: sideways
 constexpr int kReachUp = 4;        // pixels: a hand shakes up and down
 constexpr double kTexture = 30.0;  // mean squared slope of a block that can be found again
-constexpr double kFar = 0.75;      // of the blocks' motions, in the order of their lengths
-constexpr size_t kSmoothed = 5;    // frames before and after: what comes back within a second is a shake
+constexpr double kFar = 0.15;      // of the blocks' motions from the farthest one to a side
 constexpr double kNoise = 0.002;   // of the picture's width: what a block's place is sure to
 
 int difference(const Image& a, const Image& b, int ax, int ay, int bx, int by) {
@@ -66,10 +65,20 @@ double block_motion(const Image& before, const Image& after, int left, int top) 
     return best_x + (bend > 0.0 ? std::clamp(0.5 * (less - more) / bend, -0.5, 0.5) : 0.0);
 }
 
+// Of the motions to a side before each frame, and of all.
+std::vector<double> sums_of(std::span<const FrameLook> frames, double SideMotion::*side) {
+    std::vector<double> sums(frames.size() + 1, 0.0);
+    for (size_t i = 0; i < frames.size(); i++) {
+        const double moved = frames[i].moved.*side;
+        sums[i + 1] = sums[i] + (std::isfinite(moved) ? moved : 0.0);
+    }
+    return sums;
+}
+
 }  // namespace
 
-double motion_between(const Image& before, const Image& after) {
-    if (before.width != after.width || before.height != after.height) return 0.0;
+SideMotion motion_between(const Image& before, const Image& after) {
+    if (before.width != after.width || before.height != after.height) return {};
     std::vector<double> motions;
     for (int top = 0; top + kBlock <= before.height; top += kBlock)
         for (int left = 0; left + kBlock <= before.width; left += kBlock) {
@@ -77,12 +86,10 @@ double motion_between(const Image& before, const Image& after) {
             const double moved = block_motion(before, after, left, top);
             if (std::isfinite(moved)) motions.push_back(moved);
         }
-    if (motions.empty()) return 0.0;
-    std::sort(motions.begin(), motions.end(), [](double a, double b) {
-        return std::abs(a) != std::abs(b) ? std::abs(a) < std::abs(b) : a < b;
-    });
-    const auto at = static_cast<size_t>(kFar * static_cast<double>(motions.size() - 1));
-    return motions[at] / before.width;
+    if (motions.empty()) return {};
+    std::sort(motions.begin(), motions.end());
+    const auto from_end = static_cast<size_t>(kFar * static_cast<double>(motions.size() - 1));
+    return {motions[from_end] / before.width, motions[motions.size() - 1 - from_end] / before.width};
 }
 
 double sharpness_of(const Image& picture) {
@@ -101,13 +108,13 @@ std::vector<size_t> choose_frames(std::span<const FrameLook> frames, const Frame
     std::vector<size_t> chosen;
     if (frames.empty()) return chosen;
     // The way walked by each frame: motions are summed over some frames first, where shakes take themselves
-    // away.
-    std::vector<double> sums(frames.size() + 1, 0.0), way(frames.size(), 0.0);
-    for (size_t i = 0; i < frames.size(); i++)
-        sums[i + 1] = sums[i] + (std::isfinite(frames[i].moved) ? frames[i].moved : 0.0);
+    // away. Of the two sides the one that more moves to, in all of the film.
+    std::vector<double> sums = sums_of(frames, &SideMotion::left), way(frames.size(), 0.0);
+    const std::vector<double> right = sums_of(frames, &SideMotion::right);
+    if (std::abs(right.back()) > std::abs(sums.back())) sums = right;
     for (size_t i = 1; i < frames.size(); i++) {
-        const size_t first = i > kSmoothed ? i - kSmoothed : 0,
-                     last = std::min(i + kSmoothed + 1, frames.size());
+        const size_t first = i > choice.smoothed ? i - choice.smoothed : 0,
+                     last = std::min(i + choice.smoothed + 1, frames.size());
         const double usual = std::abs(sums[last] - sums[first]) / static_cast<double>(last - first);
         way[i] = way[i - 1] + (usual > kNoise ? usual : 0.0);
     }

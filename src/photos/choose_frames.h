@@ -9,9 +9,17 @@
 
 namespace treerec {
 
+// How far a picture moved since the one before, in shares of its width, to the right: what moved farthest to
+// the left and to the right. On a walk around a tree what stands behind it moves to one side and what lies
+// before it to the other; a hand that turns moves both to the same.
+struct SideMotion {
+    double left = 0.0;
+    double right = 0.0;
+};
+
 // What is known of one of the frames, which are equally far apart in time.
 struct FrameLook {
-    double moved = 0.0;      // since the one before, in shares of the picture's width, to the right
+    SideMotion moved;
     double sharpness = 0.0;  // mean squared slope of the grey levels
 };
 
@@ -20,15 +28,17 @@ struct FrameChoice {
     // near; a phone sees 50 (upright) to 65 degrees of its width, so this is 3 to 5 degrees of the walk: what
     // tracking wants (papers/002, 4.4: 3 to 8).
     double step = 0.06;
-    size_t least = 48;   // of a film in which that much moves at all: a circle in steps of 7.5 degrees
-    size_t most = 120;   // in steps of 3 degrees
-    double still = 0.5;  // of the picture's width in the whole film: less is no walk
+    size_t least = 48;    // of a film in which that much moves at all: a circle in steps of 7.5 degrees
+    size_t most = 120;    // in steps of 3 degrees
+    double still = 0.5;   // of the picture's width in the whole film: less is no walk
+    size_t smoothed = 5;  // frames before and after: what comes back within them is a shake
 };
 
-// How the picture moved between two frames (grey, of the same size), in shares of its width: of blocks with
-// texture, found by least differences to a part of a pixel, that at three quarters, so that what stays in the
-// middle of the picture does not count. To the right is positive. 0 where nothing has texture.
-double motion_between(const Image& before, const Image& after);
+// How the picture moved between two frames (grey, of the same size): of blocks with texture, found by least
+// differences to a part of a pixel, the one that fifteen of a hundred are beyond, to either side, so that
+// what stays in the middle of the picture does not count, nor what is found wrongly. 0 where nothing has
+// texture.
+SideMotion motion_between(const Image& before, const Image& after);
 
 // (Of grey pictures) 0 for an even one.
 double sharpness_of(const Image& picture);

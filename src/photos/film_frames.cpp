@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <span>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -26,9 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMethod = "frames 1";  // another number where other frames come out
+constexpr const char* kMethod = "frames 2";  // another number where other frames come out
 constexpr double kMostPerSecond = 10.0;      // frames that are looked at
 constexpr double kLeastPerSecond = 2.0;
+// Of a short film more of a second: what moves farther from one to the next is not found again, and there
+// have to be some for each that is taken.
+constexpr double kLeastLooked = 600.0;
+constexpr double kShake = 0.5;          // seconds before and after: what comes back within is a shake
 constexpr double kMostLooked = 1500.0;  // frames of a long film
 constexpr int kLooked = 480;            // pixels of the longer side, for the sharpness
 constexpr int kSmaller = 3;             // as many times smaller for the motion
@@ -65,6 +70,19 @@ double time_after(const std::string& line, const char* word) {
     return 3600.0 * hours + 60.0 * minutes + seconds;
 }
 
+// The film's frames of a second, of ffmpeg's line about its pictures; infinite where that doesn't tell.
+double rate_in(const std::string& line) {
+    const size_t end = line.find(" fps,");
+    if (end == std::string::npos) return INFINITY;
+    const size_t before = line.rfind(' ', end - 1);
+    double rate = 0.0;
+    char next = 0;  // "1k fps" is told, too
+    if (before == std::string::npos || std::sscanf(line.c_str() + before, "%lf%c", &rate, &next) != 2 ||
+        next != ' ' || !(rate > 0.0))
+        return INFINITY;
+    return rate;
+}
+
 std::string number_text(double value) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 4).ptr};
@@ -82,23 +100,31 @@ class Ffmpeg {
         if (!log_) throw Error("'" + utf8_of(log) + "' cannot be written.");
     }
 
-    // How long the film is in seconds. Throws Error where it is none.
-    double length() {
-        double seconds = -1.0;
+    struct About {
+        double seconds = -1.0;  // negative where it isn't told
+        double rate = INFINITY;
+    };
+
+    // How long the film is, and its frames of a second. Throws Error where it is none.
+    About about() {
+        About film;
         bool pictures = false;
         std::string last;
         // It asks for something to write, and ends.
         run({"-i", "file:" + film_}, [&](const std::string& line) {
-            seconds = std::max(seconds, time_after(line, "Duration: "));
+            film.seconds = std::max(film.seconds, time_after(line, "Duration: "));
             // Covers of songs are pictures, too.
-            pictures = pictures || (line.find("Video: ") != std::string::npos &&
-                                    line.find("attached pic") == std::string::npos);
+            if (!pictures && line.find("Video: ") != std::string::npos &&
+                line.find("attached pic") == std::string::npos) {
+                pictures = true;
+                film.rate = rate_in(line);
+            }
             if (line.find("At least one output file") == std::string::npos) last = line;
         });
         if (!pictures)
             throw Error("'" + film_ + "' is no film that ffmpeg can read (it says: " + quote_word(last) +
                         ").");
-        return seconds;
+        return film;
     }
 
     // Passes all frames through `filters` into `to`. Throws Error.
@@ -198,12 +224,16 @@ std::vector<FrameLook> look_at(const std::string& path, Progress* progress) {
     return looks;
 }
 
-// "select='eq(n,3)+eq(n,17)'".
+// "(eq(n,3)+eq(n,17))": in halves, since ffmpeg adds up no more than a hundred in a row.
+std::string sum_of(std::span<const size_t> chosen) {
+    if (chosen.size() == 1) return "eq(n," + std::to_string(chosen[0]) + ")";
+    const size_t half = chosen.size() / 2;
+    return "(" + sum_of(chosen.first(half)) + "+" + sum_of(chosen.subspan(half)) + ")";
+}
+
+// Of one frame or more.
 std::string selection_of(const std::vector<size_t>& chosen) {
-    std::string words = "select='";
-    for (size_t i = 0; i < chosen.size(); i++)
-        words += (i > 0 ? "+eq(n," : "eq(n,") + std::to_string(chosen[i]) + ")";
-    return words + "'";
+    return "select='" + sum_of(chosen) + "'";
 }
 
 // Goes when its work is done or given up.
@@ -229,12 +259,33 @@ std::string basis_of(const fs::path& film) {
            " " + std::to_string(fs::last_write_time(film, failure).time_since_epoch().count());
 }
 
+// "frame_00012.033s.jpg": where in the film it is, and in the walk's order by name.
+std::string name_at(double seconds) {
+    const long long thousandths = std::llround(1000.0 * seconds);
+    char text[64];
+    std::snprintf(text, sizeof text, "frame_%05lld.%03llds.jpg", thousandths / 1000, thousandths % 1000);
+    return text;
+}
+
+// Names what ffmpeg has numbered by the times of the `chosen`.
+void name_by_times(const fs::path& folder, const std::vector<size_t>& chosen, double rate) {
+    for (size_t k = 0; k < chosen.size(); k++) {
+        const fs::path numbered = folder / (std::to_string(k + 1) + ".jpg");
+        const fs::path named = folder / name_at(static_cast<double>(chosen[k]) / rate);
+        std::error_code failure;
+        if (!fs::exists(numbered, failure)) continue;
+        fs::rename(numbered, named, failure);
+        if (failure)
+            throw Error("The photo '" + utf8_of(named) + "' cannot be written: " + failure.message() + ".");
+    }
+}
+
 // Where the pattern of names begins a number, a folder's own % has to be doubled.
 std::string pattern_in(const fs::path& folder) {
     std::string pattern;
     for (const char c : utf8_of(folder))
         pattern += c == '%' ? "%%" : std::string(1, c);
-    return pattern + "/frame_%04d.jpg";
+    return pattern + "/%d.jpg";
 }
 
 }  // namespace
@@ -290,16 +341,23 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
 
     Ffmpeg ffmpeg(find_ffmpeg(), utf8_of(source), whole / "photos.log", lock, progress);
     stage.begin();
-    result.seconds = ffmpeg.length();
-    const double rate = std::clamp(result.seconds > 0.0 ? kMostLooked / result.seconds : kLeastPerSecond,
-                                   kLeastPerSecond, kMostPerSecond);
-    const std::string frames = "fps=" + number_text(rate), side = std::to_string(kLooked);
+    const Ffmpeg::About about = ffmpeg.about();
+    result.seconds = about.seconds;
+    double rate = kLeastPerSecond;
+    if (about.seconds > 0.0) {
+        rate = std::clamp(kMostLooked / about.seconds, kLeastPerSecond, kMostPerSecond);
+        rate = std::min(std::max(rate, kLeastLooked / about.seconds), std::max(about.rate, kLeastPerSecond));
+    }
+    // What is shown at a time is what began then or before.
+    const std::string frames = "fps=" + number_text(rate) + ":round=up", side = std::to_string(kLooked);
     const Scrap scrap{whole / "colmap" / "film.pgm"};
     const std::string looked = utf8_of(scrap.path);
     ffmpeg.write(frames + ",scale=" + side + ":" + side + ":force_original_aspect_ratio=decrease,format=gray",
                  {"-f", "image2pipe", "-c:v", "pgm", "file:" + looked}, result.seconds, 0.0, kLookEnd);
     const std::vector<FrameLook> looks = look_at(looked, progress);
-    const std::vector<size_t> chosen = choose_frames(looks);
+    FrameChoice choice;
+    choice.smoothed = static_cast<size_t>(std::max(std::lround(kShake * rate), 1L));
+    const std::vector<size_t> chosen = choose_frames(looks, choice);
     if (chosen.empty())
         throw Error(
             "The film '" + film +
@@ -311,6 +369,7 @@ FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progr
     ffmpeg.write(frames + "," + selection_of(chosen) + ",setpts=N/FRAME_RATE/TB",
                  {"-f", "image2", "-c:v", "mjpeg", "-q:v", "2", pattern_in(part)}, result.seconds, kLookEnd,
                  1.0);
+    name_by_times(part, chosen, rate);
     result.photos = photos_in(part);
     if (result.photos == 0)
         throw Error("ffmpeg took no pictures out of '" + film + "'; photos.log has what it says.");

@@ -20,7 +20,8 @@ struct FilmPhotos {
     double seconds = 0.0;  // that the film takes
 };
 
-// Takes the frames that choose_frames() chooses out of a film at its full size. What ffmpeg says goes into
+// Takes the frames that choose_frames() chooses out of a film at its full size. Their names tell where in the
+// film they are: "frame_00012.033s.jpg". What ffmpeg says goes into
 // out/photos.log; the film is only read. Frames that are there from the same film are taken. Throws Error
 // with a sentence (no ffmpeg, no film, no walk, too short, …), or Cancelled.
 FilmPhotos photos_of_film(const std::string& film, const std::string& out, Progress* progress = nullptr);

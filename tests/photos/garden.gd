@@ -4,7 +4,7 @@ extends SceneTree
 ##
 ##     godot --path project --script tests/photos/garden.gd -- TRUTH.txt FOLDER [--photos=40]
 ##         [--leafy] [--width=1600] [--seed=1] [--masks] [--leaf-tint=1.5,0.72,0.6]
-##         [--marker=0.3]
+##         [--marker=0.3] [--film[=180]]
 ##
 ## TRUTH.txt is a tree file (treerec synth writes one). FOLDER/photos gets the photos and
 ## FOLDER/cameras.json the cameras (metres, Z up, as the tree file has it; of each its axes to the
@@ -13,9 +13,13 @@ extends SceneTree
 ## multiplied by, as colors are stored.
 ## With --marker, a printed marker whose black square is so many metres wide leans on a board near
 ## the tree's foot.
+## With --film, FOLDER/film/walk.mp4 is a phone's film of so many frames of one walk, by ffmpeg, and
+## cameras.json has the camera in the middle of each frame's exposure, by its time in the film. The
+## frames are those of a walk of a minute, played faster: their blur, shake and exposure are its.
 
-# The long side of a photo by its short one.
+# The long side of a picture by its short one: of photos and of films.
 const SHAPE: float = 1.5
+const FILM_SHAPE: float = 16.0 / 9.0
 # Of the short side, in degrees: a phone held upright.
 const FOV: float = 50.0
 # Radial distortion of a phone's lens: r (1 + K r²) of the picture's half width.
@@ -28,19 +32,18 @@ const KEY: Color = Color(1.0, 0.0, 1.0)
 const MARKER_PIXELS: float = 300.0 / 0.0254
 # How much of a photo's height the tree takes.
 const FILLING: float = 0.8
-
-const LENS: String = """
-shader_type canvas_item;
-uniform sampler2D scene : filter_linear;
-uniform float distortion;
-uniform float exposure;
-uniform vec2 shape;
-void fragment() {
-	vec2 at = (UV - 0.5) * 2.0 * shape / shape.x;
-	vec2 from = at * (1.0 + distortion * dot(at, at));
-	COLOR = vec4(texture(scene, from * shape.x / shape / 2.0 + 0.5).rgb * exposure, 1.0);
-}
-"""
+# Of a film: frames of a second, bits of a second, and of the walk seconds, what is walked (a
+# little more than around), of one frame the seconds of exposure and in how many pieces it is drawn.
+const RATE: int = 30
+const BITS: String = "17M"
+const SECONDS: float = 60.0
+const WALKED: float = TAU * 1.04
+const EXPOSED: float = 1.0 / 60.0
+const PIECES: int = 4
+# Where each of them is within a pixel: their mean has smooth edges, at a fifth of what MSAA costs.
+const WITHIN: Array[Vector2] = [
+	Vector2(-0.125, -0.375), Vector2(0.375, -0.125), Vector2(-0.375, 0.125), Vector2(0.125, 0.375)
+]
 
 const OAK_LEAF: String = "res://addons/tree_reconstruction/presets/oak_leaf.tres"
 
@@ -51,6 +54,9 @@ var _material: ShaderMaterial = ShaderMaterial.new()
 var _camera: Camera3D = Camera3D.new()
 var _options: Dictionary[String, String] = {}
 var _words: PackedStringArray = []
+var _shape: float = SHAPE
+# Of each way that a hand shakes, the three sines: amplitude, turns of a second, phase.
+var _sines: Array[PackedVector3Array] = []
 
 
 func _initialize() -> void:
@@ -78,15 +84,38 @@ func _photograph() -> void:
 		printerr(worker.get_error_message())
 		quit(1)
 		return
-	var width: int = _option("width", 1600)
-	_build(tree, Vector2i(width, roundi(width * SHAPE)))
+	var filmed: bool = _options.has("film")
+	_shape = FILM_SHAPE if filmed else SHAPE
+	var width: int = _option("width", 1080 if filmed else 1600)
+	_build(tree, Vector2i(width, roundi(width * _shape)))
 	for frame: int in 30:
 		await process_frame
 	while (_scene.get_node(^"Tree") as TreeInstance3D).is_rebuilding():
 		await process_frame
+	var box: AABB = tree.get_aabb()
+	var cameras: Array[Dictionary] = []
+	if filmed:
+		cameras = await _film(box)
+	else:
+		cameras = await _take_photos(box)
+	if cameras.is_empty():
+		quit(1)
+		return
+	var focal: float = width * 0.5 / tan(deg_to_rad(FOV) * 0.5)
+	var scene: Dictionary = {
+		"focal_pixels": focal, "width": width, "height": roundi(width * _shape), "cameras": cameras
+	}
+	if filmed:
+		scene["frames_per_second"] = RATE
+	var file: FileAccess = FileAccess.open(_words[1].path_join("cameras.json"), FileAccess.WRITE)
+	file.store_string(JSON.stringify(scene, "\t"))
+	file.close()
+	quit(0)
+
+
+func _take_photos(box: AABB) -> Array[Dictionary]:
 	var folder: String = _words[1]
 	DirAccess.make_dir_recursive_absolute(folder.path_join("photos"))
-	var box: AABB = tree.get_aabb()
 	var cameras: Array[Dictionary] = []
 	var count: int = _option("photos", 40)
 	for i: int in count:
@@ -108,16 +137,82 @@ func _photograph() -> void:
 			await _save_mask(folder.path_join("masks"), name)
 		cameras.append({"name": name, "centre": _z_up(at), "axes": _axes()})
 		print("%d of %d" % [i + 1, count])
-	var focal: float = width * 0.5 / tan(deg_to_rad(FOV) * 0.5)
-	var file: FileAccess = FileAccess.open(folder.path_join("cameras.json"), FileAccess.WRITE)
-	file.store_string(
-		JSON.stringify(
-			{"focal_pixels": focal, "width": width, "height": width * SHAPE, "cameras": cameras},
-			"\t"
-		)
-	)
-	file.close()
-	quit(0)
+	return cameras
+
+
+func _film(box: AABB) -> Array[Dictionary]:
+	var folder: String = _words[1].path_join("film")
+	var drawn: String = _words[1].path_join("drawn")
+	DirAccess.make_dir_recursive_absolute(folder)
+	DirAccess.make_dir_recursive_absolute(drawn)
+	_add_sines()
+	var cameras: Array[Dictionary] = []
+	var count: int = maxi(_option("film", 0), 0)
+	count = count if count > 0 else 180
+	# The angle of one in the middle of the picture.
+	var pixel: float = 2.0 * tan(deg_to_rad(FOV) * 0.5) / _scene.size.x
+	var pieces: Array[ImageTexture] = []
+	for i: int in count:
+		var middle: float = SECONDS * i / count
+		for k: int in PIECES:
+			_hold(middle + EXPOSED * ((k + 0.5) / PIECES - 0.5), box)
+			_camera.rotate_object_local(Vector3.UP, WITHIN[k].x * pixel)
+			_camera.rotate_object_local(Vector3.RIGHT, WITHIN[k].y * pixel)
+			_scene.render_target_update_mode = SubViewport.UPDATE_ONCE
+			await RenderingServer.frame_post_draw
+			var picture: Image = _scene.get_texture().get_image()
+			if pieces.size() < PIECES:
+				pieces.append(ImageTexture.create_from_image(picture))
+			else:
+				pieces[k].update(picture)
+		_material.set_shader_parameter(&"pieces", pieces)
+		var stops: float = STOPS * sin(TAU * 2.0 * i / count + _sines[0][0].z)
+		_material.set_shader_parameter(&"exposure", pow(2.0, stops))
+		_lens.render_target_update_mode = SubViewport.UPDATE_ONCE
+		await RenderingServer.frame_post_draw
+		_lens.get_texture().get_image().save_jpg(drawn.path_join("%04d.jpg" % i), 0.97)
+		_hold(middle, box)
+		var centre: Vector3 = _camera.global_position
+		cameras.append({"time": float(i) / RATE, "centre": _z_up(centre), "axes": _axes()})
+		print("%d of %d" % [i + 1, count])
+	var said: Array = []
+	var words: PackedStringArray = ["-y", "-hide_banner", "-framerate", str(RATE)]
+	words.append_array(["-i", drawn.path_join("%04d.jpg"), "-c:v", "libx264"])
+	words.append_array(["-b:v", BITS, "-pix_fmt", "yuv420p", folder.path_join("walk.mp4")])
+	if OS.execute("ffmpeg", words, said, true) != 0:
+		printerr("ffmpeg made no film:\n", "".join(said))
+		return []
+	return cameras
+
+
+func _add_sines() -> void:
+	# Metres aside, up and ahead; degrees to the side, up and rolled.
+	for most: float in [0.05, 0.04, 0.25, 1.2, 1.0, 1.0]:
+		var sines: PackedVector3Array = []
+		for high: float in [0.15, 0.5, 1.6]:
+			# The quicker, the smaller.
+			var quick: float = high * _random.randf_range(0.6, 1.0)
+			var size: float = most * 0.6 * sqrt(0.15 / high)
+			sines.append(Vector3(size, quick, _random.randf_range(0.0, TAU)))
+		_sines.append(sines)
+
+
+# As at this second of the walk.
+func _hold(second: float, box: AABB) -> void:
+	var shaken: PackedFloat64Array = []
+	for sines: PackedVector3Array in _sines:
+		var sum: float = 0.0
+		for sine: Vector3 in sines:
+			sum += sine.x * sin(TAU * sine.y * second + sine.z)
+		shaken.append(sum)
+	var out: Vector3 = Vector3.RIGHT.rotated(Vector3.UP, WALKED * second / SECONDS)
+	var at: Vector3 = out * (_away(box) + shaken[2]) + out.cross(Vector3.UP) * shaken[0]
+	at.y = 1.6 + shaken[1]
+	var aim: Vector3 = box.get_center() + Vector3(0.0, -0.02 * box.size.y, 0.0)
+	_camera.look_at_from_position(at, aim)
+	_camera.rotate_object_local(Vector3.UP, deg_to_rad(shaken[3]))
+	_camera.rotate_object_local(Vector3.RIGHT, deg_to_rad(shaken[4]))
+	_camera.rotate_object_local(Vector3.BACK, deg_to_rad(shaken[5]))
 
 
 # The tree alone, before what no tree is like.
@@ -164,15 +259,19 @@ func _axes() -> Array[Array]:
 
 # On a walk round the tree: never quite as far away, never quite as high.
 func _place(i: int, count: int, box: AABB) -> Vector3:
-	var vertical: float = 2.0 * atan(tan(deg_to_rad(FOV) * 0.5) * SHAPE)
-	var away: float = maxf(
+	var angle: float = TAU * (i + _random.randf_range(-0.2, 0.2)) / count
+	var out: Vector3 = Vector3.RIGHT.rotated(Vector3.UP, angle)
+	var at: Vector3 = out * _away(box) * _random.randf_range(0.95, 1.05)
+	return at + Vector3.UP * (1.6 + _random.randf_range(-0.15, 0.15))
+
+
+# From where all of the tree is in the picture.
+func _away(box: AABB) -> float:
+	var vertical: float = 2.0 * atan(tan(deg_to_rad(FOV) * 0.5) * _shape)
+	return maxf(
 		box.size.y / FILLING / (2.0 * tan(vertical * 0.5)),
 		0.5 * maxf(box.size.x, box.size.z) / FILLING / tan(deg_to_rad(FOV) * 0.5)
 	)
-	var angle: float = TAU * (i + _random.randf_range(-0.2, 0.2)) / count
-	var out: Vector3 = Vector3.RIGHT.rotated(Vector3.UP, angle)
-	var at: Vector3 = out * away * _random.randf_range(0.95, 1.05)
-	return at + Vector3.UP * (1.6 + _random.randf_range(-0.15, 0.15))
 
 
 func _shake(most: float) -> Vector3:
@@ -186,7 +285,7 @@ func _shake(most: float) -> Vector3:
 func _build(tree: TreeReconstruction, size: Vector2i) -> void:
 	_scene.size = size
 	_scene.own_world_3d = true
-	_scene.msaa_3d = Viewport.MSAA_4X
+	_scene.msaa_3d = Viewport.MSAA_DISABLED if _options.has("film") else Viewport.MSAA_4X
 	_scene.render_target_update_mode = SubViewport.UPDATE_DISABLED
 	root.add_child(_scene)
 	_camera.fov = FOV
@@ -242,6 +341,9 @@ func _noise(low: Color, high: Color, scale: float) -> StandardMaterial3D:
 	material.detail_blend_mode = BaseMaterial3D.BLEND_MODE_MUL
 	material.detail_uv_layer = BaseMaterial3D.DETAIL_UV_2
 	material.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS_ANISOTROPIC
+	if _options.has("film"):
+		# Half the time of drawing.
+		material.texture_filter = BaseMaterial3D.TEXTURE_FILTER_LINEAR_WITH_MIPMAPS
 	material.roughness = 1.0
 	material.uv1_triplanar = true
 	material.uv1_world_triplanar = true
@@ -378,12 +480,15 @@ func _on_circle(angle: float, radius: float) -> Vector3:
 
 func _add_lens(size: Vector2i) -> void:
 	_lens.size = size
-	_lens.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	var filmed: bool = _options.has("film")
+	_lens.render_target_update_mode = (
+		SubViewport.UPDATE_DISABLED if filmed else SubViewport.UPDATE_ALWAYS
+	)
 	root.add_child(_lens)
-	var shader: Shader = Shader.new()
-	shader.code = LENS
-	_material.shader = shader
-	_material.set_shader_parameter(&"scene", _scene.get_texture())
+	var beside: String = (get_script() as Script).resource_path.get_base_dir()
+	_material.shader = load(beside.path_join("film_lens.gdshader" if filmed else "lens.gdshader"))
+	if not filmed:
+		_material.set_shader_parameter(&"scene", _scene.get_texture())
 	_material.set_shader_parameter(&"distortion", DISTORTION)
 	_material.set_shader_parameter(&"shape", Vector2(size))
 	var glass: ColorRect = ColorRect.new()

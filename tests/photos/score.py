@@ -3,6 +3,7 @@
 
     score.py TRUTH.txt GARDEN OUT     TRUTH.txt: the tree file; GARDEN: what garden.gd made; OUT: of 'treerec photos'
 
+Photos are known by their names, frames of a film by the time that their names tell.
 The cameras' true places lay the two over each other (Horn 1987: the similarity of least squares), so that scale, place and
 direction are the chain's own, and errors are told in metres. Prints a line per figure, and is 0 whatever they are: what
 they should be is another's business.
@@ -10,6 +11,7 @@ they should be is another's business.
 import json
 import math
 import pathlib
+import re
 import struct
 import sys
 
@@ -43,6 +45,21 @@ def read_centres(path):
                 (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)))
         centres[name] = tuple(-sum(turn[k][i] * t[k] for k in range(3)) for i in range(3))
     return centres
+
+
+def true_places(scene, names):
+    """{photo's name: the true place of its camera}"""
+    if "frames_per_second" not in scene:
+        return {c["name"]: tuple(c["centre"]) for c in scene["cameras"]}
+    places = {}
+    for name in names:
+        told = re.search(r"(\d+\.\d+)s\.jpg$", name)
+        if not told:
+            sys.exit("%s tells no time" % name)
+        # What was shown then began at that time or before.
+        at = math.floor(float(told.group(1)) * scene["frames_per_second"] + 0.05)
+        places[name] = tuple(scene["cameras"][min(at, len(scene["cameras"]) - 1)]["centre"])
+    return places
 
 
 def similarity(given, wanted):
@@ -123,8 +140,10 @@ def main(truth_path, garden, out):
     truth = read_tree(truth_path)
     scene = json.loads((pathlib.Path(garden) / "cameras.json").read_text())
     centres = read_centres(pathlib.Path(out) / "sparse/0/images.bin")
-    pairs = [(centres[c["name"]], tuple(c["centre"])) for c in scene["cameras"] if c["name"] in centres]
-    print("photos placed: %d of %d" % (len(pairs), len(scene["cameras"])))
+    filmed = sorted(path.name for path in (pathlib.Path(out) / "frames").glob("*.jpg"))
+    places = true_places(scene, filmed)
+    pairs = [(centres[name], place) for name, place in places.items() if name in centres]
+    print("photos placed: %d of %d" % (len(pairs), len(places)))
     move, scale = similarity([p for p, _ in pairs], [q for _, q in pairs])
     orbit = sum(math.hypot(q[0], q[1]) for _, q in pairs) / len(pairs)
     errors = sorted(math.dist(move(p), q) for p, q in pairs)
