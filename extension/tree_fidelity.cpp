@@ -278,26 +278,30 @@ TypedArray<Dictionary> TreeFidelity::get_doubtful() const {
     });
 }
 
+TypedArray<Dictionary> list_hits(const treerec::PhotoFidelity& p_found) {
+    TypedArray<Dictionary> photos;
+    for (const treerec::PhotoHits& photo : p_found.photos) {
+        Dictionary entry;
+        entry["name"] = to_godot(photo.name);
+        entry["inside"] = int64_t(photo.inside);
+        entry["outside"] = int64_t(photo.outside);
+        photos.push_back(entry);
+    }
+    return photos;
+}
+
 Dictionary TreeFidelity::measure_photos(const String& p_model, const String& p_masks) const {
     const std::lock_guard lock(mutex_);
     return guarded(Dictionary(), [&] {
         const treerec::Fidelity& fidelity = _current();
         const treerec::PhotoFidelity found =
             treerec::measure_photos(cloud_, to_std(file_path(p_model)), to_std(file_path(p_masks)));
-        TypedArray<Dictionary> photos;
-        for (const treerec::PhotoHits& photo : found.photos) {
-            Dictionary entry;
-            entry["name"] = to_godot(photo.name);
-            entry["inside"] = int64_t(photo.inside);
-            entry["outside"] = int64_t(photo.outside);
-            photos.push_back(entry);
-        }
         Dictionary result;
         result["information"] = found.information;
         result["reconstruction"] = found.reconstruction;
         result["skeleton"] = fidelity.skeleton;
         result["fidelity"] = treerec::modelling_fidelity(found, fidelity);
-        result["photos"] = photos;
+        result["photos"] = list_hits(found);
         return result;
     });
 }

@@ -9,7 +9,11 @@
 #include <mutex>
 
 #include "fidelity/fidelity.h"
+#include "fidelity/photo_fidelity.h"
 #include "tree_reconstruction.h"
+
+// What each photo says of a cloud: {name, inside, outside}, points that fall on the tree and beside it.
+godot::TypedArray<godot::Dictionary> list_hits(const treerec::PhotoFidelity& p_found);
 
 // Keeps measuring how faithful a tree is to its scan while it is edited. Any thread may call it; calls wait
 // for each other.

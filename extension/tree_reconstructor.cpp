@@ -320,6 +320,8 @@ void TreeReconstructor::_bind_methods() {
                          DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
                                 &TreeReconstructor::get_option_list);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_picture_gain", "pixels", "mean"),
+                                &TreeReconstructor::get_picture_gain);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_photo_option_list"),
                                 &TreeReconstructor::get_photo_option_list);
     ClassDB::bind_static_method("TreeReconstructor",

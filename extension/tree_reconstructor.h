@@ -52,6 +52,8 @@ class TreeReconstructor : public godot::RefCounted {
                                     const godot::Dictionary& p_folders);
     godot::Dictionary measure_outline(const godot::Ref<TreeReconstruction>& p_tree, bool p_leaves = true);
     static godot::TypedArray<godot::Dictionary> get_option_list();
+    static godot::Vector3 get_picture_gain(const godot::PackedByteArray& p_pixels,
+                                           const godot::Vector3& p_mean);
     static godot::TypedArray<godot::Dictionary> get_photo_option_list();
 
     static int64_t find_point(const godot::PackedVector3Array& p_points, const godot::Vector3& p_from,

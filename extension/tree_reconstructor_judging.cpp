@@ -11,6 +11,7 @@
 #include "photos/cameras_tell.h"
 #include "pipeline/html_report.h"
 #include "pipeline/show_fidelity.h"
+#include "tree_fidelity.h"
 #include "tree_reconstructor.h"
 #include "tree_reconstructor_job.h"
 #include "tree_reconstructor_photos.h"
@@ -81,19 +82,11 @@ Dictionary TreeReconstructor::load_outlines(const Ref<TreeReconstruction>& p_tre
         auto judge = std::make_shared<const treerec::PhotoJudge>(treerec::photo_judge(
             to_folders(**p_tree, p_folders), 0, to_cloud(p_tree->get_tree()->frame(), p_points), &listener));
         const treerec::PhotoFidelity& found = judge->cloud();
-        TypedArray<Dictionary> photos;
-        for (const treerec::PhotoHits& photo : found.photos) {
-            Dictionary entry;
-            entry["name"] = to_godot(photo.name);
-            entry["inside"] = int64_t(photo.inside);
-            entry["outside"] = int64_t(photo.outside);
-            photos.push_back(entry);
-        }
         told["judged_by"] = treerec::outline_source_name(judge->source());
         told["information"] = found.information;
         told["reconstruction"] = found.reconstruction;
         told["reconstruction_seen"] = found.seen;
-        told["photos"] = photos;
+        told["photos"] = list_hits(found);
         listener.check();
         const std::lock_guard lock(mutex_);
         judge_ = std::move(judge);

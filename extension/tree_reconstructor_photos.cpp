@@ -11,6 +11,7 @@
 #include "convert.h"
 #include "error.h"
 #include "file_bytes.h"
+#include "photos/leaf_look.h"
 #include "photos/pinhole_view.h"
 #include "photos/shown_photo.h"
 #include "tree_reconstructor.h"
@@ -110,4 +111,13 @@ Dictionary TreeReconstructor::load_photo(const Dictionary& p_view, const String&
         _fail(error.what());
     }
     return picture;
+}
+
+Vector3 TreeReconstructor::get_picture_gain(const PackedByteArray& p_pixels, const Vector3& p_mean) {
+    ERR_FAIL_COND_V_MSG(p_pixels.is_empty() || p_pixels.size() % 4 != 0, Vector3(1, 1, 1),
+                        "A picture's pixels are four bytes each: red, green, blue and alpha.");
+    ERR_FAIL_COND_V_MSG(!p_mean.is_finite(), Vector3(1, 1, 1), "The mean must be finite.");
+    treerec::Image picture(int(p_pixels.size() / 4), 1, 4);
+    std::memcpy(picture.pixels.data(), p_pixels.ptr(), picture.pixels.size());
+    return to_godot(treerec::picture_gain(picture, treerec::DVec3(p_mean.x, p_mean.y, p_mean.z)));
 }

@@ -1,14 +1,10 @@
-// Pictures as files of their own. Internal to cli/.
+// Names of pictures to write. Internal to cli/.
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "cli/arguments.h"
-#include "exchange/material_textures.h"
 #include "file_bytes.h"
-#include "mesh/image.h"
 
 namespace treerec {
 
@@ -22,11 +18,6 @@ inline void require_png(const std::string& path) {
     } catch (const Error& error) {
         throw UsageError(error.what());
     }
-}
-
-inline void write_png(const std::string& path, const Image& picture) {
-    const std::vector<uint8_t> bytes = encode_png(picture);
-    write_file(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace treerec

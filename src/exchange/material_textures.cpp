@@ -50,6 +50,11 @@ std::vector<uint8_t> encode_png(const Image& image) {
     return png;
 }
 
+void write_png(const std::string& path, const Image& image) {
+    const std::vector<uint8_t> bytes = encode_png(image);
+    write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
 namespace {
 
 std::vector<NamedPicture> encode_all(std::span<const char* const> names,

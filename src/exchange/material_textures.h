@@ -18,6 +18,8 @@ inline constexpr int kTextureSize = 512;  // pixels along an edge
 inline constexpr uint64_t kTextureSeed = 1;
 
 std::vector<uint8_t> encode_png(const Image& image);
+// The same as a file. Throws Error where it can't be written.
+void write_png(const std::string& path, const Image& image);
 
 struct NamedPicture {
     // "bark_albedo", "bark_normal", "bark_roughness" (mesh/textures.h), "bark_roughness_grey" (the roughness

@@ -7,10 +7,8 @@
 
 #include "error.h"
 #include "fidelity/photo_hits.h"
-#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "photos/cameras_tell.h"
-#include "photos/photo_picture.h"
 #include "photos/sky_mask.h"
 
 namespace treerec {
@@ -99,24 +97,14 @@ PhotoJudge PhotoJudge::by_sky(const PhotoModel& model, const std::string& photos
     auto all = judge_all(model.photos.size(), "Sky", progress, [&](size_t i) -> std::optional<Judged> {
         const Photo& photo = model.photos[i];
         const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-        Image picture;
-        try {
-            picture = read_photo(utf8_of(path_of(photos) / path_of(photo.name)));
-        } catch (const Error&) {
+        const std::optional<PhotoSky> sky = read_sky(photo, camera, photos, *up, kSkyPixels, kSkyMargin);
+        if (!sky) {
             unread++;
             return std::nullopt;
         }
-        // One that was turned or cropped shows other places than its camera saw.
-        if (picture.width != camera.width || picture.height != camera.height) {
-            unread++;
-            return std::nullopt;
-        }
-        const int longer = std::max(picture.width, picture.height);
-        const int times = (longer + kSkyPixels - 1) / kSkyPixels;
-        const PhotoSky sky = sky_in({&photo, &camera, reduced(picture, times), 1.0 / times}, *up, kSkyMargin);
-        if (sky.mask.empty()) return std::nullopt;
-        const auto shown = [&](const DVec3& in_camera) { return sky.shown_at(in_camera); };
-        return Judged{count_hits(cloud, photo, shown, progress), outline_mask(photo, camera, not_sky(sky))};
+        if (sky->mask.empty()) return std::nullopt;
+        const auto shown = [&](const DVec3& in_camera) { return sky->shown_at(in_camera); };
+        return Judged{count_hits(cloud, photo, shown, progress), outline_mask(photo, camera, not_sky(*sky))};
     });
     PhotoJudge judge;
     judge.source_ = OutlineSource::kSky;

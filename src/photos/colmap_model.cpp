@@ -262,6 +262,27 @@ DVec3 Photo::ahead() const {
     return glm::transpose(turn()) * DVec3(0, 0, 1);
 }
 
+std::optional<DVec3> Camera::ray(const DVec2& pixel) const {
+    constexpr double kStep = 1e-4;
+    constexpr int kRounds = 20;
+    const auto middle = project({0.0, 0.0, 1.0});
+    const double focal = focal_length();
+    if (!middle || !(focal > 0.0)) return {};
+    // Newton's method: a lens bends little.
+    DVec2 found = (pixel - *middle) / focal;
+    for (int round = 0; round < kRounds; round++) {
+        const auto here = project({found.x, found.y, 1.0}), right = project({found.x + kStep, found.y, 1.0}),
+                   below = project({found.x, found.y + kStep, 1.0});
+        if (!here || !right || !below) return {};
+        const glm::dmat2 slope((*right - *here) / kStep, (*below - *here) / kStep);
+        if (!(std::abs(glm::determinant(slope)) > 1e-6 * focal * focal)) return {};
+        const DVec2 miss = pixel - *here;
+        found += glm::inverse(slope) * miss;
+        if (glm::dot(miss, miss) < 1e-6) return DVec3(found, 1.0);
+    }
+    return {};
+}
+
 double Camera::focal_length() const {
     constexpr double kStep = 1e-4;
     const auto middle = project({0.0, 0.0, 1.0}), beside = project({kStep, 0.0, 1.0});

@@ -37,6 +37,10 @@ struct Camera {
     // left corner; nothing for one that is not in front of the camera, or so far to the side that the lens's
     // formula turns back.
     std::optional<DVec2> project(const DVec3& p) const;
+    // What falls on a place of the picture, in pixels from the upper left corner: the way there as (x, y, 1),
+    // in the camera's coordinates; nothing where the lens's formula does not lead there. To a thousandth of a
+    // pixel and better.
+    std::optional<DVec3> ray(const DVec2& pixel) const;
     // Pixels of the picture's middle for a step of 1 to the side at the distance 1; 0 where the lens's
     // formula gives none.
     double focal_length() const;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "geometry/quantile.h"
 #include "photos/marker_code.h"
 #include "photos/marker_outlines.h"
+#include "photos/photo_picture.h"
 
 namespace treerec {
 
@@ -277,23 +279,15 @@ bool has_inside(const Outline& outline, const DVec2& place) {
     return true;
 }
 
-// Each pixel the mean of times x times ones.
 GreyPicture reduced_by(const GreyPicture& picture, int times) {
-    GreyPicture small(picture.width / times, picture.height / times);
-    std::vector<uint32_t> sums(static_cast<size_t>(small.width));
-    const auto area = static_cast<uint32_t>(times * times);
-    for (int y = 0; y < small.height; y++) {
-        std::fill(sums.begin(), sums.end(), 0);
-        for (int v = 0; v < times; v++) {
-            const uint8_t* row = picture.row(y * times + v);
-            for (int x = 0; x < small.width; x++)
-                for (int u = 0; u < times; u++)
-                    sums[static_cast<size_t>(x)] += row[x * times + u];
-        }
-        for (int x = 0; x < small.width; x++)
-            small.row(y)[x] = static_cast<uint8_t>((sums[static_cast<size_t>(x)] + area / 2) / area);
-    }
-    return small;
+    Image whole(picture.width, picture.height, 1);
+    whole.pixels = picture.pixels;
+    Image small = reduced(whole, times);
+    GreyPicture made;
+    made.width = small.width;
+    made.height = small.height;
+    made.pixels = std::move(small.pixels);
+    return made;
 }
 
 }  // namespace

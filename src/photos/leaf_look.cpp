@@ -28,7 +28,7 @@ double mean_light(const std::array<double, 256>& counts, double gain) {
 
 }  // namespace
 
-DVec3 recolour(Image& picture, const DVec3& mean) {
+DVec3 picture_gain(const Image& picture, const DVec3& mean) {
     const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     DVec3 gains(1.0);
     for (int c = 0; c < 3; c++) {
@@ -43,12 +43,17 @@ DVec3 recolour(Image& picture, const DVec3& mean) {
         }
         gains[c] = high;
     }
+    return gains;
+}
+
+void recolour(Image& picture, const DVec3& mean) {
+    const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
+    const DVec3 gains = picture_gain(picture, mean);
     for (size_t i = 0; i < pixels; i++)
         for (int c = 0; c < 3; c++) {
             uint8_t& level = picture.pixels[4 * i + static_cast<size_t>(c)];
             level = static_cast<uint8_t>(std::min(255.0, std::floor(gains[c] * level + 0.5)));
         }
-    return gains;
 }
 
 DVec3 course_at(const LeafColours& colours, double height) {

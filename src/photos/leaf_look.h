@@ -7,9 +7,12 @@
 
 namespace treerec {
 
-// The picture with its veins and shades, each channel of its stored levels multiplied by one number, so that
-// the opaque part's mean is `mean` (linear light). picture: RGBA, sRGB. Returns those numbers.
-DVec3 recolour(Image& picture, const DVec3& mean);
+// What each channel of the picture's stored levels has to be multiplied by so that the opaque part's mean is
+// `mean` (linear light); 16 where that is not enough. picture: RGBA, sRGB.
+DVec3 picture_gain(const Image& picture, const DVec3& mean);
+
+// Multiplies them: the picture keeps its veins and shades.
+void recolour(Image& picture, const DVec3& mean);
 
 // What leaves at a height (metres above the root) are multiplied by: the course of the colours.
 DVec3 course_at(const LeafColours& colours, double height);

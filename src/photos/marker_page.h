@@ -11,6 +11,7 @@ inline constexpr double kUsualMarkerSide = 0.15;  // metres: with a white cell a
 inline constexpr double kLeastMarkerSide = 0.02;
 inline constexpr double kMostMarkerSide = 0.6;
 inline constexpr int kMarkerPageDpi = 300;
+inline constexpr double kMarkerLetters = 4.0;  // millimetres: how high the caption's letters are
 
 // An upright page of ISO 216, with the marker in the middle and its size below it. It is A4 as far as that
 // leaves 5 mm of white at the sides, as what printers can't print on; larger markers get the smallest page
@@ -35,7 +36,10 @@ std::string marker_caption(const MarkerPage& page);
 // An SVG in millimetres.
 std::string marker_svg(const MarkerPage& page);
 
-// The page at 300 dpi, grey, each of the marker's edges on the nearest pixel.
+// Of a length on the page, in millimetres, at 300 dpi.
+int marker_pixels(double millimetres);
+
+// The page at 300 dpi, grey and without its caption, each of the marker's edges on the nearest pixel.
 Image marker_picture(const MarkerPage& page);
 
 }  // namespace treerec

@@ -29,28 +29,6 @@ struct Sight {
 
 using Square = std::array<DVec3, 4>;
 
-// The line of sight of a pixel, in the camera's coordinates; nothing where the lens's formula has none.
-std::optional<DVec3> ray_of(const Camera& camera, const DVec2& pixel) {
-    constexpr double kStep = 1e-5;
-    const auto middle = camera.project({0.0, 0.0, 1.0});
-    const double focal = camera.focal_length();
-    if (!middle || !(focal > 0.0)) return {};
-    DVec2 ray = (pixel - *middle) / focal;
-    // Newton's method: a lens bends little.
-    for (int round = 0; round < 20; round++) {
-        const auto at = camera.project({ray.x, ray.y, 1.0});
-        const auto right = camera.project({ray.x + kStep, ray.y, 1.0});
-        const auto down = camera.project({ray.x, ray.y + kStep, 1.0});
-        if (!at || !right || !down) return {};
-        const DVec2 a = (*right - *at) / kStep, b = (*down - *at) / kStep, off = pixel - *at;
-        const double under = a.x * b.y - b.x * a.y;
-        if (!(std::abs(under) > 1e-9 * focal * focal)) return {};
-        ray += DVec2(off.x * b.y - b.x * off.y, a.x * off.y - off.x * a.y) / under;
-        if (glm::length(off) < 1e-6) return DVec3(ray, 1.0);
-    }
-    return {};
-}
-
 std::optional<Sight> sight_of(const PhotoModel& model, size_t index, const FoundMarker& marker) {
     Sight sight;
     sight.photo = &model.photos[index];
@@ -59,7 +37,7 @@ std::optional<Sight> sight_of(const PhotoModel& model, size_t index, const Found
     sight.centre = sight.photo->centre();
     const DMat3 to_world = glm::transpose(sight.photo->turn());
     for (size_t k = 0; k < 4; k++) {
-        const std::optional<DVec3> ray = ray_of(*sight.camera, marker.corners[k]);
+        const std::optional<DVec3> ray = sight.camera->ray(marker.corners[k]);
         if (!ray) return {};
         sight.rays[k] = glm::normalize(to_world * *ray);
     }

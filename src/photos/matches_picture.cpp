@@ -136,8 +136,7 @@ ShownMatches show_matches(const std::string& folder, const std::string& out, con
     make_folder(out);
     shown.path = utf8_of(path_of(out) /
                          path_of("matches_" + stem_of(first->name) + "_" + stem_of(second->name) + ".png"));
-    const std::vector<uint8_t> png = encode_png(draw_matches(one, other, plain, improved));
-    write_file(shown.path, {reinterpret_cast<const char*>(png.data()), png.size()});
+    write_png(shown.path, draw_matches(one, other, plain, improved));
     return shown;
 }
 

@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "error.h"
-#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "photos/affine_track.h"
 #include "photos/grey_pyramid.h"
@@ -53,18 +51,6 @@ struct Seen {
     double wider = 1.0;  // how much further out than its radius a round thing's outline seems, for it is near
     Profile slopes{};
 };
-
-std::optional<GreyPyramid> pyramid_of_photo(const Photo& photo, const Camera& camera,
-                                            const std::string& folder, int most_pixels) {
-    try {
-        const Image picture = read_photo(utf8_of(path_of(folder) / path_of(photo.name)));
-        if (picture.width == camera.width && picture.height == camera.height)
-            return pyramid_of(picture, most_pixels);
-    } catch (const Error&) {
-        // densify() says so.
-    }
-    return {};
-}
 
 // The slopes across a place; false where the photo does not show it, or nothing but evenness.
 bool look_across(const WoodPlace& place, const Photo& photo, const Camera& camera, const GreyPyramid& pyramid,
@@ -273,13 +259,15 @@ std::vector<double> outline_radii(const PhotoModel& model, const std::string& fo
             if (progress) progress->check();
             const Photo& photo = model.photos[i];
             const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-            if (const auto pyramid = pyramid_of_photo(photo, camera, folder, options.most_pixels))
+            if (const auto picture = picture_of(photo, camera, folder)) {
+                const GreyPyramid pyramid = pyramid_of(*picture, options.most_pixels);
                 for (size_t k = 0; k < places.size(); k++) {
                     Seen seen;
-                    if (!look_across(places[k], photo, camera, *pyramid, options, seen)) continue;
+                    if (!look_across(places[k], photo, camera, pyramid, options, seen)) continue;
                     seen.place = static_cast<uint32_t>(k);
                     of_photo[i].push_back(seen);
                 }
+            }
             if (progress)
                 progress->update(static_cast<double>(++done) / static_cast<double>(model.photos.size()),
                                  "Outline");

@@ -1,8 +1,10 @@
 #include "photos/photo_picture.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -48,19 +50,35 @@ Image read_photo(const std::string& path) {
     return std::move(*picture);
 }
 
+std::optional<Image> picture_of(const Photo& photo, const Camera& camera, const std::string& folder) {
+    try {
+        Image picture = read_photo(utf8_of(path_of(folder) / path_of(photo.name)));
+        if (picture.width == camera.width && picture.height == camera.height) return picture;
+    } catch (const Error&) {
+        return {};
+    }
+    return {};
+}
+
 Image reduced(const Image& picture, int times) {
     if (times <= 1) return picture;
     Image small(picture.width / times, picture.height / times, picture.channels);
-    const int count = times * times;
-    for (int y = 0; y < small.height; y++)
-        for (int x = 0; x < small.width; x++)
-            for (int k = 0; k < small.channels; k++) {
-                int sum = 0;
-                for (int v = 0; v < times; v++)
-                    for (int u = 0; u < times; u++)
-                        sum += picture.at(x * times + u, y * times + v)[k];
-                small.at(x, y)[k] = static_cast<uint8_t>((sum + count / 2) / count);
-            }
+    const size_t channels = static_cast<size_t>(small.channels), width = static_cast<size_t>(small.width);
+    const auto each = static_cast<size_t>(times);
+    const auto count = static_cast<uint32_t>(times * times);
+    std::vector<uint32_t> sums(width * channels);
+    for (int y = 0; y < small.height; y++) {
+        std::fill(sums.begin(), sums.end(), 0);
+        for (int v = 0; v < times; v++) {
+            const uint8_t* from = picture.at(0, y * times + v);
+            for (size_t x = 0; x < width; x++)
+                for (size_t u = 0; u < each; u++)
+                    for (size_t k = 0; k < channels; k++)
+                        sums[x * channels + k] += *from++;
+        }
+        for (size_t i = 0; i < sums.size(); i++)
+            small.at(0, y)[i] = static_cast<uint8_t>((sums[i] + count / 2) / count);
+    }
     return small;
 }
 

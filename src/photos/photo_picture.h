@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "mesh/image.h"
+#include "photos/colmap_model.h"
 
 namespace treerec {
 
@@ -15,6 +16,10 @@ std::optional<Image> decode_picture(std::string_view bytes, int channels);
 
 // A photo with 3 channels. Throws Error with a sentence for a file that is none.
 Image read_photo(const std::string& path);
+
+// The photo of a model, in `folder`. Nothing for one that can't be read, or that has other pixels than its
+// camera: what was turned or cropped since shows other places. densify() says so.
+std::optional<Image> picture_of(const Photo& photo, const Camera& camera, const std::string& folder);
 
 // Each pixel the mean of times x times ones; what is left over at the right and below goes. times: 1 or more.
 Image reduced(const Image& picture, int times);

@@ -4,9 +4,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
-#include "error.h"
-#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "photos/cameras_tell.h"
@@ -218,6 +217,14 @@ PhotoSky sky_in(const LoadedPhoto& loaded, const DVec3& sky, int margin) {
     return found;
 }
 
+std::optional<PhotoSky> read_sky(const Photo& photo, const Camera& camera, const std::string& folder,
+                                 const DVec3& sky, int most_pixels, int margin) {
+    const auto picture = picture_of(photo, camera, folder);
+    if (!picture) return {};
+    const int times = (std::max(picture->width, picture->height) + most_pixels - 1) / most_pixels;
+    return sky_in({&photo, &camera, reduced(*picture, times), 1.0 / times}, sky, margin);
+}
+
 SkyCarver::SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, const std::string& folder,
                      const CarveOptions& options, Progress* progress)
     : options_(options) {
@@ -230,18 +237,8 @@ SkyCarver::SkyCarver(const PhotoModel& model, std::span<const DVec3> sparse, con
             if (progress) progress->check();
             const Photo& photo = model.photos[i];
             const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-            try {
-                const Image picture = read_photo(utf8_of(path_of(folder) / path_of(photo.name)));
-                if (picture.width == camera.width && picture.height == camera.height) {
-                    const int longer = std::max(picture.width, picture.height);
-                    const int times = (longer + options_.most_pixels - 1) / options_.most_pixels;
-                    views_[i] = sky_in({&photo, &camera, reduced(picture, times), 1.0 / times}, *sky,
-                                       options_.margin);
-                }
-            } catch (const Error&) {
-                // densify() says which can't be read.
-                views_[i] = {};
-            }
+            if (auto view = read_sky(photo, camera, folder, *sky, options_.most_pixels, options_.margin))
+                views_[i] = std::move(*view);
             if (progress)
                 progress->update(static_cast<double>(++done) / static_cast<double>(views_.size()), "Sky");
         }

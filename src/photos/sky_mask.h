@@ -1,6 +1,7 @@
 // Where photos show the sky, and what can't be there because they do.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,11 @@ struct PhotoSky {
 // light areas above the horizon do, as a polynomial of second degree over the picture tells it: the holes in
 // a crown, too. sky: the way up in the model.
 PhotoSky sky_in(const LoadedPhoto& photo, const DVec3& sky, int margin);
+
+// The same of a model's photo in `folder`, which is made smaller to `most_pixels` of its longer side. Nothing
+// where picture_of() has none.
+std::optional<PhotoSky> read_sky(const Photo& photo, const Camera& camera, const std::string& folder,
+                                 const DVec3& sky, int most_pixels, int margin);
 
 struct CarveOptions {
     int most_pixels = 1600;      // of the longer side: larger photos are made smaller

@@ -4,10 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <optional>
 
-#include "error.h"
-#include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/point_tree.h"
 #include "photos/cameras_tell.h"
@@ -25,20 +22,6 @@ constexpr size_t kSurface = 12;       // of them: a flat one fills 28 cells, and
 constexpr double kReplaced = 2.5;     // cells beside thin wood, whose points go
 constexpr double kRoundPixels = 1.5;  // of radius: thinner wood gets fewer points
 
-// A photo as the model has it; nothing for one that can't be read.
-std::optional<Image> picture_of(const PhotoModel& model, size_t i, const std::string& folder) {
-    const Photo& photo = model.photos[i];
-    const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
-    try {
-        Image picture = read_photo(utf8_of(path_of(folder) / path_of(photo.name)));
-        if (picture.width == camera.width && picture.height == camera.height) return picture;
-    } catch (const Error&) {
-        // densify() says so.
-        return {};
-    }
-    return {};
-}
-
 // What the photo shows there that a place was found from.
 void colour(std::vector<ThinPlace>& places, const PhotoModel& model, const std::string& folder,
             Progress* progress) {
@@ -49,10 +32,10 @@ void colour(std::vector<ThinPlace>& places, const PhotoModel& model, const std::
         for (size_t i = first; i < last; i++) {
             if (progress) progress->check();
             if (of_photo[i].empty()) continue;
-            const auto picture = picture_of(model, i, folder);
-            if (!picture) continue;
             const Photo& photo = model.photos[i];
             const Camera& camera = model.cameras[static_cast<size_t>(photo.camera)];
+            const auto picture = picture_of(photo, camera, folder);
+            if (!picture) continue;
             for (const size_t k : of_photo[i]) {
                 const auto at = camera.project(photo.to_camera(places[k].position));
                 if (!at || !(at->x >= 0 && at->y >= 0 && at->x < picture->width && at->y < picture->height))
@@ -91,7 +74,9 @@ std::vector<ThinPlace> find_thin_wood(const PhotoModel& model, std::span<const D
     parallel_for(count, 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; i++) {
             if (progress) progress->check();
-            if (const auto picture = picture_of(model, i, folder)) {
+            const Photo& photo = model.photos[i];
+            if (const auto picture =
+                    picture_of(photo, model.cameras[static_cast<size_t>(photo.camera)], folder)) {
                 const GreyPyramid pyramid = pyramid_of(*picture, options.most_pixels);
                 scales[i] = 1.0 / pyramid.to_photo.x;
                 ridges[i] = find_ridges(pyramid, options.ridges, progress);

@@ -31,26 +31,6 @@ struct Mark {
     double width = 0.0;
 };
 
-// Undoes the lens: where on the plane at distance 1 a place of the photo is.
-bool undo_lens(const Camera& camera, const DVec2& photo_place, double focal, DVec2& found) {
-    const auto middle = camera.project({0.0, 0.0, 1.0});
-    if (!middle) return false;
-    found = (photo_place - *middle) / focal;
-    constexpr double kSmall = 1e-4;
-    for (int k = 0; k < 8; k++) {
-        const auto here = camera.project({found.x, found.y, 1.0}),
-                   right = camera.project({found.x + kSmall, found.y, 1.0}),
-                   below = camera.project({found.x, found.y + kSmall, 1.0});
-        if (!here || !right || !below) return false;
-        const DMat2 slope((*right - *here) / kSmall, (*below - *here) / kSmall);
-        if (!(std::abs(glm::determinant(slope)) > 1e-6 * focal * focal)) return false;
-        const DVec2 miss = photo_place - *here;
-        found += glm::inverse(slope) * miss;
-        if (glm::dot(miss, miss) < 1e-6) return true;
-    }
-    return false;
-}
-
 // The lines of one photo, without the lens's distortion.
 class PhotoLines {
   public:
@@ -63,13 +43,12 @@ class PhotoLines {
             for (const Ridge& ridge : row) {
                 // The model counts from the first pixel's corner.
                 const DVec2 at = (ridge.place + 0.5) / scale, beside = at + 2.0 / scale * ridge.way;
-                DVec2 here, there;
-                if (!undo_lens(camera, at, camera.focal_length(), here) ||
-                    !undo_lens(camera, beside, camera.focal_length(), there))
-                    continue;
-                const DVec2 way = focal * (there - here);
+                const auto here = camera.ray(at), there = camera.ray(beside);
+                if (!here || !there) continue;
+                const DVec2 way = focal * DVec2(*there - *here);
                 if (!(glm::length(way) > 0.1)) continue;
-                marks.push_back({focal * here, glm::normalize(way), ridge.width * glm::length(way) / 2.0});
+                marks.push_back(
+                    {focal * DVec2(*here), glm::normalize(way), ridge.width * glm::length(way) / 2.0});
                 low = glm::min(low, marks.back().place);
                 high = glm::max(high, marks.back().place);
             }

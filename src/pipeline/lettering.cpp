@@ -187,6 +187,7 @@ double away_from(const DVec2& p, const DVec2& from, const DVec2& to) {
 
 // left, top: of the letter's grid, in pixels; unit: pixels.
 void draw_letter(Image& image, double left, double top, const Letter& letter, double unit, const Rgb& color) {
+    const size_t channels = image.channels < 3 ? 1 : 3;
     const double half = 0.5 * std::max(kStroke * unit, 1.0);
     const int x0 = std::max(0, static_cast<int>(std::floor(left - half - 1.0)));
     const int x1 =
@@ -202,7 +203,7 @@ void draw_letter(Image& image, double left, double top, const Letter& letter, do
                     nearest = std::min(nearest, away_from(p, line[i > 0 ? i - 1 : 0], line[i]));
             const double ink = std::clamp(0.5 + half - nearest * unit, 0.0, 1.0);
             uint8_t* pixel = image.at(x, y);
-            for (size_t k = 0; k < 3; k++)
+            for (size_t k = 0; k < channels; k++)
                 pixel[k] = static_cast<uint8_t>(std::lround((1.0 - ink) * pixel[k] + ink * color[k]));
         }
 }

@@ -12,8 +12,8 @@ namespace treerec {
 // ?; each other character, of UTF-8, is drawn as a question mark.
 double text_width(std::string_view text, double size);
 
-// Onto a picture of three channels; what lies outside of it is left out. x: of the left end, y: of the
-// baseline, in pixels from the upper left corner.
+// Onto a picture of three channels, or in grey, of which `color` has the first; what lies outside of it is
+// left out. x: of the left end, y: of the baseline, in pixels from the upper left corner.
 void draw_text(Image& image, double x, double y, std::string_view text, double size, const Rgb& color);
 
 }  // namespace treerec

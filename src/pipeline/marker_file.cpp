@@ -1,6 +1,6 @@
 #include "pipeline/marker_file.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -10,20 +10,11 @@
 #include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "photos/marker_page.h"
+#include "pipeline/lettering.h"
 
 namespace treerec {
 
 namespace {
-
-bool ends_in(std::string_view path, std::string_view ending) {
-    if (path.size() < ending.size()) return false;
-    for (size_t i = 0; i < ending.size(); i++) {
-        char letter = path[path.size() - ending.size() + i];
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-        if (letter != ending[i]) return false;
-    }
-    return true;
-}
 
 void append(std::vector<uint8_t>& bytes, uint32_t number) {
     for (int shift = 24; shift >= 0; shift -= 8)
@@ -56,21 +47,34 @@ void tell_size(std::vector<uint8_t>& png, int dpi) {
     png.insert(png.begin() + kHead, chunk.begin(), chunk.end());
 }
 
+// In the middle below the marker, smaller where the page is narrow.
+void write_caption(Image& picture, const MarkerPage& page) {
+    constexpr double kMostWidth = 0.9;  // of the page
+    const std::string caption = marker_caption(page);
+    const double wide = text_width(caption, 1.0);
+    const double size = std::min<double>(marker_pixels(kMarkerLetters), kMostWidth * picture.width / wide);
+    draw_text(picture, 0.5 * (picture.width - size * wide), marker_pixels(page.caption), caption, size,
+              {0, 0, 0});
+}
+
 }  // namespace
 
 void require_marker_format(const std::string& path) {
-    if (!ends_in(path, ".svg") && !ends_in(path, ".png"))
+    const std::string ending = extension_of(path);
+    if (ending != "svg" && ending != "png")
         throw Error("A marker is written to a file that ends in .svg or .png, not '" + path + "'.");
 }
 
 void write_marker(const std::string& path, int id, double side) {
     require_marker_format(path);
     const MarkerPage page = marker_page(id, side);
-    if (ends_in(path, ".svg")) {
+    if (extension_of(path) == "svg") {
         write_file(path, marker_svg(page));
         return;
     }
-    std::vector<uint8_t> png = encode_png(marker_picture(page));
+    Image picture = marker_picture(page);
+    write_caption(picture, page);
+    std::vector<uint8_t> png = encode_png(picture);
     tell_size(png, kMarkerPageDpi);
     write_file(path, std::string_view(reinterpret_cast<const char*>(png.data()), png.size()));
 }

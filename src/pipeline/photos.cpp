@@ -232,9 +232,7 @@ void write_bark(const std::optional<PhotoBark>& bark, const std::string& folder)
             if (failure) throw Error("'" + utf8_of(path) + "', of another time, can't be deleted.");
             continue;
         }
-        const std::vector<uint8_t> bytes = encode_png((*bark->textures).*picture);
-        write_file(utf8_of(path),
-                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        write_png(utf8_of(path), (*bark->textures).*picture);
     }
 }
 

@@ -26,17 +26,37 @@ func _clean() -> void:
 			DirAccess.remove_absolute("res://" + name)
 
 
+# The mean light of its opaque pixels.
+func _mean_of(texture: Texture2D) -> Array:
+	var image: Image = texture.get_image()
+	if image.is_compressed():
+		image.decompress()
+	var sum: Vector3 = Vector3.ZERO
+	var count: int = 0
+	for y: int in image.get_height():
+		for x: int in image.get_width():
+			var stored: Color = image.get_pixel(x, y)
+			if stored.a8 >= 102:
+				var light: Color = stored.srgb_to_linear()
+				sum += Vector3(light.r, light.g, light.b)
+				count += 1
+	return [sum.x / count, sum.y / count, sum.z / count]
+
+
+func test_hostile_pictures_have_a_gain_of_one() -> void:
+	expected_errors = ["four bytes each", "The mean must be finite."]
+	for pixels: PackedByteArray in [PackedByteArray(), PackedByteArray([1, 2, 3])]:
+		check_equal(TreeReconstructor.get_picture_gain(pixels, Vector3.ONE), Vector3.ONE, "a gain")
+	var green: PackedByteArray = [0, 200, 0, 255]
+	check_equal(TreeReconstructor.get_picture_gain(green, Vector3(NAN, 0, 0)), Vector3.ONE, "NaN")
+
+
 func test_the_picture_is_multiplied_to_the_mean() -> void:
 	var made: TreeReconstruction = grown_tree(2)
 	made.leaf_preset = "oak"
 	# The picture's own mean: nothing is to be multiplied.
 	var drawn: ShaderMaterial = load(OAK)
-	var counts: Array[PackedFloat32Array] = PhotoLeaves._levels(
-		drawn.get_shader_parameter(&"albedo_texture")
-	)
-	var own: Array = []
-	for channel: int in 3:
-		own.append(PhotoLeaves._mean_light(counts[channel], 1.0))
+	var own: Array = _mean_of(drawn.get_shader_parameter(&"albedo_texture"))
 	var plain: Dictionary = _colors(own)
 	plain["least_green"] = own
 	var gain: Vector3 = PhotoLeaves.make(plain, made).get_shader_parameter(&"picture_gain")

@@ -9,6 +9,7 @@
 #include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "pipeline/compare_sheet.h"
+#include "with_photos.h"
 
 namespace treerec {
 namespace {
@@ -19,18 +20,11 @@ constexpr double kFocal = 200.0;
 
 // Photos of nothing but blue, from 10 in front of a stem of 4 high and .5 thick that stands upright, y to the
 // sky, and one from its other side.
-class CompareSheet : public ::testing::Test {
+class CompareSheet : public test::WithPhotos {
   protected:
     void SetUp() override {
-        folder_ = utf8_of(std::filesystem::temp_directory_path() / "treerec_compare_sheet");
-        std::filesystem::remove_all(path_of(folder_));
-        make_folder(folder_);
-        Camera camera;
-        camera.model = LensModel::kPinhole;
-        camera.width = kWidth;
-        camera.height = kHeight;
-        camera.parameters = {kFocal, kFocal, kWidth / 2.0, kHeight / 2.0};
-        model_.cameras.push_back(camera);
+        WithPhotos::SetUp();
+        use_pinhole(kWidth, kHeight, kFocal);
         // Right, down and ahead in the rows: half a turn about x, and half a turn about z.
         add("front.png", {0.0, 1.0, 0.0, 0.0});
         add("back.png", {0.0, 0.0, 0.0, 1.0});
@@ -39,30 +33,24 @@ class CompareSheet : public ::testing::Test {
         tree_.set_frame(frame);
         tree_.add_child(tree_.add_root({0.0, -2.0, 0.0}, 0.25), {0.0, 2.0, 0.0}, 0.25);
     }
-    void TearDown() override { std::filesystem::remove_all(path_of(folder_)); }
 
     void add(const std::string& name, const std::array<double, 4>& rotation) {
         Photo photo;
         photo.name = name;
         photo.rotation = rotation;
         photo.translation = {0.0, 0.0, 10.0};
-        model_.photos.push_back(photo);
         Image picture(kWidth, kHeight, 3);
         for (int y = 0; y < kHeight; y++)
             for (int x = 0; x < kWidth; x++)
                 picture.at(x, y)[2] = 200;
-        const std::vector<uint8_t> bytes = encode_png(picture);
-        write_file(folder_ + "/" + name,
-                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        add_photo(photo, picture);
     }
 
-    std::string folder_;
-    PhotoModel model_;
     Tree tree_;
 };
 
 TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
-    const Image sheet = compare_sheet(tree_, model_, folder_);
+    const Image sheet = compare_sheet(tree_, model_, folder_.string());
     ASSERT_EQ(sheet.width, 2 * kWidth);
     ASSERT_EQ(sheet.height, 2 * kHeight);
     for (int row = 0; row < 2; row++)
@@ -89,7 +77,7 @@ TEST_F(CompareSheet, AFootOfShortPiecesIsFlatToo) {
     NodeId last = tree_.add_root({0.0, -2.0, 0.0}, 0.25);
     for (const double y : {-1.95, -1.85, -1.7, 2.0})
         last = tree_.add_child(last, {0.0, y, 0.0}, 0.25);
-    const Image sheet = compare_sheet(tree_, model_, folder_);
+    const Image sheet = compare_sheet(tree_, model_, folder_.string());
     for (int y = kHeight / 2 + 42; y < kHeight; y++)
         for (int x = 0; x < kWidth; x++)
             ASSERT_EQ(sheet.at(kWidth + x, y)[0], 0) << x << " " << y;
@@ -97,15 +85,15 @@ TEST_F(CompareSheet, AFootOfShortPiecesIsFlatToo) {
 }
 
 TEST_F(CompareSheet, PassesOverWhatCanNotBeRead) {
-    write_file(folder_ + "/front.png", "no picture");
-    const Image sheet = compare_sheet(tree_, model_, folder_);
+    put("front.png", "no picture");
+    const Image sheet = compare_sheet(tree_, model_, folder_.string());
     EXPECT_EQ(sheet.height, kHeight);
-    write_file(folder_ + "/back.png", "");
-    EXPECT_THROW(compare_sheet(tree_, model_, folder_), Error);
+    put("back.png", "");
+    EXPECT_THROW(compare_sheet(tree_, model_, folder_.string()), Error);
 }
 
 TEST_F(CompareSheet, IsAsLargeAsAskedAndShowsNoMorePhotosThanThat) {
-    const Image sheet = compare_sheet(tree_, model_, folder_, {.photos = 1, .longest = 80});
+    const Image sheet = compare_sheet(tree_, model_, folder_.string(), {.photos = 1, .longest = 80});
     EXPECT_EQ(sheet.width, 2 * 60);
     EXPECT_EQ(sheet.height, 80);
 }

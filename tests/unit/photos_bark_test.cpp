@@ -15,10 +15,12 @@
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "mesh/texture_noise.h"
+#include "photo_orbit.h"
 #include "photos/bark_maps.h"
 #include "photos/quilt.h"
 #include "photos/seen_bark.h"
 #include "pipeline/export.h"
+#include "with_photos.h"
 
 namespace treerec {
 namespace {
@@ -35,30 +37,17 @@ constexpr double kBenchLow = 0.95, kBenchHigh = 1.05;
 using test::bark_at;
 
 // A stem that stands in the middle of a circle of photos of it.
-class PhotoBarkTest : public ::testing::Test {
+class PhotoBarkTest : public test::WithPhotos {
   protected:
     void SetUp() override {
-        folder_ = utf8_of(
-            std::filesystem::temp_directory_path() /
-            (std::string("treerec_bark_") + ::testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(path_of(folder_));
-        make_folder(folder_);
-        Camera camera;
-        camera.model = LensModel::kPinhole;
-        camera.width = kWidth;
-        camera.height = kHeight;
-        camera.parameters = {kFocal, kFocal, kWidth / 2.0, kHeight / 2.0};
-        model_.cameras.push_back(camera);
+        WithPhotos::SetUp();
+        use_pinhole(kWidth, kHeight, kFocal);
         ScanFrame frame;
         frame.up = UpAxis::kY;
         tree_.set_frame(frame);
         NodeId last = tree_.add_root({0.0, 0.0, 0.0}, kRadius);
         for (int i = 1; i <= 6; i++)
             last = tree_.add_child(last, {0.0, kHeightOfStem * i / 6, 0.0}, kRadius);
-    }
-    void TearDown() override {
-        set_thread_count(0);
-        std::filesystem::remove_all(path_of(folder_));
     }
 
     using Change = std::function<DVec3(int x, int y, const DVec3& colour)>;
@@ -67,13 +56,10 @@ class PhotoBarkTest : public ::testing::Test {
     void add(double degrees, double away = kAway, const Change& change = {}, double blur = 0.0) {
         const double angle = degrees * std::numbers::pi / 180.0, high = 1.2;
         const DVec3 centre(away * std::cos(angle), high, away * std::sin(angle));
-        const DVec3 ahead = glm::normalize(DVec3(0.0, high, 0.0) - centre), down(0.0, -1.0, 0.0);
-        const DVec3 right = glm::cross(down, ahead);
-        Photo photo;
-        photo.name = "photo" + std::to_string(model_.photos.size()) + ".png";
-        photo.rotation = quaternion(DMat3(right, down, ahead));
-        photo.translation = -(photo.turn() * centre);
-        model_.photos.push_back(photo);
+        const Photo photo = test::take_photo(centre, {0.0, high, 0.0},
+                                             "photo" + std::to_string(model_.photos.size()) + ".png");
+        const DMat3 axes = glm::transpose(photo.turn());
+        const DVec3 &right = axes[0], &down = axes[1], &ahead = axes[2];
         Image picture(kWidth, kHeight, 3);
         parallel_for(kHeight, 8, [&](size_t begin, size_t end) {
             for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++)
@@ -95,9 +81,7 @@ class PhotoBarkTest : public ::testing::Test {
                 }
         });
         if (blur > 0.0) soften(picture, blur);
-        const std::vector<uint8_t> bytes = encode_png(picture);
-        write_file(folder_ + "/" + photo.name,
-                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        add_photo(photo, picture);
     }
 
     void add_circle(int count, double away = kAway, double blur = 0.0) {
@@ -108,7 +92,7 @@ class PhotoBarkTest : public ::testing::Test {
     SeenBark gather(const DVec2& texel, const SeenThings& things = {}) {
         chart_ = chart_trunk(tree_, 3.0);
         return gather_bark(chart_, survey_bark(tree_, chart_, model_, things), texel, tree_.frame(), model_,
-                           folder_);
+                           folder_.string());
     }
 
     // What is to be seen on the chart, by texel, over what is there.
@@ -126,36 +110,6 @@ class PhotoBarkTest : public ::testing::Test {
         return seen / there;
     }
 
-    static std::array<double, 4> quaternion(const DMat3& axes) {
-        // Of a turn whose rows are the axes.
-        const DMat3 m = glm::transpose(axes);
-        const auto entry = [&](int row, int column) { return m[column][row]; };
-        double best = -1.0;
-        std::array<double, 4> found{};
-        const double squares[4] = {
-            1 + entry(0, 0) + entry(1, 1) + entry(2, 2), 1 + entry(0, 0) - entry(1, 1) - entry(2, 2),
-            1 - entry(0, 0) + entry(1, 1) - entry(2, 2), 1 - entry(0, 0) - entry(1, 1) + entry(2, 2)};
-        const double xy = entry(0, 1) + entry(1, 0), xz = entry(0, 2) + entry(2, 0);
-        const double yz = entry(1, 2) + entry(2, 1);
-        const double wx = entry(2, 1) - entry(1, 2), wy = entry(0, 2) - entry(2, 0);
-        const double wz = entry(1, 0) - entry(0, 1);
-        const std::array<double, 4> all[4] = {{squares[0], wx, wy, wz},
-                                              {wx, squares[1], xy, xz},
-                                              {wy, xy, squares[2], yz},
-                                              {wz, xz, yz, squares[3]}};
-        for (int i = 0; i < 4; i++)
-            if (squares[i] > best) {
-                best = squares[i];
-                found = all[i];
-            }
-        double length = 0.0;
-        for (const double part : found)
-            length += part * part;
-        for (double& part : found)
-            part /= std::sqrt(length);
-        return found;
-    }
-
     static void soften(Image& picture, double deviation) {
         for (int c = 0; c < 3; c++) {
             PixelField field(picture.width, picture.height);
@@ -169,8 +123,6 @@ class PhotoBarkTest : public ::testing::Test {
     }
 
     bool has_bench_ = false;
-    std::string folder_;
-    PhotoModel model_;
     Tree tree_;
     TrunkChart chart_;
 };
@@ -285,7 +237,7 @@ void expect_seamless(const Image& picture) {
 
 TEST_F(PhotoBarkTest, RepeatsWithoutASeam) {
     add_circle(12);
-    const PhotoBark bark = bark_of_photos(tree_, model_, folder_);
+    const PhotoBark bark = bark_of_photos(tree_, model_, folder_.string());
     ASSERT_TRUE(bark.textures) << bark.why_not;
     EXPECT_EQ(bark.textures->albedo.width, 512);
     expect_seamless(bark.textures->albedo);
@@ -304,9 +256,9 @@ TEST_F(PhotoBarkTest, RepeatsWithoutASeam) {
 TEST_F(PhotoBarkTest, IsTheSameForAnyNumberOfThreads) {
     add_circle(10);
     set_thread_count(1);
-    const PhotoBark alone = bark_of_photos(tree_, model_, folder_);
+    const PhotoBark alone = bark_of_photos(tree_, model_, folder_.string());
     set_thread_count(3);
-    const PhotoBark together = bark_of_photos(tree_, model_, folder_);
+    const PhotoBark together = bark_of_photos(tree_, model_, folder_.string());
     ASSERT_TRUE(alone.textures && together.textures);
     EXPECT_EQ(alone.textures->albedo.pixels, together.textures->albedo.pixels);
     EXPECT_EQ(alone.textures->normal.pixels, together.textures->normal.pixels);
@@ -315,7 +267,7 @@ TEST_F(PhotoBarkTest, IsTheSameForAnyNumberOfThreads) {
 
 TEST_F(PhotoBarkTest, TellsWhyPhotosAreNotEnough) {
     const auto why = [&] {
-        const PhotoBark bark = bark_of_photos(tree_, model_, folder_);
+        const PhotoBark bark = bark_of_photos(tree_, model_, folder_.string());
         EXPECT_FALSE(bark.textures);
         return bark.why_not;
     };
@@ -331,9 +283,10 @@ TEST_F(PhotoBarkTest, TellsWhyPhotosAreNotEnough) {
         tree_.set_radius(id, 0.02);
     add(0.0);
     EXPECT_NE(why().find("Too little"), std::string::npos) << why();
-    write_file(folder_ + "/" + model_.photos[0].name, "no picture");
+    put(model_.photos[0].name, "no picture");
     EXPECT_NE(why().find("can be read"), std::string::npos) << why();
-    EXPECT_NE(bark_of_photos(Tree(), model_, folder_).why_not.find("no piece of trunk"), std::string::npos);
+    EXPECT_NE(bark_of_photos(Tree(), model_, folder_.string()).why_not.find("no piece of trunk"),
+              std::string::npos);
 }
 
 TEST(PhotoBark, IsWhatTheTreesFileCarries) {

@@ -5,21 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
-#include <glm/gtc/quaternion.hpp>
 #include <numbers>
-
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#endif
-#include <tiny_gltf.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
 
 #include "exchange/material_textures.h"
 #include "file_bytes.h"
@@ -27,10 +13,13 @@
 #include "mesh/linear_light.h"
 #include "mesh/texture_noise.h"
 #include "mesh/textures.h"
+#include "photo_orbit.h"
 #include "photos/leaf_look.h"
 #include "photos/photo_picture.h"
 #include "pipeline/export.h"
+#include "quiet_tiny_gltf.h"
 #include "synth/grow.h"
+#include "with_photos.h"
 
 namespace treerec {
 namespace {
@@ -64,20 +53,11 @@ struct Crown {
     }
 };
 
-class PhotoLeavesTest : public ::testing::Test {
+class PhotoLeavesTest : public test::WithPhotos {
   protected:
     void SetUp() override {
-        folder_ = utf8_of(std::filesystem::temp_directory_path() /
-                          (std::string("treerec_leaves_") +
-                           ::testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(path_of(folder_));
-        make_folder(folder_);
-        Camera camera;
-        camera.model = LensModel::kPinhole;
-        camera.width = kWidth;
-        camera.height = kHeight;
-        camera.parameters = {kFocal, kFocal, kWidth / 2.0, kHeight / 2.0};
-        model_.cameras.push_back(camera);
+        WithPhotos::SetUp();
+        use_pinhole(kWidth, kHeight, kFocal);
         frame_.up = UpAxis::kY;
         for (int i = 0; i < 4000; i++) {
             const double angle = 2.39996 * i;
@@ -85,23 +65,15 @@ class PhotoLeavesTest : public ::testing::Test {
                                  kRadius * std::sin(angle));
         }
     }
-    void TearDown() override {
-        set_thread_count(0);
-        std::filesystem::remove_all(path_of(folder_));
-    }
 
     // gain: of all channels. board: something red stands right of the middle, and has points.
     void add(const Crown& crown, double degrees, const DVec3& gain, bool board = false) {
         const double angle = degrees * std::numbers::pi / 180.0, high = 2.2;
         const DVec3 centre(kAway * std::cos(angle), high, kAway * std::sin(angle));
-        const DVec3 ahead = glm::normalize(DVec3(0.0, high, 0.0) - centre), down(0.0, -1.0, 0.0);
-        const DVec3 right = glm::cross(down, ahead);
-        Photo photo;
-        photo.name = "photo" + std::to_string(model_.photos.size()) + ".png";
-        const glm::dquat turn = glm::quat_cast(glm::transpose(DMat3(right, down, ahead)));
-        photo.rotation = {turn.w, turn.x, turn.y, turn.z};
-        photo.translation = -(photo.turn() * centre);
-        model_.photos.push_back(photo);
+        const Photo photo = test::take_photo(centre, {0.0, high, 0.0},
+                                             "photo" + std::to_string(model_.photos.size()) + ".png");
+        const DMat3 axes = glm::transpose(photo.turn());
+        const DVec3 &right = axes[0], &down = axes[1], &ahead = axes[2];
         Image picture(kWidth, kHeight, 3);
         parallel_for(kHeight, 8, [&](size_t begin, size_t end) {
             for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++)
@@ -120,9 +92,7 @@ class PhotoLeavesTest : public ::testing::Test {
                         picture.at(x, y)[c] = texture::to_byte(stored_of(std::min(1.0, light[c] * gain[c])));
                 }
         });
-        const std::vector<uint8_t> bytes = encode_png(picture);
-        write_file(folder_ + "/" + photo.name,
-                   std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+        add_photo(photo, picture);
         if (board)
             for (int i = 0; i < 200; i++)
                 for (int k = 0; k < 60; k++)
@@ -140,11 +110,9 @@ class PhotoLeavesTest : public ::testing::Test {
     LeafColours look(const LeafColourOptions& options = {}) const {
         SeenThings things{leaves_, kSpacing};
         things.places.insert(things.places.end(), boards_.begin(), boards_.end());
-        return leaf_colours_of_photos(leaves_, frame_, model_, folder_, things, options);
+        return leaf_colours_of_photos(leaves_, frame_, model_, folder_.string(), things, options);
     }
 
-    std::string folder_;
-    PhotoModel model_;
     ScanFrame frame_;
     std::vector<DVec3> leaves_, boards_;
 };
@@ -262,7 +230,8 @@ TEST(LeafLook, APictureGetsTheMeanAndKeepsItsVeins) {
         for (const DVec3& mean : {DVec3(0.06, 0.11, 0.02), DVec3(0.24, 0.08, 0.03)}) {
             const Image before = make_leaf_textures(preset, 128, 1).albedo;
             Image after = before;
-            const DVec3 gain = recolour(after, mean);
+            const DVec3 gain = picture_gain(after, mean);
+            recolour(after, mean);
             DVec3 sum(0.0);
             double count = 0.0, products = 0.0, squares_a = 0.0, squares_b = 0.0, a = 0.0, b = 0.0;
             for (size_t i = 0; i < after.pixels.size(); i += 4) {

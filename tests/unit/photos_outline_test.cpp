@@ -12,6 +12,7 @@
 #include "geometry/parallel.h"
 #include "photo_orbit.h"
 #include "photos/outline_radii.h"
+#include "with_photos.h"
 
 namespace treerec {
 namespace {
@@ -47,24 +48,11 @@ double forest(const DVec3& way, double) {
     return bark_at(DVec3(4.0 * way.x, 4.0 * way.y + 1.0, 4.0 * way.z)).x;
 }
 
-class OutlineRadii : public ::testing::Test {
+class OutlineRadii : public test::WithPhotos {
   protected:
     void SetUp() override {
-        folder_ = utf8_of(std::filesystem::temp_directory_path() /
-                          (std::string("treerec_outline_") +
-                           ::testing::UnitTest::GetInstance()->current_test_info()->name()));
-        std::filesystem::remove_all(path_of(folder_));
-        make_folder(folder_);
-        Camera camera;
-        camera.model = LensModel::kPinhole;
-        camera.width = kWidth;
-        camera.height = kHeight;
-        camera.parameters = {kFocal, kFocal, kWidth / 2.0, kHeight / 2.0};
-        model_.cameras.push_back(camera);
-    }
-    void TearDown() override {
-        set_thread_count(0);
-        std::filesystem::remove_all(path_of(folder_));
+        WithPhotos::SetUp();
+        use_pinhole(kWidth, kHeight, kFocal);
     }
 
     // Photos from around an upright stem of the radius at the origin, or of what is behind it alone.
@@ -91,10 +79,7 @@ class OutlineRadii : public ::testing::Test {
                             picture.at(x, y)[c] = texture::to_byte(sum / 9.0);
                     }
             });
-            const std::vector<uint8_t> bytes = encode_png(picture);
-            write_file(folder_ + "/" + photo.name,
-                       std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-            model_.photos.push_back(photo);
+            add_photo(photo, picture);
         }
     }
 
@@ -119,16 +104,15 @@ class OutlineRadii : public ::testing::Test {
         return places;
     }
 
-    std::vector<double> radii(double wrong) const { return outline_radii(model_, folder_, places(wrong)); }
+    std::vector<double> radii(double wrong) const {
+        return outline_radii(model_, folder_.string(), places(wrong));
+    }
 
     void expect_radius(double share, const std::string& before) const {
         for (const double wrong : {0.75, 1.0, 1.25})
             for (const double radius : radii(wrong))
                 EXPECT_NEAR(radius, kRadius, share * kRadius) << before << ", taken for " << wrong;
     }
-
-    std::string folder_;
-    PhotoModel model_;
 };
 
 TEST_F(OutlineRadii, AreThoseOfAStemBeforeTheSky) {
@@ -178,21 +162,21 @@ TEST_F(OutlineRadii, PhotosThatCannotBeReadDoNotCount) {
     PhotoModel fewer = model_;
     fewer.photos.erase(fewer.photos.begin() + 3);
     fewer.photos.erase(fewer.photos.begin());
-    const std::vector<double> expected = outline_radii(fewer, folder_, places(1.0));
-    write_file(folder_ + "/" + model_.photos[0].name, "no picture");
-    std::filesystem::remove(path_of(folder_ + "/" + model_.photos[3].name));
+    const std::vector<double> expected = outline_radii(fewer, folder_.string(), places(1.0));
+    put(model_.photos[0].name, "no picture");
+    std::filesystem::remove(path(model_.photos[3].name));
     EXPECT_EQ(radii(1.0), expected);
     EXPECT_GT(expected[0], 0.0);
     // Four are too few to agree.
     for (size_t i = 4; i + 3 < model_.photos.size(); i++)
-        write_file(folder_ + "/" + model_.photos[i].name, "");
+        put(model_.photos[i].name, "");
     for (const double radius : radii(1.0))
         EXPECT_GT(radius, 0.0) << "five photos";
-    write_file(folder_ + "/" + model_.photos.back().name, "");
+    put(model_.photos.back().name, "");
     for (const double radius : radii(1.0))
         EXPECT_EQ(radius, 0.0) << "four photos";
-    EXPECT_EQ(outline_radii({}, folder_, places(1.0)), std::vector<double>(5, 0.0));
-    EXPECT_TRUE(outline_radii(model_, folder_, {}).empty());
+    EXPECT_EQ(outline_radii({}, folder_.string(), places(1.0)), std::vector<double>(5, 0.0));
+    EXPECT_TRUE(outline_radii(model_, folder_.string(), {}).empty());
 }
 
 TEST_F(OutlineRadii, PlacesThatAreNoneHaveNone) {
@@ -208,7 +192,7 @@ TEST_F(OutlineRadii, PlacesThatAreNoneHaveNone) {
     odd[6].way = DVec3(0.0);
     odd[7].position = {0.0, kHigh + 1000.0, 0.0};
     odd[8].position = {1e30, kHigh, std::numeric_limits<double>::infinity()};
-    const std::vector<double> found = outline_radii(model_, folder_, odd);
+    const std::vector<double> found = outline_radii(model_, folder_.string(), odd);
     EXPECT_NEAR(found[0], kRadius, 0.03 * kRadius);
     for (size_t i = 1; i < found.size(); i++)
         EXPECT_EQ(found[i], 0.0) << i;
@@ -227,7 +211,7 @@ TEST_F(OutlineRadii, DoNotDependOnTheModelsUnit) {
             place.position *= scale;
             place.radius *= scale;
         }
-        const std::vector<double> found = outline_radii(model, folder_, scaled);
+        const std::vector<double> found = outline_radii(model, folder_.string(), scaled);
         for (size_t i = 0; i < found.size(); i++)
             EXPECT_NEAR(found[i], scale * metres[i], 1e-3 * scale * metres[i]);
     }
@@ -246,7 +230,7 @@ TEST_F(OutlineRadii, CanBeCancelled) {
         bool cancelled() const override { return true; }
     } impatient;
     take(kRadius, plain_sky);
-    EXPECT_THROW(outline_radii(model_, folder_, places(1.0), {}, &impatient), Cancelled);
+    EXPECT_THROW(outline_radii(model_, folder_.string(), places(1.0), {}, &impatient), Cancelled);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ const FreePlace := preload("../import/free_place.gd")
 
 ## Where COLMAP is, in the editor's settings.
 const SETTING: String = "tree_reconstruction/photos/colmap"
+const _CHOOSER_SIZE: Vector2i = Vector2i(900, 600)
 
 var panel: PhotosPanel
 var window: AcceptDialog
@@ -135,35 +136,35 @@ func _on_made(tree: TreeReconstruction) -> void:
 
 
 func _choose_folder() -> void:
-	_close_chooser()
-	_chooser = EditorFileDialog.new()
-	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_ANY
-	# After the mode, which sets a title of its own.
-	_chooser.title = tr("Choose Photos")
+	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_ANY, tr("Choose Photos"), panel.show_folder)
 	_chooser.filters = PackedStringArray(
 		["*." + ", *.".join(PhotoFolder.FILMS) + ";" + tr("Films")]
 	)
 	_chooser.dir_selected.connect(panel.show_folder)
-	_chooser.file_selected.connect(panel.show_folder)
-	window.add_child(_chooser)
-	_chooser.popup_centered_clamped(Vector2i(900, 600))
+	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
 
 
 func _choose_marker() -> void:
-	_close_chooser()
-	_chooser = EditorFileDialog.new()
-	# It is for a printer, not for the game.
-	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	_chooser.file_mode = EditorFileDialog.FILE_MODE_SAVE_FILE
-	_chooser.title = tr("Save Marker to Print")
+	_open_chooser(
+		EditorFileDialog.FILE_MODE_SAVE_FILE, tr("Save Marker to Print"), panel.save_marker
+	)
 	_chooser.filters = PackedStringArray(
 		["*.svg;" + tr("Drawing in millimetres"), "*.png;" + tr("Picture at 300 dpi")]
 	)
 	_chooser.current_file = "marker.svg"
-	_chooser.file_selected.connect(panel.save_marker)
+	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
+
+
+# Anywhere on the disk: photos come from a phone, and markers go to a printer.
+func _open_chooser(mode: EditorFileDialog.FileMode, title: String, chosen: Callable) -> void:
+	_close_chooser()
+	_chooser = EditorFileDialog.new()
+	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
+	_chooser.file_mode = mode
+	# After the mode, which sets a title of its own.
+	_chooser.title = title
+	_chooser.file_selected.connect(chosen)
 	window.add_child(_chooser)
-	_chooser.popup_centered_clamped(Vector2i(900, 600))
 
 
 func _close_chooser() -> void:

@@ -17,10 +17,6 @@ const _LOOK: StringName = &"leaf_look"
 const _VARIATION: float = 0.8
 # The mean of the leaves' hues (INSTANCE_CUSTOM.z).
 const _MEAN_HUE: float = 0.5
-# Where leaf.gdshader cuts, of 255.
-const _OPAQUE: int = 102
-const _MOST_GAIN: float = 16.0
-const _STEPS: int = 40
 # Light that went through a leaf has more of its color.
 const _THROUGH: float = 1.5
 const _LUMINANCE: Vector3 = Vector3(0.2126, 0.7152, 0.0722)
@@ -51,16 +47,16 @@ static func is_outdated(material: Material, tree: TreeReconstruction) -> bool:
 static func suit(material: ShaderMaterial, tree: TreeReconstruction) -> bool:
 	var look: String = _look_of(tree)
 	var preset: ShaderMaterial = load(look) as ShaderMaterial
-	var counts: Array[PackedFloat32Array] = _levels(
+	var pixels: PackedByteArray = _pixels(
 		preset.get_shader_parameter(&"albedo_texture") as Texture2D
 	)
-	if counts.is_empty():
+	if pixels.is_empty():
 		return false
 	material.shader = preset.shader
 	for uniform: Dictionary in preset.shader.get_shader_uniform_list():
 		var value: Variant = preset.get_shader_parameter(uniform.name)
 		material.set_shader_parameter(uniform.name, value)
-	var values: Dictionary[StringName, Variant] = _values(material.get_meta(_COLORS), counts, tree)
+	var values: Dictionary[StringName, Variant] = _values(material.get_meta(_COLORS), pixels, tree)
 	for name: StringName in values:
 		material.set_shader_parameter(name, values[name])
 	material.set_meta(_LOOK, look)
@@ -102,7 +98,7 @@ static func _look_of(tree: TreeReconstruction) -> String:
 
 
 static func _values(
-	colors: Dictionary, counts: Array[PackedFloat32Array], tree: TreeReconstruction
+	colors: Dictionary, pixels: PackedByteArray, tree: TreeReconstruction
 ) -> Dictionary[StringName, Variant]:
 	var albedo: Vector3 = _vector(colors["albedo"])
 	var mean: Vector3 = _stored(albedo)
@@ -117,7 +113,7 @@ static func _values(
 		&"tint": Color.WHITE,
 		&"saturation": 1.0,
 		&"variation_color": Color(towards.x, towards.y, towards.z, _VARIATION),
-		&"picture_gain": _gain(counts, _light(own)),
+		&"picture_gain": TreeReconstructor.get_picture_gain(pixels, _light(own)),
 		&"low_gain": _stored(albedo * _vector(colors["low"])) / mean,
 		&"high_gain": _stored(albedo * _vector(colors["high"])) / mean,
 	}
@@ -134,54 +130,14 @@ static func _values(
 	return values
 
 
-# How often each channel has each level, among opaque pixels; none where the picture can't be read.
-static func _levels(texture: Texture2D) -> Array[PackedFloat32Array]:
-	var none: Array[PackedFloat32Array] = []
+# As get_picture_gain() takes them; none where the picture can't be read.
+static func _pixels(texture: Texture2D) -> PackedByteArray:
 	var image: Image = null if texture == null else texture.get_image()
 	if image == null or (image.is_compressed() and image.decompress() != OK):
-		return none
+		return PackedByteArray()
 	image.clear_mipmaps()
 	image.convert(Image.FORMAT_RGBA8)
-	var bytes: PackedByteArray = image.get_data()
-	var counts: Array[PackedFloat32Array] = []
-	for channel: int in 3:
-		var own: PackedFloat32Array = []
-		own.resize(256)
-		for pixel: int in range(0, bytes.size(), 4):
-			if bytes[pixel + 3] >= _OPAQUE:
-				own[bytes[pixel + channel]] += 1.0
-		counts.append(own)
-	return counts
-
-
-# What the levels have to be multiplied by so that their mean light is [param wanted].
-static func _gain(counts: Array[PackedFloat32Array], wanted: Vector3) -> Vector3:
-	var gain: Vector3 = Vector3.ONE
-	for channel: int in 3:
-		var low: float = 0.0
-		var high: float = _MOST_GAIN
-		for step: int in _STEPS:
-			var middle: float = 0.5 * (low + high)
-			if _mean_light(counts[channel], middle) < wanted[channel]:
-				low = middle
-			else:
-				high = middle
-		gain[channel] = high
-	return gain
-
-
-static func _mean_light(counts: PackedFloat32Array, gain: float) -> float:
-	var sum: float = 0.0
-	var all: float = 0.0
-	for level: int in counts.size():
-		if counts[level] > 0.0:
-			sum += counts[level] * _light_of(gain * level / 255.0)
-			all += counts[level]
-	return sum / all if all > 0.0 else 0.0
-
-
-static func _light_of(stored: float) -> float:
-	return Color(minf(stored, 1.0), 0.0, 0.0).srgb_to_linear().r
+	return image.get_data()
 
 
 static func _light(stored: Vector3) -> Vector3:
