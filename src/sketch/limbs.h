@@ -1,0 +1,39 @@
+// The trunk and its branches of the first order, in space.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.h"
+
+namespace treerec {
+
+// The least radius of wood, metres: what is thinner is a leaf's stalk.
+inline constexpr double kLeastRadius = 0.002;
+
+// A line of wood from its tail to its tip, metres, Y up.
+struct Limb {
+    std::vector<DVec3> points;  // at least two
+    std::vector<double> radii;  // of each
+    int32_t stroke = -1;        // that it was drawn by (place in Sketch::strokes); -1: not drawn
+    double along = 0.0;         // of a branch: metres along the trunk's line to where it grows
+    uint64_t seed = 0;          // of what is drawn by chance on it
+};
+
+// The trunk's points hold all the places where branches grow.
+struct Limbs {
+    Limb trunk;
+    std::vector<Limb> branches;
+};
+
+double length_of(const std::vector<DVec3>& points);
+// The place at so many metres along the line; its ends beyond them.
+DVec3 place_along(const std::vector<DVec3>& points, double along);
+// The same for the values at its points.
+double value_along(const std::vector<DVec3>& points, const std::vector<double>& values, double along);
+
+// d / l = R_i / R (papers/003, equation 2): at each point, from `base` at the first to 0 at the last, but at
+// least `least`. Metres.
+std::vector<double> tapered(const std::vector<DVec3>& points, double base, double least);
+
+}  // namespace treerec
