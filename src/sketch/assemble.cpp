@@ -1,0 +1,107 @@
+#include "sketch/assemble.h"
+
+#include <algorithm>
+
+#include "sketch/close_gaps.h"
+
+namespace treerec {
+
+namespace {
+
+// A twig's radius at the joint over its limb's, at most, as of what is grafted (edit/graft.h).
+constexpr double kJoint = 0.8;
+constexpr double kSame = 1e-6;      // metres along a limb that are one place
+constexpr double kFinest = 0.0004;  // metres of radius: the thinnest wood of a twig
+
+struct Stop {
+    double along;
+    NodeId node = kNoNode;
+};
+
+// The places on each limb that need a node, in order.
+std::vector<std::vector<Stop>> stops_of(const Filling& filling) {
+    std::vector<std::vector<Stop>> stops(filling.limbs.size());
+    for (size_t i = 0; i < filling.limbs.size(); i++) {
+        const FilledLimb& own = filling.limbs[i];
+        double along = 0.0;
+        for (size_t k = 0; k < own.limb.points.size(); k++) {
+            if (k > 0) along += glm::length(own.limb.points[k] - own.limb.points[k - 1]);
+            stops[i].push_back({along});
+        }
+        if (own.parent >= 0) stops[static_cast<size_t>(own.parent)].push_back({own.limb.along});
+    }
+    for (const TwigPlace& twig : filling.twigs)
+        stops[twig.limb].push_back({twig.along});
+    for (std::vector<Stop>& limb : stops) {
+        std::sort(limb.begin(), limb.end(), [](const Stop& a, const Stop& b) { return a.along < b.along; });
+        const auto same = [](const Stop& a, const Stop& b) { return b.along - a.along < kSame; };
+        limb.erase(std::unique(limb.begin(), limb.end(), same), limb.end());
+    }
+    return stops;
+}
+
+NodeId node_at(const std::vector<Stop>& stops, double along) {
+    const auto after = std::lower_bound(stops.begin(), stops.end(), along,
+                                        [](const Stop& stop, double value) { return stop.along < value; });
+    if (after == stops.end()) return stops.back().node;
+    if (after == stops.begin()) return after->node;
+    const auto before = after - 1;
+    return along - before->along < after->along - along ? before->node : after->node;
+}
+
+}  // namespace
+
+AssembledTree assemble_tree(const Filling& filling, const SketchSpecies& species, const CrownSections& crown,
+                            bool cut, double margin, const Progress* progress) {
+    AssembledTree out;
+    std::vector<std::vector<Stop>> stops = stops_of(filling);
+    const auto remember = [&](int32_t stroke) { out.stroke_of_node.push_back(stroke); };
+    for (size_t i = 0; i < filling.limbs.size(); i++) {
+        const FilledLimb& own = filling.limbs[i];
+        const uint8_t flags = i == 0 ? kTrunkFlag : 0;
+        NodeId last = kNoNode;
+        if (i > 0) {
+            last = node_at(stops[static_cast<size_t>(std::max(own.parent, 0))], own.limb.along);
+            stops[i][0].node = last;
+        }
+        for (size_t k = i > 0 ? 1 : 0; k < stops[i].size(); k++) {
+            const double along = stops[i][k].along;
+            const DVec3 at = place_along(own.limb.points, along);
+            const double radius = value_along(own.limb.points, own.limb.radii, along);
+            last = last == kNoNode ? out.tree.add_root(at, radius, flags)
+                                   : out.tree.add_child(last, at, radius, flags);
+            stops[i][k].node = last;
+            remember(own.limb.stroke);
+        }
+    }
+    std::vector<std::vector<NodeId>> orders;
+    for (const SpeciesTwig& twig : species.twigs)
+        orders.push_back(twig.scion.depth_first());
+    std::vector<NodeId> moved;
+    for (const TwigPlace& place : filling.twigs) {
+        if (progress) progress->check();
+        const Tree& scion = species.twigs[place.twig].scion;
+        const NodeId joint = node_at(stops[place.limb], place.along);
+        const DVec3 foot = out.tree.node(joint).position;
+        const DMat3 axes = twig_axes(scion, place);
+        const double own = scion.node(scion.root()).radius * place.scale;
+        const double thin = std::min(1.0, kJoint * out.tree.node(joint).radius / own);
+        moved.assign(static_cast<size_t>(scion.id_end()), kNoNode);
+        moved[static_cast<size_t>(scion.root())] = joint;
+        for (const NodeId id : orders[place.twig]) {
+            const Node& node = scion.node(id);
+            if (node.parent == kNoNode) continue;
+            const NodeId parent = moved[static_cast<size_t>(node.parent)];
+            if (parent == kNoNode) continue;
+            const DVec3 at = foot + axes * (place.scale * node.position);
+            if (cut && !crown.contains(at, margin)) continue;
+            const double radius =
+                std::min(std::max(node.radius * place.scale * thin, kFinest), out.tree.node(parent).radius);
+            moved[static_cast<size_t>(id)] = out.tree.add_child(parent, at, radius);
+            remember(-1);
+        }
+    }
+    return out;
+}
+
+}  // namespace treerec

@@ -1,0 +1,190 @@
+#include "sketch/close_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edit/scion.h"
+#include "foliage/leaf_rules.h"
+#include "geometry/random.h"
+#include "geometry/segment.h"
+#include "tree/branches.h"
+
+namespace treerec {
+
+namespace {
+
+// A leaf covers about so much of its length around the node that it stands on.
+constexpr double kLeafCover = 0.55;
+// The view's cells, of a leaf's length.
+constexpr double kCell = 0.5;
+constexpr size_t kMostCells = 300;  // along a side
+constexpr size_t kMostAdded = 600;
+
+enum class View { kFront, kSide };
+
+// One view of the crown, in cells.
+class Cover {
+  public:
+    Cover(const CrownSections& crown, View view, double cell, double leaf, double margin)
+        : view_(view), cell_(cell) {
+        left_ = view == View::kFront ? crown.left() : -crown.reach();
+        const double right = view == View::kFront ? crown.right() : crown.reach();
+        bottom_ = crown.bottom();
+        columns_ = static_cast<size_t>(std::ceil((right - left_) / cell));
+        rows_ = static_cast<size_t>(std::ceil((crown.top() - bottom_) / cell));
+        open_.assign(columns_ * rows_, false);
+        for (size_t i = 0; i < open_.size(); i++) {
+            const DVec2 at = middle(i);
+            if (view == View::kFront) {
+                open_[i] = crown.contains(DVec3(at.x, at.y, 0.0), margin);
+            } else {
+                for (const CrownSections::Section& section : crown.at(at.y))
+                    if (std::abs(at.x) + margin <= 0.5 * (section.right - section.left)) open_[i] = true;
+            }
+        }
+        reach_ = leaf;
+    }
+
+    size_t size() const { return open_.size(); }
+    bool open(size_t i) const { return open_[i]; }
+    // (x or z, y) of a cell's middle.
+    DVec2 middle(size_t i) const {
+        return {left_ + (static_cast<double>(i % columns_) + 0.5) * cell_,
+                bottom_ + (static_cast<double>(i / columns_) + 0.5) * cell_};
+    }
+    DVec2 seen(const DVec3& p) const { return {view_ == View::kFront ? p.x : p.z, p.y}; }
+
+    void mark(const DVec3& p) {
+        const DVec2 at = seen(p);
+        const auto from = [&](double value, double low) {
+            return static_cast<int64_t>(std::floor((value - low) / cell_));
+        };
+        for (int64_t row = std::max<int64_t>(from(at.y - reach_, bottom_), 0);
+             row <= std::min<int64_t>(from(at.y + reach_, bottom_), static_cast<int64_t>(rows_) - 1); row++)
+            for (int64_t column = std::max<int64_t>(from(at.x - reach_, left_), 0);
+                 column <= std::min<int64_t>(from(at.x + reach_, left_), static_cast<int64_t>(columns_) - 1);
+                 column++) {
+                const size_t i = static_cast<size_t>(row) * columns_ + static_cast<size_t>(column);
+                const DVec2 off = middle(i) - at;
+                if (glm::dot(off, off) <= reach_ * reach_) open_[i] = false;
+            }
+    }
+
+  private:
+    View view_;
+    double cell_, left_, bottom_, reach_ = 0.0;
+    size_t columns_ = 0, rows_ = 0;
+    std::vector<bool> open_;
+};
+
+struct LeafyScion {
+    std::vector<DVec3> places;  // of its nodes that bear leaves, and not
+    std::vector<bool> leafy;
+};
+
+LeafyScion leafy_parts(const Tree& scion, double twig_length) {
+    LeafyScion parts;
+    const std::vector<double> to_tip = longest_paths(scion);
+    for (const NodeId id : scion.depth_first()) {
+        parts.places.push_back(scion.node(id).position);
+        parts.leafy.push_back(to_tip[static_cast<size_t>(id)] <= twig_length);
+    }
+    return parts;
+}
+
+}  // namespace
+
+DMat3 twig_axes(const Tree& scion, const TwigPlace& place) {
+    const DVec3 own = scion_direction(scion);
+    return turn_about(place.way, place.spin) * turn_between(own, place.way);
+}
+
+void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecies& species, double growth,
+                double height, uint64_t seed, const Progress* progress) {
+    const LeafRules rules = leaf_preset(species.name);
+    const double small = std::sqrt(std::min(height / 12.0, 1.0));
+    const double leaf = rules.leaf_size * small;
+    const double margin = leaf_margin(species, height);
+    const double side = std::max(crown.top() - crown.bottom(), 2.0 * crown.reach());
+    const double cell = std::max(kCell * leaf, side / kMostCells);
+    std::vector<LeafyScion> scions;
+    for (const SpeciesTwig& twig : species.twigs)
+        scions.push_back(leafy_parts(twig.scion, rules.twig_length * small / growth));
+
+    const auto mark = [&](Cover& cover, const TwigPlace& place) {
+        const LeafyScion& parts = scions[place.twig];
+        const DMat3 axes = twig_axes(species.twigs[place.twig].scion, place);
+        const DVec3 joint = place_along(filling.limbs[place.limb].limb.points, place.along);
+        for (size_t i = 0; i < parts.places.size(); i++) {
+            if (!parts.leafy[i]) continue;
+            const DVec3 p = joint + axes * (place.scale * parts.places[i]);
+            if (crown.contains(p, margin)) cover.mark(p);
+        }
+    };
+
+    size_t added = 0;
+    for (const View view : {View::kFront, View::kSide}) {
+        Cover cover(crown, view, cell, kLeafCover * leaf, margin);
+        for (const TwigPlace& place : filling.twigs)
+            mark(cover, place);
+        // In no order that one sees.
+        std::vector<uint32_t> order(cover.size());
+        for (size_t i = 0; i < order.size(); i++)
+            order[i] = static_cast<uint32_t>(i);
+        Random random(hash_seed(seed, static_cast<uint64_t>(view)));
+        for (size_t i = order.size(); i-- > 1;)
+            std::swap(order[i], order[random.below(static_cast<uint32_t>(i + 1))]);
+        for (const uint32_t i : order) {
+            if (!cover.open(i) || added >= kMostAdded) continue;
+            if (progress) progress->check();
+            const DVec2 target = cover.middle(i);
+            // The nearest wood as one sees it, that is in the crown.
+            TwigPlace place;
+            double least = 1e300;
+            for (size_t l = 0; l < filling.limbs.size(); l++) {
+                const std::vector<DVec3>& points = filling.limbs[l].limb.points;
+                double along = 0.0;
+                for (size_t k = 0; k + 1 < points.size(); k++) {
+                    const DVec2 a = cover.seen(points[k]), b = cover.seen(points[k + 1]);
+                    double where;
+                    const double square =
+                        square_to_segment(DVec3(target, 0.0), DVec3(a, 0.0), DVec3(b, 0.0), where);
+                    const double length = glm::length(points[k + 1] - points[k]);
+                    const DVec3 p = points[k] + (points[k + 1] - points[k]) * where;
+                    if (square < least && crown.contains(p)) {
+                        least = square;
+                        place.limb = l;
+                        place.along = along + where * length;
+                    }
+                    along += length;
+                }
+            }
+            if (least >= 1e300) continue;
+            const Limb& limb = filling.limbs[place.limb].limb;
+            const DVec3 from = place_along(limb.points, place.along);
+            // To where it is seen, in the depth of the wood that it grows from.
+            DVec3 to =
+                view == View::kFront ? DVec3(target.x, target.y, from.z) : DVec3(from.x, target.y, target.x);
+            if (!crown.contains(to)) {
+                const double depth = crown.half_depth(to.x, to.y);
+                to.z = std::clamp(to.z, -0.8 * std::max(depth, 0.0), 0.8 * std::max(depth, 0.0));
+            }
+            const double room = glm::length(to - from) + 0.5 * leaf;
+            place.way = normalized_or(to - from, DVec3(0.0, 1.0, 0.0));
+            place.spin = random.uniform(0.0, 2.0 * kPi);
+            const double radius = value_along(limb.points, limb.radii, place.along);
+            const double shortest = 0.36 * growth * species.twigs.front().length;
+            const double longest = 1.3 * growth * species.twigs.back().length;
+            const auto chosen =
+                choose_twig(species, std::clamp(room, shortest, longest), radius, growth, true);
+            if (!chosen) continue;
+            place.twig = chosen->twig;
+            place.scale = chosen->scale;
+            filling.twigs.push_back(place);
+            mark(cover, place);
+            added++;
+        }
+    }
+}
+
+}  // namespace treerec

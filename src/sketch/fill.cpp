@@ -1,0 +1,207 @@
+#include "sketch/fill.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edit/scion.h"
+#include "foliage/leaf_rules.h"
+#include "geometry/portable_math.h"
+#include "geometry/random.h"
+#include "sketch/close_gaps.h"
+#include "sketch/lift.h"
+#include "sketch/limb_cells.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLeastAngle = 30.0, kMostAngle = 70.0;  // degrees off the limb (papers/003, 4.2, step 2)
+constexpr double kGolden = 137.508 * kPi / 180.0;
+// Between places of one twig each, in the middle twig's lengths.
+constexpr double kSpacing = 0.2;
+constexpr double kBare = 0.12;  // of a branch, at its base
+constexpr double kMostScale = 1.3;
+// A branch for a place that no twig is long enough for: of the room there, and its steps.
+constexpr double kBranchShare = 0.8;
+constexpr int kBranchSteps = 7;
+constexpr double kUpwards = 0.35;         // how much of its way turns up along it
+constexpr double kBranchThickness = 0.6;  // of its parent's, at most
+constexpr int kDeepest = 4;               // branches on branches
+constexpr size_t kMostTwigs = 4000;
+
+constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
+
+struct Filler {
+    const CrownSections& crown;
+    const SketchSpecies& species;
+    const SketchOptions& options;
+    const Progress* progress;
+    double growth;
+    double margin;
+    double step;
+    double spacing;
+    std::vector<size_t> cell_of;  // by filled limb
+    Filling filling = {};
+
+    bool printed() const { return options.depth == SketchDepth::kPaper; }
+
+    int at_a_place() const {
+        if (printed()) return 1;
+        switch (species.arrangement) {
+            case TwigArrangement::kOpposite:
+                return 2;
+            case TwigArrangement::kClustered:
+                return 3;
+            default:
+                return 1;
+        }
+    }
+
+    void add_branch(const LimbCells& cells, size_t parent, double along, const DVec3& way, double room,
+                    int depth) {
+        const Limb& host = filling.limbs[parent].limb;
+        FilledLimb branch;
+        branch.parent = static_cast<int32_t>(parent);
+        branch.limb.along = along;
+        branch.limb.seed = hash_seed(host.seed, 7000 + static_cast<uint64_t>(filling.limbs.size()));
+        DVec3 at = place_along(host.points, along);
+        DVec3 direction = way;
+        branch.limb.points.push_back(at);
+        for (int i = 0; i < kBranchSteps; i++) {
+            const DVec3 next = at + direction * (kBranchShare * room / kBranchSteps);
+            if (!crown.contains(next, margin)) break;
+            branch.limb.points.push_back(at = next);
+            direction = glm::normalize(direction + DVec3(0.0, kUpwards / kBranchSteps, 0.0));
+        }
+        if (branch.limb.points.size() < 3) return;
+        const double radius = kBranchThickness * value_along(host.points, host.radii, along);
+        branch.limb.radii = tapered(branch.limb.points, radius, kLeastRadius);
+        const size_t cell = cell_of[parent];
+        filling.limbs.push_back(std::move(branch));
+        cell_of.push_back(cell);
+        fill(cells, filling.limbs.size() - 1, 0.0, depth + 1);
+    }
+
+    // Twigs on the limb from `begin` metres on.
+    void fill(const LimbCells& cells, size_t index, double begin, int depth) {
+        if (progress) progress->check();
+        const Limb limb = filling.limbs[index].limb;  // the list grows
+        const double length = length_of(limb.points);
+        const DVec3 axis =
+            normalized_or(limb.points.back() - place_along(limb.points, begin), DVec3(0, 1, 0));
+        const DMat3 frame = frame_about(axis);
+        const double bare = begin > 0.0 || printed() ? begin : kBare * length;
+        const int several = at_a_place();
+        const auto places = static_cast<size_t>(
+            std::max(1.0, std::floor((length - bare) * options.density / (spacing * several) + 0.5)));
+        Random random(hash_seed(limb.seed, 11));
+        const double first = random.uniform(0.0, 2.0 * kPi);
+        for (size_t i = 0; i < places && options.density > 0.0; i++) {
+            const double group = (length - bare) / static_cast<double>(places);
+            const double along = bare + group * (static_cast<double>(i) + random.uniform(0.15, 0.85));
+            for (int k = 0; k < several; k++) {
+                const double off = random.uniform(kLeastAngle, kMostAngle) * kPi / 180.0;
+                const double roll = printed() ? random.uniform(0.0, 2.0 * kPi)
+                                              : first + kGolden * static_cast<double>(i) +
+                                                    2.0 * kPi * k / several + random.uniform(-0.3, 0.3);
+                const DVec3 way =
+                    frame[1] * portable::cos(off) +
+                    (frame[0] * portable::cos(roll) + frame[2] * portable::sin(roll)) * portable::sin(off);
+                add(cells, index, along, way, random.uniform(0.0, 2.0 * kPi), depth);
+            }
+        }
+        // The limb itself goes on in a twig.
+        if (!printed()) {
+            const DVec3 last = limb.points.back() - limb.points[limb.points.size() - 2];
+            add(cells, index, length, normalized_or(last, axis), random.uniform(0.0, 2.0 * kPi), kDeepest);
+        }
+    }
+
+    void add(const LimbCells& cells, size_t index, double along, const DVec3& way, double spin, int depth) {
+        if (filling.twigs.size() >= kMostTwigs) return;
+        const Limb& limb = filling.limbs[index].limb;
+        const double room = cells.reach(place_along(limb.points, along), way, cell_of[index], step, margin);
+        if (!(room > 0.0)) return;
+        const double longest = kMostScale * growth * species.twigs.back().length;
+        if (!printed() && room > longest && depth < kDeepest) {
+            add_branch(cells, index, along, way, room, depth);
+            return;
+        }
+        const double radius = value_along(limb.points, limb.radii, along);
+        const auto chosen =
+            choose_twig(species, printed() ? room : std::min(room, longest), radius, growth, !printed());
+        if (chosen) filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
+    }
+};
+
+// The trunk above its lowest branch, or in the crown, is a limb of its own: metres along it where that
+// begins.
+double leader_begin(const Limbs& limbs, const CrownSections& crown) {
+    const double length = length_of(limbs.trunk.points);
+    double begin = length;
+    for (const Limb& branch : limbs.branches)
+        begin = std::min(begin, branch.along);
+    if (!limbs.branches.empty()) return begin;
+    for (double along = 0.0; along < length; along += 0.01 * length)
+        if (place_along(limbs.trunk.points, along).y >= crown.bottom()) return along;
+    return length;
+}
+
+std::vector<DVec3> line_from(const std::vector<DVec3>& points, double begin) {
+    std::vector<DVec3> line{place_along(points, begin)};
+    double along = 0.0;
+    for (size_t i = 1; i < points.size(); i++) {
+        along += glm::length(points[i] - points[i - 1]);
+        if (along > begin) line.push_back(points[i]);
+    }
+    return line;
+}
+
+}  // namespace
+
+double twig_growth(const SketchSpecies& species, double height) {
+    return std::clamp(std::sqrt(height / species.height), kLeastGrowth, kMostGrowth);
+}
+
+double leaf_margin(const SketchSpecies& species, double height) {
+    // A card leans off its twig and is as long as leaf_size; leaf_rules.h tells how small trees shrink it.
+    const LeafRules rules = leaf_preset(species.name);
+    return 0.45 * rules.leaf_size * std::sqrt(std::min(height / 12.0, 1.0));
+}
+
+Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
+                   double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
+                   const Progress* progress) {
+    const bool printed = options.depth == SketchDepth::kPaper;
+    const double growth = printed ? 1.0 : twig_growth(species, height);
+    const double middle = species.twigs[species.twigs.size() / 2].length;
+    Filler filler{crown,
+                  species,
+                  options,
+                  progress,
+                  growth,
+                  printed ? 0.0 : leaf_margin(species, height),
+                  metres_per_pixel,
+                  kSpacing * growth * middle,
+                  {}};
+    filler.filling.limbs.push_back({limbs.trunk, -1});
+    filler.cell_of.push_back(0);
+    const double begin = leader_begin(limbs, crown);
+    std::vector<std::vector<DVec3>> lines{line_from(limbs.trunk.points, begin)};
+    for (const Limb& branch : limbs.branches) {
+        filler.filling.limbs.push_back({branch, 0});
+        filler.cell_of.push_back(lines.size());
+        lines.push_back(branch.points);
+    }
+    if (lines[0].size() < 2) lines[0].push_back(lines[0][0] + DVec3(0.0, 1e-6, 0.0));
+    const LimbCells cells(crown, lines);
+    const size_t first_order = filler.filling.limbs.size();
+    if (begin < length_of(limbs.trunk.points)) filler.fill(cells, 0, begin, 0);
+    for (size_t i = 1; i < first_order; i++)
+        filler.fill(cells, i, 0.0, 0);
+    if (!printed && options.density > 0.0)
+        close_gaps(filler.filling, crown, species, growth, height, hash_seed(seed, 5), progress);
+    return filler.filling;
+}
+
+}  // namespace treerec

@@ -1,0 +1,61 @@
+// Twigs on the limbs, as long as the crown has room (papers/003, 4.2).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "progress.h"
+#include "sketch/crown_sections.h"
+#include "sketch/limbs.h"
+#include "sketch/sketch.h"
+#include "sketch/species.h"
+
+namespace treerec {
+
+// A limb that is ready to become wood: the trunk first, then those that grow from it or from another.
+struct FilledLimb {
+    Limb limb;
+    int32_t parent = -1;  // place in the list; -1: the trunk
+};
+
+// A twig of the species at a place on a limb.
+struct TwigPlace {
+    size_t limb = 0;     // place among the filled limbs
+    double along = 0.0;  // metres from the limb's tail
+    DVec3 way{0.0};      // unit: where the twig goes
+    size_t twig = 0;     // place in SketchSpecies::twigs
+    double scale = 1.0;
+    double spin = 0.0;  // radians about its own direction
+};
+
+struct Filling {
+    std::vector<FilledLimb> limbs;
+    std::vector<TwigPlace> twigs;
+};
+
+// How the species' twigs are scaled for a tree of that height, metres: a young tree has shorter shoots.
+double twig_growth(const SketchSpecies& species, double height);
+// Metres by which leaves stand out from wood: so far twigs stay from the crown's surface.
+double leaf_margin(const SketchSpecies& species, double height);
+
+// kSections (default): twigs stand evenly around each limb, by the species' arrangement, 30 to 70 degrees off
+//     its direction; a place whose room is longer than any twig gets a branch with twigs of its own. Then
+//     what the front view would still see through gets a twig from the limb nearest to it.
+// As printed (options.depth is kPaper): one twig at a random node of each group of nodes, in a random
+//     direction of that range, by equation 4; where none fits the nearest is scaled by .7 to 1.3, else none.
+Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
+                   double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
+                   const Progress* progress);
+
+// The twig for a place with so much room, in metres: its place in the species' twigs and its scale; nothing
+// where none fits. growth: of all twigs (twig_growth()). fewer: whether one that is too long even at .7 may
+// be taken if it is no more than twice too long, since what leaves the crown is cut.
+struct ChosenTwig {
+    size_t twig;
+    double scale;
+};
+std::optional<ChosenTwig> choose_twig(const SketchSpecies& species, double length, double radius,
+                                      double growth, bool fewer);
+
+}  // namespace treerec

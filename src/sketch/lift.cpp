@@ -1,0 +1,224 @@
+#include "sketch/lift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/portable_math.h"
+#include "geometry/random.h"
+#include "geometry/segment.h"
+#include "sketch/simplify_line.h"
+
+namespace treerec {
+
+namespace {
+
+// Pixels: what a line may lose of its shape; the front view is to be true within 2.
+constexpr double kTrueness = 0.7;
+constexpr double kLongestStep = 40.0;  // pixels between nodes, so that tapers and bends are round
+constexpr double kMostTurn = 60.0;     // degrees (papers/003, 3.1)
+constexpr double kLeastApart = 10.0;
+// Of the depth that the crown has at a branch's tip: leaves are beyond it.
+constexpr double kShallowest = 0.45, kDeepest = 0.85;
+// A branch that is drawn short because it comes towards us: of its drawn length at most.
+constexpr double kMostDepth = 1.2;
+
+// A branch's share of the trunk's thickness there, whatever its length.
+constexpr double kThinnestBranch = 0.25, kThickestBranch = 0.75;
+
+std::vector<DVec3> in_space(const std::vector<DVec2>& points, const CanvasPlace& place) {
+    std::vector<DVec3> out;
+    for (const DVec2& p : points)
+        out.emplace_back(place.metres(p), 0.0);
+    return out;
+}
+
+// The trunk's line with a point wherever a branch grows, in pixels; attach: gets those points' places in it.
+std::vector<DVec2> with_joints(const DrawnTree& drawn, std::vector<double>& radii,
+                               std::vector<size_t>& attach) {
+    struct Joint {
+        size_t segment;
+        double where;
+        size_t branch;
+    };
+    const std::vector<DVec2>& line = drawn.trunk.points;
+    std::vector<Joint> joints;
+    for (size_t b = 0; b < drawn.branches.size(); b++) {
+        const DVec3 base(drawn.branches[b].points[0], 0.0);
+        Joint nearest{0, 0.0, b};
+        double least = 0.0;
+        for (size_t i = 0; i + 1 < line.size(); i++) {
+            double where;
+            const double square =
+                square_to_segment(base, DVec3(line[i], 0.0), DVec3(line[i + 1], 0.0), where);
+            if (i > 0 && square >= least) continue;
+            least = square;
+            nearest.segment = i;
+            nearest.where = where;
+        }
+        joints.push_back(nearest);
+    }
+    std::sort(joints.begin(), joints.end(), [](const Joint& a, const Joint& b) {
+        return a.segment != b.segment ? a.segment < b.segment
+               : a.where != b.where   ? a.where < b.where
+                                      : a.branch < b.branch;
+    });
+    std::vector<DVec2> joined;
+    radii.clear();
+    attach.assign(drawn.branches.size(), 0);
+    size_t next = 0;
+    for (size_t i = 0; i < line.size(); i++) {
+        const bool drawn_radii = !drawn.trunk.radii.empty();
+        joined.push_back(line[i]);
+        if (drawn_radii) radii.push_back(drawn.trunk.radii[i]);
+        for (; next < joints.size() && joints[next].segment == i; next++) {
+            const double t = joints[next].where;
+            const DVec2 at = line[i] + (line[i + 1] - line[i]) * t;
+            if (glm::length(at - joined.back()) > 1e-6 && glm::length(at - line[i + 1]) > 1e-6) {
+                joined.push_back(at);
+                if (drawn_radii) {
+                    const std::vector<double>& r = drawn.trunk.radii;
+                    radii.push_back(r[i] + (r[i + 1] - r[i]) * t);
+                }
+            }
+            // The next segment's first point is yet to come.
+            const bool at_end = glm::length(at - line[i + 1]) <= 1e-6;
+            attach[joints[next].branch] = joined.size() - (at_end ? 0 : 1);
+        }
+    }
+    return joined;
+}
+
+// Gives each point of the branch its depth: in proportion to the way along it, `tip` at the tip.
+void deepen(Limb& branch, double tip) {
+    const double length = length_of(branch.points);
+    double along = 0.0;
+    DVec3 before = branch.points[0];
+    for (size_t i = 1; i < branch.points.size(); i++) {
+        along += glm::length(branch.points[i] - before);
+        before = branch.points[i];
+        branch.points[i].z = tip * along / length;
+    }
+}
+
+// How deep the tip may lie so that no point of the branch leaves the crown. Where it is outside anyway, as
+// below the crown, nothing bounds it.
+double deepest_tip(const Limb& branch, const CrownSections& crown) {
+    const double length = length_of(branch.points);
+    double most = kMostDepth * length;
+    double along = 0.0;
+    for (size_t i = 1; i < branch.points.size(); i++) {
+        along += glm::length(branch.points[i] - branch.points[i - 1]);
+        const double depth = crown.half_depth(branch.points[i].x, branch.points[i].y);
+        if (depth >= 0.0 && along > 0.0) most = std::min(most, depth * length / along);
+    }
+    return most;
+}
+
+void lift_truly(std::vector<Limb>& branches, const CrownSections& crown) {
+    for (Limb& branch : branches) {
+        Random random(branch.seed);
+        const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
+        deepen(branch, side * random.uniform(kShallowest, kDeepest) * deepest_tip(branch, crown));
+    }
+}
+
+void turn_as_printed(std::vector<Limb>& branches, uint64_t seed, std::vector<std::string>& remarks) {
+    const size_t count = branches.size();
+    if (count == 0) return;
+    const double room = 2.0 * kMostTurn;
+    double apart = kLeastApart;
+    if (static_cast<double>(count - 1) * apart > room) {
+        apart = room / static_cast<double>(count - 1);
+        remarks.push_back("There are " + std::to_string(count) +
+                          " branches: they can't be turned at least 10 degrees apart within 60 to either "
+                          "side, and stand closer.");
+    }
+    // As many chance angles in what the gaps leave, in order, and the gaps between them again.
+    Random random(hash_seed(seed, 3));
+    std::vector<double> angles(count);
+    for (double& angle : angles)
+        angle = random.uniform(0.0, room - static_cast<double>(count - 1) * apart);
+    std::sort(angles.begin(), angles.end());
+    for (size_t i = 0; i < count; i++)
+        angles[i] += static_cast<double>(i) * apart - kMostTurn;
+    for (size_t i = count; i-- > 1;)
+        std::swap(angles[i], angles[random.below(static_cast<uint32_t>(i + 1))]);
+    for (size_t i = 0; i < count; i++) {
+        const double radians = angles[i] * kPi / 180.0;
+        const double c = portable::cos(radians), s = portable::sin(radians);
+        const DVec3 base = branches[i].points[0];
+        for (DVec3& p : branches[i].points) {
+            // v' = v R_y(angle), a row times the printed matrix.
+            const DVec3 v = p - base;
+            p = base + DVec3(v.x * c + v.z * s, v.y, -v.x * s + v.z * c);
+        }
+    }
+}
+
+}  // namespace
+
+double branch_radius(double length, double trunk_length, double trunk_radius, double foot_radius) {
+    const double fair = foot_radius * length / trunk_length;
+    return std::max(std::clamp(fair, kThinnestBranch * trunk_radius, kThickestBranch * trunk_radius),
+                    kLeastRadius);
+}
+
+Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
+           const SketchOptions& options, std::vector<std::string>& remarks) {
+    Limbs limbs;
+    std::vector<double> radii;
+    std::vector<size_t> attach;
+    const std::vector<DVec2> joined = with_joints(drawn, radii, attach);
+    std::vector<size_t> kept = simplify_line(joined, attach, kTrueness);
+    kept = split_long_steps(joined, kept, kLongestStep);
+    std::vector<DVec2> trunk;
+    for (const size_t i : kept)
+        trunk.push_back(joined[i]);
+    limbs.trunk.points = in_space(trunk, place);
+    limbs.trunk.stroke = static_cast<int32_t>(drawn.trunk.stroke);
+    limbs.trunk.seed = hash_seed(sketch.seed, 0);
+    const double trunk_length = length_of(limbs.trunk.points);
+    const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
+                        : !radii.empty()           ? radii[0] * place.scale
+                                                   : (crown.top() - limbs.trunk.points[0].y) / 40.0;
+    const double least = std::max(foot / 10.0, kLeastRadius);
+    limbs.trunk.radii = tapered(limbs.trunk.points, foot, least);
+    if (!radii.empty()) {
+        // As drawn, in proportion to the foot's, and no thicker above.
+        double before = foot;
+        for (size_t i = 0; i < kept.size(); i++) {
+            const double own = radii[kept[i]] / radii[0] * foot;
+            before = limbs.trunk.radii[i] = std::clamp(own, least, std::max(before, least));
+        }
+    }
+
+    for (size_t b = 0; b < drawn.branches.size(); b++) {
+        const DrawnLine& line = drawn.branches[b];
+        std::vector<DVec2> points = line.points;
+        points[0] = joined[attach[b]];
+        std::vector<size_t> own = simplify_line(points, {}, kTrueness);
+        own = split_long_steps(points, own, kLongestStep);
+        Limb branch;
+        std::vector<DVec2> flat;
+        for (const size_t i : own)
+            flat.push_back(points[i]);
+        branch.points = in_space(flat, place);
+        branch.stroke = static_cast<int32_t>(line.stroke);
+        branch.seed = hash_seed(sketch.seed, sketch.strokes[line.stroke].id);
+        for (size_t i = 0; i + 1 < kept.size() && kept[i] < attach[b]; i++)
+            branch.along += glm::length(limbs.trunk.points[i + 1] - limbs.trunk.points[i]);
+        limbs.branches.push_back(std::move(branch));
+    }
+    if (options.depth == SketchDepth::kPaper)
+        turn_as_printed(limbs.branches, sketch.seed, remarks);
+    else
+        lift_truly(limbs.branches, crown);
+    for (Limb& branch : limbs.branches) {
+        const double at = value_along(limbs.trunk.points, limbs.trunk.radii, branch.along);
+        branch.radii = tapered(branch.points, branch_radius(length_of(branch.points), trunk_length, at, foot),
+                               kLeastRadius);
+    }
+    return limbs;
+}
+
+}  // namespace treerec

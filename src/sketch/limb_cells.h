@@ -1,0 +1,39 @@
+// Which limb a place in the crown belongs to (papers/003, 3.2, equation 3).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sketch/crown_sections.h"
+#include "sketch/limbs.h"
+
+namespace treerec {
+
+class LimbCells {
+  public:
+    // Each line is a limb of its own; a place belongs to the nearest, of equal ones to the first.
+    // The crown must outlive it.
+    LimbCells(const CrownSections& crown, const std::vector<std::vector<DVec3>>& lines);
+
+    size_t nearest(const DVec3& p) const;
+    // How far from `from` in the unit direction `way` the crown's part that belongs to `limb` goes on, in
+    // metres, found in steps and then to within `step`. 0 where it does not begin. margin: as
+    // CrownSections::contains().
+    double reach(const DVec3& from, const DVec3& way, size_t limb, double step, double margin) const;
+
+  private:
+    bool within(const DVec3& p, size_t limb, double margin) const;
+
+    struct Part {
+        DVec3 a, b;
+    };
+    struct Ball {
+        DVec3 centre;
+        double radius;
+    };
+    const CrownSections& crown_;
+    std::vector<std::vector<Part>> parts_;
+    std::vector<Ball> balls_;
+};
+
+}  // namespace treerec

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "sketch/assemble.h"
+#include "sketch/fill.h"
+#include "sketch/lift.h"
+#include "sketch/sketch.h"
+#include "sketch/species.h"
+#include "sketch/unseen.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kThickest = 0.2;  // of a tree's height: a trunk's radius at the foot
+constexpr double kMostDensity = 4.0;
+
+void check_options(const SketchOptions& options, double height) {
+    if (!(options.density >= 0.0 && options.density <= kMostDensity))
+        throw Error("The density of twigs must be within 0 and 4.");
+    if (!(options.trunk_radius >= 0.0 && options.trunk_radius <= kThickest * height))
+        throw Error("The trunk's radius must be within 0 and a fifth of the tree's height.");
+}
+
+double highest_of(const DrawnTree& drawn) {
+    double top = drawn.trunk.points[0].y;
+    for (const DVec2& p : drawn.outline)
+        top = std::max(top, p.y);
+    for (const DVec2& p : drawn.trunk.points)
+        top = std::max(top, p.y);
+    for (const DrawnLine& branch : drawn.branches)
+        for (const DVec2& p : branch.points)
+            top = std::max(top, p.y);
+    return top;
+}
+
+}  // namespace
+
+SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, const Progress* progress) {
+    Sketch sketch = given;
+    sketch.number_strokes();
+    const SketchSpecies& species = sketch_species(sketch.species.empty() ? "maple" : sketch.species);
+    const double height = sketch.height > 0.0 ? sketch.height : species.height;
+    check_options(options, height);
+    SketchedTree out;
+    out.understood = understand_sketch(sketch);
+    out.remarks = out.understood.remarks;
+    out.species = species.name;
+    const DrawnTree& drawn = out.understood.drawn;
+
+    const DVec2 foot = drawn.trunk.points[0];
+    const double pixels = highest_of(drawn) - foot.y;
+    if (!(pixels > 1.0)) throw Error("Nothing of the drawing stands above the trunk's foot.");
+    const CanvasPlace place{foot, height / pixels};
+    const double shown = sketch.canvas.y / kCanvasHeight;
+    out.foot = DVec2(foot.x, kCanvasHeight - foot.y) * shown;
+    out.scale = place.scale / shown;
+
+    std::vector<DVec2> outline;
+    for (const DVec2& p : drawn.outline)
+        outline.push_back(place.metres(p));
+    const bool printed = options.depth == SketchDepth::kPaper;
+    const CrownSections crown(outline, printed);
+    out.crown_base = crown.bottom();
+    Limbs limbs = lift(drawn, sketch, place, crown, options, out.remarks);
+    if (!printed) {
+        extend_trunk(limbs, crown, sketch.seed);
+        add_unseen_branches(limbs, crown, sketch.seed);
+    }
+    if (progress) progress->check();
+    const Filling filling =
+        fill_crown(limbs, crown, species, height, place.scale, sketch.seed, options, progress);
+    AssembledTree assembled =
+        assemble_tree(filling, species, crown, !printed, 0.7 * leaf_margin(species, height), progress);
+    out.tree = std::move(assembled.tree);
+    out.stroke_of_node = std::move(assembled.stroke_of_node);
+    return out;
+}
+
+}  // namespace treerec
