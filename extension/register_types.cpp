@@ -9,6 +9,7 @@
 #include "leaf_rule.h"
 #include "tree_edit.h"
 #include "tree_reconstruction.h"
+#include "tree_sketch.h"
 #include "wind_globals.h"
 
 #ifdef TREEREC_EDITOR
@@ -43,6 +44,7 @@ void initialize_tree_reconstruction(ModuleInitializationLevel p_level) {
             GDREGISTER_CLASS(TreeEdit)
             GDREGISTER_CLASS(TreeReconstruction)
             GDREGISTER_CLASS(LSystem)
+            GDREGISTER_CLASS(TreeSketch)
 #ifdef TREEREC_EDITOR
             GDREGISTER_CLASS(TreeFidelity)
             GDREGISTER_CLASS(

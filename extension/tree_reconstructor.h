@@ -17,11 +17,12 @@
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
 #include "tree_reconstruction.h"
+#include "tree_sketch.h"
 
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
-// export_file(), save_html_report() and save_marker() may run on any thread, one at a time; the other methods
-// may be called from any other thread meanwhile.
+// export_file(), save_html_report(), save_marker(), sketch_tree(), load_sketch() and save_sketch() may run on
+// any thread, one at a time; the other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -40,6 +41,10 @@ class TreeReconstructor : public godot::RefCounted {
                                                    LSystem::Dialect p_dialect);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
                              int p_levels = 1, bool p_pictures_beside = false);
+    godot::Ref<TreeReconstruction> sketch_tree(const godot::Ref<TreeSketch>& p_sketch);
+    godot::Ref<TreeSketch> load_sketch(const godot::String& p_path);
+    godot::Error save_sketch(const godot::Ref<TreeSketch>& p_sketch, const godot::String& p_path);
+    static godot::TypedArray<godot::Dictionary> get_sketch_species();
     godot::Error save_html_report(const godot::String& p_path,
                                   const godot::Dictionary& p_folders = godot::Dictionary());
     godot::Error save_marker(const godot::String& p_path, int64_t p_id, double p_side);

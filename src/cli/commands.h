@@ -67,6 +67,9 @@ void run_grow(const std::vector<std::string>& words);
 const Command& marker_command();
 void run_marker(const std::vector<std::string>& words);
 
+const Command& sketch_command();
+void run_sketch(const std::vector<std::string>& words);
+
 const Command& textures_command();
 void run_textures(const std::vector<std::string>& words);
 

@@ -29,6 +29,7 @@ std::vector<Entry> entries() {
             {synth_command(), run_synth},
             {lstring_command(), run_lstring},
             {grow_command(), run_grow},
+            {sketch_command(), run_sketch},
             {textures_command(), run_textures}};
 }
 

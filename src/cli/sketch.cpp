@@ -1,0 +1,147 @@
+#include <cstdio>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "file_bytes.h"
+#include "pipeline/export.h"
+#include "pipeline/sketch_report.h"
+#include "sketch/read_sketch.h"
+#include "sketch/sketch.h"
+#include "sketch/species.h"
+#include "tree/measure.h"
+
+namespace treerec {
+
+namespace {
+
+std::string species_list() {
+    std::string names;
+    for (const std::string& name : sketch_species_names())
+        names += (names.empty() ? "" : " ") + name;
+    return names;
+}
+
+std::string one_of(const Arguments& arguments, const std::string& option,
+                   const std::vector<std::string>& words) {
+    const std::string word = arguments.text(option, words[0]);
+    std::string list;
+    for (const std::string& known : words) {
+        if (known == word) return word;
+        list += (list.empty() ? "" : ", ") + known;
+    }
+    throw UsageError(option + " is one of " + list + ", not '" + word + "'.");
+}
+
+bool wants_sketch(const std::string& path) {
+    return extension_of(path) == "json";
+}
+
+}  // namespace
+
+const Command& sketch_command() {
+    static const Command command{
+        "sketch",
+        "sketch STROKES -o FILE [options]",
+        "Makes a whole tree of a few freehand strokes.",
+        {{"-o", "FILE",
+          "the file to write: .glb .gltf .obj .ply .txt .csv .lstring, or .json for the strokes; again for "
+          "more",
+          true},
+         {"--report", "", "print what became of each stroke, and how well the crown is filled, as JSON"},
+         {"--species", "NAME",
+          "whose twigs, leaves and bark it gets: " + species_list() +
+              "\n(default: as the sketch says, or maple)"},
+         {"--height", "M", "metres (default: as the sketch says, or what is usual for the species)"},
+         {"--trunk-radius", "M", "metres at the foot (default: as drawn with two lines, or height / 40)"},
+         {"--seed", "N", "what is drawn by chance (default: the sketch's, or 1)"},
+         {"--depth", "HOW",
+          "true: the front stays as drawn, with branches that the drawing doesn't show in front and behind;\n"
+          "paper: branches are turned by up to 60 degrees (default true)"},
+         {"--crown", "HOW",
+          "what bounds the twigs: sections of the outline, or alpha shapes (default sections)"},
+         {"--density", "F", "of twigs, 0 to 4 (default 1)"},
+         {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
+         {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
+         {"--quiet", "", "print errors only"}},
+        "STROKES: our own .json, an .svg of paths, or a .png of a drawing: a crown's outline, a trunk, and "
+        "its "
+        "branches, in any order."};
+    return command;
+}
+
+void run_sketch(const std::vector<std::string>& words) {
+    const Arguments arguments(sketch_command(), words);
+    const std::vector<std::string>& positional = arguments.positional();
+    if (positional.empty()) throw UsageError("Of which strokes? Name a .json, .svg or .png file.");
+    if (positional.size() > 1)
+        throw UsageError("'" + positional[1] + "' is too much; name files to write with -o.");
+    const std::vector<std::string>& outs = arguments.all("-o");
+    const bool report = arguments.has("--report");
+    if (outs.empty() && !report)
+        throw UsageError("Where to? Name at least one file to write with -o, or ask for --report.");
+    SketchOptions options;
+    options.depth =
+        one_of(arguments, "--depth", {"true", "paper"}) == "paper" ? SketchDepth::kPaper : SketchDepth::kTrue;
+    options.crown = one_of(arguments, "--crown", {"sections", "alpha"}) == "alpha" ? SketchCrown::kAlpha
+                                                                                   : SketchCrown::kSections;
+    options.trunk_radius = arguments.number("--trunk-radius", 0.0, 0.001, 20.0);
+    options.density = arguments.number("--density", 1.0, 0.0, 4.0);
+    ExportOptions exports;
+    exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
+    try {
+        if (arguments.has("--species")) sketch_species(arguments.text("--species", ""));
+        for (const std::string& out : outs)
+            if (wants_sketch(out))
+                require_writable(out);
+            else
+                require_writable_format(out);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet || report);
+    progress.update(0.0, "Reading");
+    Sketch sketch = read_sketch(positional[0]);
+    if (arguments.has("--species")) sketch.species = arguments.text("--species", "");
+    sketch.height = arguments.number("--height", sketch.height, 0.05, 200.0);
+    sketch.seed = arguments.whole("--seed", sketch.seed, 0, UINT64_MAX);
+    progress.update(0.1, "Sketch");
+    const SketchedTree sketched = sketch_tree(sketch, options, &progress);
+    exports.textures = sketched.species;
+    exports.leaves = leaf_preset(sketched.species);
+    exports.seed = sketch.seed;
+    TreeExporter exporter(sketched.tree, exports, &progress);
+    for (size_t i = 0; i < outs.size(); i++) {
+        progress.check();
+        progress.update(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
+        if (wants_sketch(outs[i]))
+            write_file(outs[i], sketch_json(sketch));
+        else
+            exporter.write(outs[i]);
+    }
+    std::optional<CrownOverlap> overlap;
+    if (report) {
+        const std::vector<OutlinePart> parts =
+            outline_parts(sketched.tree, exports.leaves, exports.textures, exports.seed, {}, &progress);
+        overlap = measure_crown_overlap(sketched, sketch, parts, 512, &progress);
+    }
+    progress.clear();
+    if (report) std::fputs(sketch_report_json(sketch, sketched, &*overlap).c_str(), stdout);
+    if (quiet || report) return;
+    for (size_t i = 0; i < sketched.understood.strokes.size(); i++) {
+        const StrokeReading& reading = sketched.understood.strokes[i];
+        if (!reading.fault.empty()) std::fprintf(stderr, "stroke %zu: %s\n", i + 1, reading.fault.c_str());
+    }
+    for (const std::string& remark : sketched.remarks)
+        std::fprintf(stderr, "%s\n", remark.c_str());
+    const Measurements m = measure(sketched.tree);
+    std::printf("a %.2f m high %s, %zu nodes, %zu tips, %.1f m of wood\n", m.height, sketched.species.c_str(),
+                m.nodes, m.tips, m.total_length);
+    for (const std::string& out : outs)
+        std::printf("wrote %s\n", out.c_str());
+}
+
+}  // namespace treerec
