@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "edit/scion.h"
 #include "foliage/leaf_rules.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
+#include "sketch/alpha_crown.h"
 #include "sketch/close_gaps.h"
 #include "sketch/lift.h"
 #include "sketch/limb_cells.h"
@@ -57,7 +59,7 @@ struct Filler {
         }
     }
 
-    void add_branch(const LimbCells& cells, size_t parent, double along, const DVec3& way, double room,
+    void add_branch(const CrownBound& bound, size_t parent, double along, const DVec3& way, double room,
                     int depth) {
         const Limb& host = filling.limbs[parent].limb;
         FilledLimb branch;
@@ -79,11 +81,11 @@ struct Filler {
         const size_t cell = cell_of[parent];
         filling.limbs.push_back(std::move(branch));
         cell_of.push_back(cell);
-        fill(cells, filling.limbs.size() - 1, 0.0, depth + 1);
+        fill(bound, filling.limbs.size() - 1, 0.0, depth + 1);
     }
 
     // Twigs on the limb from `begin` metres on.
-    void fill(const LimbCells& cells, size_t index, double begin, int depth) {
+    void fill(const CrownBound& bound, size_t index, double begin, int depth) {
         if (progress) progress->check();
         const Limb limb = filling.limbs[index].limb;  // the list grows
         const double length = length_of(limb.points);
@@ -107,24 +109,24 @@ struct Filler {
                 const DVec3 way =
                     frame[1] * portable::cos(off) +
                     (frame[0] * portable::cos(roll) + frame[2] * portable::sin(roll)) * portable::sin(off);
-                add(cells, index, along, way, random.uniform(0.0, 2.0 * kPi), depth);
+                add(bound, index, along, way, random.uniform(0.0, 2.0 * kPi), depth);
             }
         }
         // The limb itself goes on in a twig.
         if (!printed()) {
             const DVec3 last = limb.points.back() - limb.points[limb.points.size() - 2];
-            add(cells, index, length, normalized_or(last, axis), random.uniform(0.0, 2.0 * kPi), kDeepest);
+            add(bound, index, length, normalized_or(last, axis), random.uniform(0.0, 2.0 * kPi), kDeepest);
         }
     }
 
-    void add(const LimbCells& cells, size_t index, double along, const DVec3& way, double spin, int depth) {
+    void add(const CrownBound& bound, size_t index, double along, const DVec3& way, double spin, int depth) {
         if (filling.twigs.size() >= kMostTwigs) return;
         const Limb& limb = filling.limbs[index].limb;
-        const double room = cells.reach(place_along(limb.points, along), way, cell_of[index], step, margin);
+        const double room = bound.reach(place_along(limb.points, along), way, cell_of[index], step, margin);
         if (!(room > 0.0)) return;
         const double longest = kMostScale * growth * species.twigs.back().length;
         if (!printed() && room > longest && depth < kDeepest) {
-            add_branch(cells, index, along, way, room, depth);
+            add_branch(bound, index, along, way, room, depth);
             return;
         }
         const double radius = value_along(limb.points, limb.radii, along);
@@ -195,10 +197,13 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     }
     if (lines[0].size() < 2) lines[0].push_back(lines[0][0] + DVec3(0.0, 1e-6, 0.0));
     const LimbCells cells(crown, lines);
+    std::unique_ptr<const CrownBound> alpha;
+    if (options.crown == SketchCrown::kAlpha) alpha = alpha_crown(crown, cells, lines.size(), seed, progress);
+    const CrownBound* const bound = alpha ? alpha.get() : &cells;
     const size_t first_order = filler.filling.limbs.size();
-    if (begin < length_of(limbs.trunk.points)) filler.fill(cells, 0, begin, 0);
+    if (begin < length_of(limbs.trunk.points)) filler.fill(*bound, 0, begin, 0);
     for (size_t i = 1; i < first_order; i++)
-        filler.fill(cells, i, 0.0, 0);
+        filler.fill(*bound, i, 0.0, 0);
     if (!printed && options.density > 0.0)
         close_gaps(filler.filling, crown, species, growth, height, hash_seed(seed, 5), progress);
     return filler.filling;

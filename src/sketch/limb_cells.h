@@ -4,22 +4,20 @@
 #include <cstddef>
 #include <vector>
 
+#include "sketch/crown_bound.h"
 #include "sketch/crown_sections.h"
 #include "sketch/limbs.h"
 
 namespace treerec {
 
-class LimbCells {
+class LimbCells : public CrownBound {
   public:
     // Each line is a limb of its own; a place belongs to the nearest, of equal ones to the first.
     // The crown must outlive it.
     LimbCells(const CrownSections& crown, const std::vector<std::vector<DVec3>>& lines);
 
     size_t nearest(const DVec3& p) const;
-    // How far from `from` in the unit direction `way` the crown's part that belongs to `limb` goes on, in
-    // metres, found in steps and then to within `step`. 0 where it does not begin. margin: as
-    // CrownSections::contains().
-    double reach(const DVec3& from, const DVec3& way, size_t limb, double step, double margin) const;
+    double reach(const DVec3& from, const DVec3& way, size_t limb, double step, double margin) const override;
 
   private:
     bool within(const DVec3& p, size_t limb, double margin) const;

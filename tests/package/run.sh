@@ -13,7 +13,7 @@ python3 -m zipfile -e "$zip" "$work"
 check 'everything lies in addons/tree_reconstruction' \
     [ "$(ls "$work") $(ls "$work/addons")" = 'addons tree_reconstruction' ]
 addon=$work/addons/tree_reconstruction
-for name in LICENSE README.md plugin.cfg tree_reconstruction.gdextension; do
+for name in LICENSE LICENSE.GPL README.md plugin.cfg tree_reconstruction.gdextension; do
     check "$name is there" [ -s "$addon/$name" ]
 done
 named=$(sed -n 's/^[a-z]*\..*"\(bin\/.*\)"$/\1/p' "$addon/tree_reconstruction.gdextension" | sort)

@@ -17,7 +17,7 @@ python3 tests/windows/stand_in_table.py build/gdextension/gdextension_interface.
 check 'the stand-in for the engine is built' [ -x "$work/stand_in_host.exe" ]
 
 # What a template registers; the editor's library has more.
-runtime='LSystem LeafRule TreeEdit TreeReconstruction'
+runtime='LSystem LeafRule TreeEdit TreeReconstruction TreeSketch'
 for target in editor template_debug template_release; do
     library=project/addons/tree_reconstruction/bin/libtree_reconstruction.windows.$target.x86_64.dll
     windows "$work/stand_in_host.exe" "$library" | tr -d '\r' >"$work/$target.log"
