@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "error.h"
 #include "sketch/line_mask.h"
@@ -15,13 +16,21 @@ constexpr double kMostInk = 0.4;    // of all pixels
 constexpr int kPapersAcross = 8;    // places at which the paper's colour is looked for
 constexpr int kSmallestPaper = 64;  // pixels
 
+constexpr double kCommon = 0.4;  // of all pixels: so many of nearly one colour are paper
+
 using Levels = std::array<uint8_t, 3>;
 
-// The colour of the paper: the medians of cells, which even a thick line does not fill, and between their
-// middles what lies between. A shadow over a photographed sheet is paper so.
+// The colour of the paper: the one that most of the picture has, where there is one. Else the medians of
+// cells, which even a thick line does not fill, and between their middles what lies between: a shadow over a
+// photographed sheet is paper so.
 class Paper {
   public:
     explicit Paper(const Image& picture) {
+        if (const std::optional<Levels> colour = common_colour(picture)) {
+            cell_ = across_ = down_ = 1;
+            medians_.push_back(*colour);
+            return;
+        }
         cell_ = std::max(kSmallestPaper,
                          (std::max(picture.width, picture.height) + kPapersAcross - 1) / kPapersAcross);
         across_ = std::max(1, (picture.width + cell_ / 2) / cell_);
@@ -57,6 +66,29 @@ class Paper {
     }
 
   private:
+    static std::optional<Levels> common_colour(const Image& picture) {
+        constexpr unsigned kShift = 3, kBits = 8 - kShift;
+        std::vector<size_t> counts(size_t{1} << 3 * kBits, 0);
+        const auto bin_of = [&](const uint8_t* pixel) {
+            return size_t{pixel[0]} >> kShift << 2 * kBits | size_t{pixel[1]} >> kShift << kBits |
+                   size_t{pixel[2]} >> kShift;
+        };
+        for (size_t i = 0; i < picture.pixels.size(); i += 4)
+            counts[bin_of(&picture.pixels[i])]++;
+        const auto most = std::max_element(counts.begin(), counts.end());
+        if (static_cast<double>(*most) < kCommon * static_cast<double>(picture.pixels.size() / 4)) return {};
+        const auto bin = static_cast<size_t>(most - counts.begin());
+        std::array<size_t, 3> sums{};
+        for (size_t i = 0; i < picture.pixels.size(); i += 4)
+            if (bin_of(&picture.pixels[i]) == bin)
+                for (size_t k = 0; k < 3; k++)
+                    sums[k] += picture.pixels[i + k];
+        Levels mean{};
+        for (size_t k = 0; k < 3; k++)
+            mean[k] = static_cast<uint8_t>(sums[k] / *most);
+        return mean;
+    }
+
     Levels median(const Image& picture, int u, int v) const {
         const int left = u * cell_, top = v * cell_;
         // The last ones take what is left over.

@@ -13,7 +13,8 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kMostEdges = 20000;  // before spurs go
+constexpr size_t kMostEdges = 20000;    // before spurs go
+constexpr double kNearJunctions = 2.0;  // pixels beyond the ink of both
 
 double length_of(const std::vector<DVec2>& points) {
     double length = 0.0;
@@ -262,7 +263,9 @@ void unite_junctions(LineGraph& graph) {
     for (LineEdge& edge : graph.edges) {
         if (!edge.alive || edge.nodes[0] == LineEdge::kNone) continue;
         const LineNode &a = graph.nodes[edge.nodes[0]], &b = graph.nodes[edge.nodes[1]];
-        if (a.edges.size() < 3 || b.edges.size() < 3 || edge.length > 1.2 * (a.depth + b.depth)) continue;
+        if (a.edges.size() < 3 || b.edges.size() < 3 ||
+            edge.length > kNearJunctions + 1.2 * (a.depth + b.depth))
+            continue;
         edge.alive = false;
         const size_t into = root(edge.nodes[0]), from = root(edge.nodes[1]);
         parent[std::max(into, from)] = std::min(into, from);

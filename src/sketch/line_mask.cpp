@@ -96,9 +96,13 @@ double line_width(const LineMask& mask, const std::vector<float>& depths) {
     return count > 0.0 ? std::max(1.0, 4.0 * (sum / count - 0.5)) : 0.0;
 }
 
+double speck_size(const LineMask& mask, double width) {
+    return std::max({2.0 * width, 0.01 * mask.height, 4.0});
+}
+
 void clean_mask(LineMask& mask, double width) {
-    const double hole = 4.0 + 0.5 * width * width;                          // pixels
-    const double speck = std::max({2.0 * width, 0.01 * mask.height, 4.0});  // pixels
+    const double hole = 4.0 + 0.5 * width * width;  // pixels
+    const double speck = speck_size(mask, width);
     LineMask cleaned = mask;
     each_patch(mask, false, [&](const Patch& patch) {
         if (patch.at_border || static_cast<double>(patch.places.size()) > hole) return;

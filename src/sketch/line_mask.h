@@ -39,7 +39,10 @@ std::vector<float> depths_of(const LineMask& mask);
 // About how wide the lines are, in pixels, by the depths of their ink.
 double line_width(const LineMask& mask, const std::vector<float>& depths);
 
-// Takes away specks, and fills holes, that are smaller than the lines are wide.
+// How long a line is at least, and what is smaller is a speck: pixels.
+double speck_size(const LineMask& mask, double width);
+
+// Takes away specks, and fills holes that are smaller than the lines are wide.
 void clean_mask(LineMask& mask, double width);
 
 // Thins lines to one pixel: Guo and Hall 1989, 'Parallel thinning with two-subiteration algorithms', A1.

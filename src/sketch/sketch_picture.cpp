@@ -73,7 +73,7 @@ Sketch parse_sketch_picture(std::string_view bytes, const std::string& who) {
     Sketch sketch;
     sketch.canvas = DVec2(picture.width, picture.height);
     const double spacing = std::max(1.0, kSpacing * small.height / kCanvasHeight);
-    for (TracedLine& line : trace_lines(mask, depths, spacing, who)) {
+    for (TracedLine& line : trace_lines(mask, depths, spacing, speck_size(mask, width), who)) {
         Stroke stroke;
         stroke.points = std::move(line.points);
         for (DVec2& p : stroke.points)

@@ -36,6 +36,9 @@ struct Path {
     bool closed = false;
 };
 
+// By edge and end: as which arm it goes on.
+using Mates = std::vector<std::array<Arm, 2>>;
+
 struct Box {
     DVec2 low{INFINITY}, high{-INFINITY};
 
@@ -47,6 +50,37 @@ struct Box {
     }
     double diagonal() const { return low.x <= high.x ? glm::length(high - low) : 0.0; }
 };
+
+// The place so far along an edge from the arm's junction, in pixels.
+DVec2 place_along(const LineEdge& edge, const Arm& arm, double along) {
+    const std::vector<DVec2>& points = edge.points;
+    const size_t count = points.size();
+    for (size_t i = 1; i < count; i++) {
+        const DVec2& a = points[arm.end == 0 ? i - 1 : count - i];
+        const DVec2& b = points[arm.end == 0 ? i : count - i - 1];
+        const double step = glm::length(b - a);
+        if (along <= step && step > 0.0) return a + (b - a) * (along / step);
+        along -= step;
+    }
+    return arm.end == 0 ? points.back() : points.front();
+}
+
+// How far from its junction an arm is as it was drawn: within the ink of what it meets, thinning bends it.
+double bent_length(const LineGraph& graph, const Arm& arm) {
+    const LineEdge& edge = graph.edges[arm.edge];
+    return std::min(1.2 * graph.nodes[edge.nodes[arm.end]].depth, edge.length / 3.0);
+}
+
+// The way that an arm leaves its junction.
+DVec2 direction(const LineGraph& graph, const Arm& arm) {
+    const LineEdge& edge = graph.edges[arm.edge];
+    const double from = bent_length(graph, arm);
+    const double to =
+        std::min(from + std::max(8.0, 4.0 * graph.nodes[edge.nodes[arm.end]].depth), edge.length);
+    const DVec2 way = place_along(edge, arm, to) - place_along(edge, arm, from);
+    const double length = glm::length(way);
+    return length > 0.0 ? way / length : DVec2(0.0);
+}
 
 // Says which arms go on as which.
 class Joiner {
@@ -68,6 +102,8 @@ class Joiner {
         return paths;
     }
 
+    const Mates& mates() const { return mates_; }
+
   private:
     Arm& mate(const Arm& arm) { return mates_[arm.edge][arm.end]; }
     const LineEdge& edge(const Arm& arm) const { return graph_.edges[arm.edge]; }
@@ -76,29 +112,6 @@ class Joiner {
     void pair(const Arm& a, const Arm& b) {
         mate(a) = b;
         mate(b) = a;
-    }
-
-    // Away from the junction, beyond the ink that thinning bends.
-    DVec2 direction(const Arm& arm) const {
-        const std::vector<DVec2>& points = edge(arm).points;
-        const double depth = graph_.nodes[node(arm)].depth;
-        const double from = std::min(depth, edge(arm).length / 3.0);
-        const double to = std::min(from + std::max(8.0, 4.0 * depth), edge(arm).length);
-        const auto at = [&](double along) {
-            const size_t count = points.size();
-            for (size_t i = 1; i < count; i++) {
-                const DVec2 &a = points[arm.end == 0 ? i - 1 : count - i],
-                            &b = points[arm.end == 0 ? i : count - i - 1];
-                const double step = glm::length(b - a);
-                if (along <= step || i + 1 == count)
-                    return a + (b - a) * (step > 0.0 ? std::min(1.0, along / step) : 0.0);
-                along -= step;
-            }
-            return points.front();
-        };
-        const DVec2 way = at(to) - at(from);
-        const double length = glm::length(way);
-        return length > 0.0 ? way / length : DVec2(0.0);
     }
 
     void join_straight(double most) {
@@ -115,7 +128,7 @@ class Joiner {
                 const Arm arm{at.edges[i], at.ends[i]};
                 if (mate(arm)) continue;
                 arms.push_back(arm);
-                ways.push_back(direction(arm));
+                ways.push_back(direction(graph_, arm));
             }
             choices.clear();
             for (size_t i = 0; i < arms.size(); i++)
@@ -227,6 +240,7 @@ class Joiner {
                 if (!on_trunk[node(path.arms[k])]) continue;
                 const double before = length_of(path, 0, k), after = length_of(path, k, path.arms.size());
                 if (std::min(before, after) < kFarBothSides * std::max(before, after)) continue;
+                mate(path.arms[k]) = mate(path.arms[k - 1].other()) = Arm();
                 const auto middle = path.arms.begin() + static_cast<std::ptrdiff_t>(k);
                 paths[i].arms.assign(path.arms.begin(), middle);
                 paths.push_back({{middle, path.arms.end()}, false});
@@ -236,28 +250,62 @@ class Joiner {
     }
 
     const LineGraph& graph_;
-    std::vector<std::array<Arm, 2>> mates_;
+    Mates mates_;
     double diagonal_ = 0.0;
 };
 
+// Where a line that ends at a junction meets the one that goes through it: straight on from where it is as
+// drawn. Nothing where none goes through, or it does not lead there.
+std::optional<DVec2> meeting_place(const LineGraph& graph, const Mates& mates, const Arm& arm) {
+    const LineNode& node = graph.nodes[graph.edges[arm.edge].nodes[arm.end]];
+    const DVec2 from = place_along(graph.edges[arm.edge], arm, bent_length(graph, arm));
+    const DVec2 way = -direction(graph, arm);
+    std::optional<DVec2> nearest;
+    double best = 4.0 * node.depth + 4.0;
+    for (size_t i = 0; i < node.edges.size(); i++) {
+        const Arm a{node.edges[i], node.ends[i]}, b = mates[a.edge][a.end];
+        if (!b || a == arm || b == arm) continue;
+        const DVec2 p = place_along(graph.edges[a.edge], a, bent_length(graph, a));
+        const DVec2 across = place_along(graph.edges[b.edge], b, bent_length(graph, b)) - p;
+        // from + t way = p + s across
+        const double area = way.x * across.y - way.y * across.x;
+        if (std::abs(area) < 0.2 * glm::length(across)) continue;
+        const DVec2 to = p - from;
+        const double t = (to.x * across.y - to.y * across.x) / area;
+        if (t <= 0.0 || t >= best) continue;
+        best = t;
+        nearest = from + t * way;
+    }
+    return nearest;
+}
+
 // The pixels of a path, straight across the junctions on its way: there thinning draws it towards what meets
 // it.
-std::vector<DVec2> pixels_of(const LineGraph& graph, const Path& path) {
+std::vector<DVec2> pixels_of(const LineGraph& graph, const Mates& mates, const Path& path) {
     std::vector<DVec2> all;
     for (size_t i = 0; i < path.arms.size(); i++) {
-        const Arm& arm = path.arms[i];
+        const Arm arm = path.arms[i], out = arm.other();
         const LineEdge& edge = graph.edges[arm.edge];
         std::vector<DVec2> points = edge.points;
         if (arm.end == 1) std::reverse(points.begin(), points.end());
-        const auto cut = [&](size_t node) {
-            if (node == LineEdge::kNone) return size_t{0};
-            return std::min(static_cast<size_t>(graph.nodes[node].depth), points.size() / 3);
+        const auto meets = [&](const Arm& at) {
+            const size_t node = edge.nodes[at.end];
+            return node == LineEdge::kNone || graph.nodes[node].edges.size() < 2
+                       ? std::nullopt
+                       : meeting_place(graph, mates, at);
         };
         const bool enters = path.closed || i > 0, leaves = path.closed || i + 1 < path.arms.size();
-        const size_t first = enters ? cut(edge.nodes[arm.end]) : 0;
-        const size_t last = leaves ? cut(edge.nodes[1 - arm.end]) : 0;
-        all.insert(all.end(), points.begin() + static_cast<std::ptrdiff_t>(first),
-                   points.end() - static_cast<std::ptrdiff_t>(last));
+        const std::optional<DVec2> first = enters ? std::nullopt : meets(arm);
+        const std::optional<DVec2> last = leaves ? std::nullopt : meets(out);
+        const auto cut = [&](const Arm& at, bool wanted) {
+            if (!wanted || edge.nodes[at.end] == LineEdge::kNone) return std::ptrdiff_t{0};
+            return static_cast<std::ptrdiff_t>(
+                std::min(bent_length(graph, at), static_cast<double>(points.size() / 3)));
+        };
+        if (first) all.push_back(*first);
+        all.insert(all.end(), points.begin() + cut(arm, enters || first),
+                   points.end() - cut(out, leaves || last));
+        if (last) all.push_back(*last);
     }
     if (path.closed) all.push_back(all.front());
     return all;
@@ -314,11 +362,12 @@ size_t degree_at(const LineGraph& graph, const Arm& arm) {
 }  // namespace
 
 std::vector<TracedLine> trace_lines(const LineMask& thin, const std::vector<float>& depths, double spacing,
-                                    const std::string& who) {
+                                    double shortest, const std::string& who) {
     const LineGraph graph = graph_of_lines(thin, depths, who);
     std::vector<std::pair<double, TracedLine>> found;
-    for (const Path& path : Joiner(graph).run()) {
-        std::vector<DVec2> points = pixels_of(graph, path);
+    Joiner joiner(graph);
+    for (const Path& path : joiner.run()) {
+        std::vector<DVec2> points = pixels_of(graph, joiner.mates(), path);
         if (points.size() < 2) continue;
         const Arm first = path.arms.front(), last = path.arms.back().other();
         const bool met_first = degree_at(graph, first) > 1, met_last = degree_at(graph, last) > 1;
@@ -327,6 +376,7 @@ std::vector<TracedLine> trace_lines(const LineMask& thin, const std::vector<floa
         double length = 0.0;
         for (const Arm& arm : path.arms)
             length += graph.edges[arm.edge].length;
+        if (length < shortest) continue;
         TracedLine line;
         line.closed = path.closed;
         line.points = evenly(smoothed(evenly(points, 1.0), path.closed, kSmoothing), spacing);

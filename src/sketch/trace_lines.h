@@ -18,8 +18,9 @@ struct TracedLine {
 // one with the lowest end (the trunk) that reaches far to both sides is two. A large loop that leaves a place
 // and comes back to it is one closed line. The longest first. An open line begins where it meets another, or
 // else at its lower end. depths: of the mask before it was thinned. spacing: between points, pixels.
-// Throws Error for more lines than a drawing has. who: the subject of its sentence.
+// shortest: a line that is shorter, in pixels, is none. Throws Error for more lines than a drawing has. who:
+// the subject of its sentence.
 std::vector<TracedLine> trace_lines(const LineMask& thin, const std::vector<float>& depths, double spacing,
-                                    const std::string& who);
+                                    double shortest, const std::string& who);
 
 }  // namespace treerec

@@ -52,6 +52,13 @@ bool append_entity(std::string& out, std::string_view name) {
     return true;
 }
 
+bool begins_name(std::string_view text) {
+    if (text.empty()) return true;  // it ends in the middle
+    const char c = text.front();
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
 std::string decoded(std::string_view text) {
     constexpr size_t kLongest = 12;
     std::string out;
@@ -100,8 +107,10 @@ std::optional<XmlTag> XmlScan::next() {
             skip_past("?>", "a processing instruction");
         } else if (rest_.starts_with("<!")) {
             skip_doctype();
-        } else {
+        } else if (begins_name(rest_.substr(rest_.starts_with("</") ? 2 : 1))) {
             return take_tag();
+        } else {
+            rest_.remove_prefix(1);  // of a text that should have written &lt;
         }
     }
 }
@@ -162,7 +171,6 @@ XmlTag XmlScan::take_tag() {
         rest_.remove_prefix(1);
     }
     tag.name = take_name();
-    if (tag.name.empty()) fail("an element has no name");
     while (true) {
         skip_blanks();
         if (rest_.empty()) fail("it ends in the middle of an element");
