@@ -15,6 +15,7 @@ namespace {
 constexpr std::string_view kExif("Exif\0\0", 6);
 
 enum Tag : uint32_t {
+    kOrientation = 0x0112,
     kGpsRecord = 0x8825,
     kLatitudeRef = 1,
     kLatitude = 2,
@@ -23,7 +24,7 @@ enum Tag : uint32_t {
     kError = 31,
 };
 
-enum Type : uint32_t { kLong = 4, kRational = 5 };
+enum Type : uint32_t { kShort = 3, kLong = 4, kRational = 5 };
 
 // One value of a record: its type, how many there are, and where.
 struct Entry {
@@ -127,25 +128,40 @@ std::optional<PhotoPlace> place_in(std::string_view bytes) {
     return place;
 }
 
-}  // namespace
-
-std::optional<PhotoPlace> read_photo_place(std::istream& jpeg) {
-    std::optional<PhotoPlace> place;
+// The EXIF record of a JPEG, empty where there is none.
+std::string exif_record(std::istream& jpeg) {
+    std::string record;
     each_jpeg_segment(jpeg, [&](int marker, size_t size) {
         if (marker != 0xE1) return true;
         std::string segment(size, '\0');
         jpeg.read(segment.data(), static_cast<std::streamsize>(size));
         segment.resize(static_cast<size_t>(jpeg.gcount()));
         if (!segment.starts_with(kExif)) return true;
-        place = place_in(std::string_view(segment).substr(kExif.size()));
+        record = segment.substr(kExif.size());
         return false;
     });
-    return place;
+    return record;
+}
+
+}  // namespace
+
+std::optional<PhotoPlace> read_photo_place(std::istream& jpeg) {
+    return place_in(exif_record(jpeg));
 }
 
 std::optional<PhotoPlace> read_photo_place(const std::string& path) {
     std::ifstream in(path_of(path), std::ios::binary);
     return read_photo_place(in);
+}
+
+int read_photo_orientation(std::istream& jpeg) {
+    const std::string record = exif_record(jpeg);
+    Tiff tiff(record);
+    if (!tiff.begins()) return 1;
+    const std::optional<Entry> entry = tiff.find(tiff.whole(4, 4).value_or(0), kOrientation);
+    if (!entry || entry->type != kShort || entry->count != 1) return 1;
+    const uint32_t told = tiff.whole(entry->at, 2).value_or(1);
+    return told >= 1 && told <= 8 ? static_cast<int>(told) : 1;
 }
 
 }  // namespace treerec

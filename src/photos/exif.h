@@ -1,4 +1,4 @@
-// Where a photo says that it was taken: the EXIF record of a JPEG.
+// Where a photo says that it was taken, and what is up in it: the EXIF record of a JPEG.
 #pragma once
 
 #include <istream>
@@ -22,5 +22,9 @@ std::optional<PhotoPlace> read_photo_place(std::istream& jpeg);
 
 // The same of a file; nothing for one that cannot be read.
 std::optional<PhotoPlace> read_photo_place(const std::string& path);
+
+// How a JPEG is to be turned and mirrored so that it is upright: 1 to 8 (Exif 2.32, 4.6.4, tag 274), 1 where
+// it does not say or is damaged.
+int read_photo_orientation(std::istream& jpeg);
 
 }  // namespace treerec

@@ -30,8 +30,13 @@
 
 namespace treerec {
 
+namespace {
+
+constexpr size_t kLargest = size_t{1} << 30;  // bytes
+
+}  // namespace
+
 std::optional<Image> decode_picture(std::string_view bytes, int channels) {
-    constexpr size_t kLargest = size_t{1} << 30;
     if (bytes.size() > kLargest) return {};
     int width = 0, height = 0, stored = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> data(
@@ -42,6 +47,16 @@ std::optional<Image> decode_picture(std::string_view bytes, int channels) {
     Image picture(width, height, channels);
     std::copy(data.get(), data.get() + picture.pixels.size(), picture.pixels.begin());
     return picture;
+}
+
+std::optional<std::array<int, 2>> picture_size(std::string_view bytes) {
+    if (bytes.size() > kLargest) return {};
+    int stored = 0;
+    std::array<int, 2> size{};
+    if (stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()),
+                              &size[0], &size[1], &stored) == 0)
+        return {};
+    return size;
 }
 
 Image read_photo(const std::string& path) {

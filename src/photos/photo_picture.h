@@ -1,6 +1,7 @@
 // The pixels of photos, and of pictures that belong to them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,9 +11,13 @@
 
 namespace treerec {
 
-// A JPEG, PNG, BMP or TGA from its bytes, as grey (1 channel) or as red, green and blue (3), as it is stored:
-// a turn that its EXIF data ask for is left alone, as COLMAP does. Nothing for what is none, or is damaged.
+// A JPEG, PNG, BMP or TGA from its bytes, as grey (1 channel) or as red, green and blue (3), with opacity
+// (4), as it is stored: a turn that its EXIF data ask for is left alone, as COLMAP does. Nothing for what is
+// none, or is damaged.
 std::optional<Image> decode_picture(std::string_view bytes, int channels);
+
+// The width and height, in pixels, of what decode_picture() would decode; nothing for what is none.
+std::optional<std::array<int, 2>> picture_size(std::string_view bytes);
 
 // A photo with 3 channels. Throws Error with a sentence for a file that is none.
 Image read_photo(const std::string& path);
