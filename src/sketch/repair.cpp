@@ -38,8 +38,28 @@ FlatLine from_arc(const FlatLine& line, const std::vector<double>& arcs, double 
     return rest;
 }
 
-// Whether there was a hook or a loop.
-bool mend_cluster(FlatLine& line, const RepairOptions& options) {
+// The step behind the turn of a hook from one step to another; 0: it is a loop.
+int turn_of_hook(const FlatLine& even, int from, int to) {
+    const DVec2 a = even[static_cast<size_t>(from)], b = even[static_cast<size_t>(to)];
+    const double length = kStep * (to - from);
+    const FlatLine piece(even.begin() + from, even.begin() + to + 1);
+    if (glm::length(b - a) < 0.25 * length && std::abs(polygon_area(piece)) > 0.035 * length * length)
+        return 0;
+    int turn = from;
+    double farthest = 0.0;
+    for (int i = from; i <= to; i++) {
+        const DVec2 p = even[static_cast<size_t>(i)];
+        const double far = glm::length(p - a) + glm::length(p - b);
+        if (far > farthest) {
+            farthest = far;
+            turn = i;
+        }
+    }
+    return std::min(turn + 1, to);
+}
+
+// Whether there was a hook or a loop. taken: gets more by what the branch lost to it.
+bool mend_cluster(FlatLine& line, double& taken, const RepairOptions& options) {
     // Windows of so many steps.
     constexpr std::array<int, 7> kWindows = {4, 6, 8, 11, 15, 20, 26};
     const std::vector<double> arcs = line_arcs(line);
@@ -87,11 +107,14 @@ bool mend_cluster(FlatLine& line, const RepairOptions& options) {
         line = from_arc(line, arcs, to * kStep, head);
         return true;
     }
-    FlatLine rest = from_arc(line, arcs, to * kStep, {});
+    // What comes back from a hook's turn is the branch already; what comes back around a loop is not.
+    const int turn = turn_of_hook(even, from, to);
+    FlatLine rest = from_arc(line, arcs, (turn > 0 ? turn : to) * kStep, {});
     const std::vector<double> rest_arcs = line_arcs(rest);
     const DVec2 way = tail_direction(rest, rest_arcs, options.tail);
     const double beyond = glm::dot(centroid - rest[0], way);
     if (beyond > kContact) rest.insert(rest.begin(), rest[0] + beyond * way);
+    if (turn == 0) taken += 0.5 * (to - from) * kStep - std::max(0.0, beyond);
     line = rest;
     return true;
 }
@@ -132,13 +155,14 @@ bool mend_crossing(MendedBranch& branch, const DrawnLine& trunk, const RepairOpt
     return true;
 }
 
-bool mend_gap(MendedBranch& branch, const DrawnLine& trunk, const RepairOptions& options) {
+bool mend_gap(MendedBranch& branch, const DrawnLine& trunk, double taken, const RepairOptions& options) {
     const LinePlace nearest = nearest_on_line(trunk.points, branch.line[0]);
     if (nearest.distance <= kContact) return false;
     const std::vector<double> arcs = line_arcs(branch.line);
     const double radius = radius_at(trunk, nearest);
-    // A branch that ends at the drawn side of a trunk has no gap, and the way to its middle is no extension.
-    const double far = options.gap_share * arcs.back() + 1.5 * radius;
+    // A branch that ends at the drawn side of a trunk has no gap, and the way to its middle is no extension;
+    // nor is the way back over what a hook took.
+    const double far = options.gap_share * arcs.back() + 1.5 * radius + std::max(0.0, taken);
     const DVec2 way = tail_direction(branch.line, arcs, options.tail);
     const std::optional<LinePlace> hit = first_hit(branch.line[0], branch.line[0] + far * way, trunk.points);
     const DVec2 joined = hit ? hit->point : nearest.point;
@@ -170,11 +194,13 @@ bool is_reversed(const FlatLine& line, const FlatLine& trunk) {
 MendedBranch mend_branch(FlatLine line, const DrawnLine& trunk, const RepairOptions& options) {
     MendedBranch branch;
     branch.line = std::move(line);
-    for (int pass = 0; pass < 4 && branch.line.size() > 2 && mend_cluster(branch.line, options); pass++)
+    double taken = 0.0;
+    for (int pass = 0; pass < 4 && branch.line.size() > 2 && mend_cluster(branch.line, taken, options);
+         pass++)
         if (pass == 0) branch.repairs.push_back(StrokeRepair::kHook);
     for (int pass = 0; pass < 4; pass++) {
         bool changed = mend_crossing(branch, trunk, options);
-        changed = mend_gap(branch, trunk, options) || changed;
+        changed = mend_gap(branch, trunk, taken, options) || changed;
         if (!changed) break;
     }
     branch.attach = nearest_on_line(trunk.points, branch.line[0]);

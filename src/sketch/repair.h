@@ -11,7 +11,7 @@ namespace treerec {
 // Thresholds: the paper prints none. These are tuned on sketches of known intent (tests/sketch).
 struct RepairOptions {
     // Of a piece near the tail, as a multiple of the whole stroke's: n L / (l N). More is a hook or a loop.
-    double relative_density = 1.7;
+    double relative_density = 1.6;
     // How far from the tail one may begin: this share of the branch's length, and no more than so many
     // pixels.
     double cluster_share = 0.3;
@@ -21,7 +21,7 @@ struct RepairOptions {
     // Where the trunk cuts off at least this share of a stroke, it is a branch on the other side.
     double other_side = 0.35;
     // How much of the branch its direction at the tail is taken from, pixels.
-    double tail = 30.0;
+    double tail = 20.0;
 };
 
 struct MendedBranch {

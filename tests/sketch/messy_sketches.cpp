@@ -23,7 +23,9 @@ DVec2 turned(const DVec2& v, double radians) {
 // The strokes as they are meant: pixels of a canvas 1,000 high, y up.
 struct Drawing {
     FlatLine trunk;
+    double radius = 0.0;             // at its foot, where it is drawn with two lines
     std::vector<FlatLine> branches;  // from the trunk
+    std::vector<FlatLine> sides;     // from branches
     FlatLine outline;                // closed
 };
 
@@ -116,6 +118,22 @@ Drawing draw_tree(uint64_t seed, Random& random) {
                     glm::length(other.back() - line.back()) > 30.0;
         if (apart) drawing.branches.push_back(line);
     }
+    if (random.below(6) == 0) drawing.radius = random.uniform(8.0, 20.0);
+    if (random.below(5) == 0 && !drawing.branches.empty()) {
+        const FlatLine& from = drawing.branches[random.below(static_cast<uint32_t>(drawing.branches.size()))];
+        const std::vector<double> arcs = line_arcs(from);
+        const double at = arcs.back() * random.uniform(0.4, 0.7);
+        const DVec2 base = point_at(from, arcs, at);
+        const DVec2 along = unit_or(point_at(from, arcs, at + 15.0) - base, DVec2(0.0, 1.0));
+        const double hand = random.below(2) == 0 ? 1.0 : -1.0;
+        FlatLine side = {base};
+        for (int k = 0; k < 10; k++)
+            side.push_back(side.back() + 0.05 * arcs.back() * turned(along, hand * (0.9 - 0.04 * k)));
+        if (nearest_on_line(drawing.trunk, base).distance > 70.0 &&
+            crossings(cut_from(side, 1.0), from).empty() &&
+            nearest_on_line(drawing.trunk, side.back()).distance > 70.0)
+            drawing.sides.push_back(side);
+    }
     double base = drawing.trunk.back().y;
     for (const FlatLine& line : drawing.branches)
         for (const DVec2& p : line)
@@ -123,11 +141,23 @@ Drawing draw_tree(uint64_t seed, Random& random) {
     FlatLine crown = drawing.trunk;
     for (const FlatLine& line : drawing.branches)
         crown.insert(crown.end(), line.begin(), line.end());
+    for (const FlatLine& line : drawing.sides)
+        crown.insert(crown.end(), line.begin(), line.end());
     for (const DVec2& p : all)
         crown.push_back(pixel(p));
     std::erase_if(crown, [&](const DVec2& p) { return p.y < base; });
     drawing.outline = outline_of(crown, drawing.trunk[0].y + 15.0, random);
+    // It pokes out of the crown.
+    if (random.below(8) == 0)
+        drawing.trunk.push_back(
+            DVec2(drawing.trunk.back().x,
+                  std::max(drawing.trunk.back().y, line_box(drawing.outline).high.y) + 25.0));
     return drawing;
+}
+
+double trunk_radius(const Drawing& drawing, const DVec2& p) {
+    const double foot = drawing.trunk.front().y, top = drawing.trunk.back().y;
+    return drawing.radius * (1.0 - 0.75 * (p.y - foot) / std::max(1.0, top - foot));
 }
 
 FlatLine spoilt(FlatLine line, Mess mess, Random& random) {
@@ -209,14 +239,23 @@ MessySketch messy_sketch(uint64_t seed, const MessOptions& options) {
         stroke.id = static_cast<uint32_t>(messy.sketch.strokes.size()) + 1;
         messy.sketch.strokes.push_back(std::move(stroke));
     };
-    add(drawing.trunk, {StrokeRole::kTrunk, std::nullopt, Mess::kNone, false});
+    for (const double hand : {-1.0, 1.0}) {
+        if (drawing.radius == 0.0 && hand > 0.0) continue;
+        FlatLine side = drawing.trunk;
+        for (DVec2& p : side)
+            p.x += hand * (drawing.radius == 0.0 ? 0.0 : trunk_radius(drawing, p));
+        add(side, {StrokeRole::kTrunk, std::nullopt, Mess::kNone, false});
+    }
+    for (const FlatLine& side : drawing.sides)
+        add(side, {StrokeRole::kBranch, down(side[0]), Mess::kNone, false});
     for (const FlatLine& branch : drawing.branches) {
         constexpr std::array<int, 20> kShares = {0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 4, 4, 5, 6, 6};
         const Mess mess = static_cast<Mess>(kShares[random.below(kShares.size())]);
         StrokeTruth truth{StrokeRole::kBranch, down(branch[0]), options.broken ? mess : Mess::kNone, false};
-        add(spoilt(branch, truth.mess, random), truth);
+        // It is drawn from the trunk's side.
+        add(spoilt(cut_from(branch, trunk_radius(drawing, branch[0])), truth.mess, random), truth);
     }
-    if (options.outline) {
+    if (random.below(8) != 0) {
         FlatLine outline = drawing.outline;
         // It stays open, or runs past its beginning.
         const int off = static_cast<int>(random.below(9)) - 4;

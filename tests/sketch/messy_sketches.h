@@ -34,7 +34,6 @@ struct MessOptions {
     bool broken = true;    // tails
     bool shaken = true;    // jitter, whole pixels
     bool shuffled = true;  // order and direction
-    bool outline = true;
 };
 
 // Canvases of several sizes. The same seed gives the same tree whatever the options.
