@@ -19,12 +19,7 @@ FlatLine thin_line(const FlatLine& line, double least) {
     kept.push_back(line[0]);
     for (const DVec2& p : line)
         if (glm::length(p - kept.back()) >= least) kept.push_back(p);
-    const DVec2 end = line.back();
-    if (kept.back() != end) {
-        // The end stays in place of what was kept just before it.
-        if (kept.size() > 1 && glm::length(end - kept.back()) < least) kept.pop_back();
-        kept.push_back(end);
-    }
+    if (kept.back() != line.back()) kept.push_back(line.back());
     return kept;
 }
 

@@ -5,6 +5,19 @@
 
 namespace treerec {
 
+namespace {
+
+FlatBox box_of(const FlatLine& line, size_t begin, size_t end) {
+    FlatBox box{line[begin], line[begin]};
+    for (size_t i = begin; i < end; i++) {
+        box.low = glm::min(box.low, line[i]);
+        box.high = glm::max(box.high, line[i]);
+    }
+    return box;
+}
+
+}  // namespace
+
 double line_length(const FlatLine& line) {
     double length = 0.0;
     for (size_t i = 1; i < line.size(); i++)
@@ -20,13 +33,7 @@ std::vector<double> line_arcs(const FlatLine& line) {
 }
 
 FlatBox line_box(const FlatLine& line) {
-    if (line.empty()) return {};
-    FlatBox box{line[0], line[0]};
-    for (const DVec2& p : line) {
-        box.low = glm::min(box.low, p);
-        box.high = glm::max(box.high, p);
-    }
-    return box;
+    return line.empty() ? FlatBox() : box_of(line, 0, line.size());
 }
 
 DVec2 line_centroid(const FlatLine& points, size_t begin, size_t end) {
@@ -83,15 +90,23 @@ std::optional<DVec2> segments_cross(const DVec2& a, const DVec2& b, const DVec2&
 }
 
 std::vector<LinePlace> crossings(const FlatLine& line, const FlatLine& other) {
+    // Boxes of so many sides at once: lines seldom come near each other.
+    constexpr size_t kBlock = 16;
+    std::vector<FlatBox> blocks;
+    for (size_t k = 0; k + 1 < other.size(); k += kBlock)
+        blocks.push_back(box_of(other, k, std::min(k + kBlock + 1, other.size())));
     std::vector<LinePlace> found;
-    const FlatBox box = line_box(other);
     for (size_t i = 0; i + 1 < line.size(); i++) {
         const DVec2 low = glm::min(line[i], line[i + 1]), high = glm::max(line[i], line[i + 1]);
-        if (low.x > box.high.x || high.x < box.low.x || low.y > box.high.y || high.y < box.low.y) continue;
         const size_t before = found.size();
-        for (size_t k = 0; k + 1 < other.size(); k++)
-            if (const auto at = segments_cross(line[i], line[i + 1], other[k], other[k + 1]))
-                found.push_back({i, at->x, line[i] + at->x * (line[i + 1] - line[i]), 0.0});
+        for (size_t b = 0; b < blocks.size(); b++) {
+            if (low.x > blocks[b].high.x || high.x < blocks[b].low.x || low.y > blocks[b].high.y ||
+                high.y < blocks[b].low.y)
+                continue;
+            for (size_t k = b * kBlock; k < (b + 1) * kBlock && k + 1 < other.size(); k++)
+                if (const auto at = segments_cross(line[i], line[i + 1], other[k], other[k + 1]))
+                    found.push_back({i, at->x, line[i] + at->x * (line[i + 1] - line[i]), 0.0});
+        }
         std::sort(found.begin() + static_cast<ptrdiff_t>(before), found.end(),
                   [](const LinePlace& a, const LinePlace& b) { return a.along < b.along; });
     }

@@ -296,14 +296,16 @@ class Recogniser {
     bool is_more_outline(size_t i) {
         if (found_.outlines.empty() || !shapes_[i].is_ring(0.5)) return false;
         const size_t first = found_.outlines[0];
-        if (shapes_[i].area < 0.02 * shapes_[first].area) return false;
-        for (const size_t outline : found_.outlines)
-            if (!crossings(lines_[i], lines_[outline]).empty() ||
-                crossings(FlatLine{lines_[i].back(), lines_[i].front()}, lines_[outline]).size() > 0) {
-                give(i, StrokeRole::kOutline);
-                return true;
-            }
-        if (shapes_[i].chord > 0.25 * shapes_[i].length) return false;
+        const bool small = shapes_[i].area < 0.02 * shapes_[first].area;
+        for (size_t k = 0; k < found_.outlines.size() && k < 50 && !small; k++) {
+            const FlatLine& outline = lines_[found_.outlines[k]];
+            if (crossings(lines_[i], outline).empty() &&
+                crossings({lines_[i].back(), lines_[i].front()}, outline).empty())
+                continue;
+            give(i, StrokeRole::kOutline);
+            return true;
+        }
+        if (shapes_[i].chord > 0.2 * shapes_[i].length) return false;
         leave_out(i, is_inside(lines_[first], lines_[i][0])
                          ? "This lies within the crown's outline and changes nothing of it."
                          : "A tree has one crown, and this is a second outline; let it cross the first one.");

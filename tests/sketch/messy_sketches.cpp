@@ -7,6 +7,7 @@
 
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
+#include "sketch/clean.h"
 #include "sketch/flat_line.h"
 #include "synth/grow.h"
 #include "tree/branches.h"
@@ -35,6 +36,24 @@ FlatLine cut_from(const FlatLine& line, double arc) {
     for (size_t i = 0; i < line.size(); i++)
         if (arcs[i] > arc + 1e-9) rest.push_back(line[i]);
     return rest;
+}
+
+// As a hand draws it, without turns of a few pixels (Chaikin 1974, "An algorithm for high speed curve
+// generation"); the ends stay.
+FlatLine rounded(FlatLine line) {
+    const DVec2 end = line.back();
+    line = thin_line(line, 15.0);
+    if (line.size() > 2 && glm::length(end - line[line.size() - 2]) < 15.0) line.erase(line.end() - 2);
+    for (int round = 0; round < 3; round++) {
+        FlatLine finer = {line.front()};
+        for (size_t i = 0; i + 1 < line.size(); i++) {
+            finer.push_back(0.75 * line[i] + 0.25 * line[i + 1]);
+            finer.push_back(0.25 * line[i] + 0.75 * line[i + 1]);
+        }
+        finer.push_back(line.back());
+        line = finer;
+    }
+    return line;
 }
 
 bool is_drawable(const FlatLine& branch, const FlatLine& trunk) {
@@ -99,12 +118,16 @@ Drawing draw_tree(uint64_t seed, Random& random) {
     Drawing drawing;
     for (const NodeId id : list.nodes_of(list.branches[0]))
         drawing.trunk.push_back(pixel(flat(id)));
+    drawing.trunk = rounded(drawing.trunk);
     std::vector<FlatLine> choice;
     for (const Branch& branch : list.branches) {
         if (branch.order != 1) continue;
         FlatLine line = {pixel(flat(branch.attach))};
         for (const NodeId id : list.nodes_of(branch))
             line.push_back(pixel(flat(id)));
+        // The trunk was rounded, too.
+        line[0] = nearest_on_line(drawing.trunk, line[0]).point;
+        line = rounded(line);
         if (is_drawable(line, drawing.trunk)) choice.push_back(std::move(line));
     }
     std::sort(choice.begin(), choice.end(),
