@@ -83,6 +83,8 @@ struct DrawnLine {
     std::vector<DVec2> points;  // at least two, none equal to the one before
     std::vector<double> radii;  // of the wood, at each point; empty: not drawn
     size_t stroke = 0;          // place in Sketch::strokes; of a trunk of two lines the first
+    // Place in DrawnTree::branches of the one that it grows from (side branches alone have it).
+    std::optional<size_t> parent;
 };
 
 // A sketch that has been understood and mended, still flat: pixels of a canvas that is kCanvasHeight high, x
@@ -93,7 +95,11 @@ struct DrawnTree {
     std::vector<DVec2> outline;
     std::optional<size_t> outline_stroke;
     DrawnLine trunk;                  // from the ground up
-    std::vector<DrawnLine> branches;  // points[0] lies on the trunk's line; in the order of the strokes
+    // points[0] is a point of the trunk's line; in the order of the strokes. A stroke right through the trunk
+    // is two of them.
+    std::vector<DrawnLine> branches;
+    // Of the second order: points[0] is a point of the line of branches[*parent].
+    std::vector<DrawnLine> side_branches;
 };
 
 struct UnderstoodSketch {

@@ -1,0 +1,328 @@
+#include "sketch/recognise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sketch/clean.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLeastLength = 6.0;  // pixels: shorter is a dot
+// A line goes around something where its ends are nearer together than this share of its length, ...
+constexpr double kRingChord = 0.7, kArchChord = 0.92, kClosedChord = 0.35;
+// ... and its convex hull is no sliver: 4 pi area / perimeter^2, which is 1 of a circle.
+constexpr double kRingRoundness = 0.3;
+constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
+constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
+
+struct Shape {
+    double length = 0.0;
+    double chord = 0.0;  // between its ends
+    double area = 0.0;   // of its convex hull
+    double roundness = 0.0;
+    FlatBox box;
+    bool is_dot = true;
+
+    bool is_ring(double most_chord) const {
+        return !is_dot && chord < most_chord * length && roundness > kRingRoundness;
+    }
+};
+
+Shape shape_of(const FlatLine& line) {
+    Shape shape;
+    shape.length = line_length(line);
+    shape.box = line_box(line);
+    shape.is_dot = line.size() < 2 || shape.length < kLeastLength;
+    if (shape.is_dot) return shape;
+    shape.chord = glm::length(line.back() - line.front());
+    FlatLine hull = flat_hull(line);
+    if (hull.size() < 3) return shape;
+    shape.area = polygon_area(hull);
+    hull.push_back(hull[0]);
+    const double around = line_length(hull);
+    shape.roundness = 4.0 * kPi * shape.area / (around * around);
+    return shape;
+}
+
+class Recogniser {
+  public:
+    Recogniser(std::span<const FlatLine> lines, std::span<const StrokeRole> wanted)
+        : lines_(lines), wanted_(wanted) {
+        FlatLine all;
+        for (const FlatLine& line : lines) {
+            shapes_.push_back(shape_of(line));
+            if (!shapes_.back().is_dot) all.insert(all.end(), line.begin(), line.end());
+        }
+        whole_ = shape_of(all);
+        found_.roles.assign(lines.size(), StrokeRole::kAuto);
+        found_.faults.resize(lines.size());
+    }
+
+    Recognised run() {
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (shapes_[i].is_dot) leave_out(i, "This is only a dot; draw a line.");
+        find_outline();
+        find_trunk();
+        for (size_t i = 0; i < lines_.size(); i++) {
+            if (!is_open(i)) continue;
+            if (wanted_[i] == StrokeRole::kBranch || !is_more_outline(i)) give(i, StrokeRole::kBranch);
+        }
+        std::stable_sort(found_.outlines.begin(), found_.outlines.end(),
+                         [&](size_t a, size_t b) { return shapes_[a].area > shapes_[b].area; });
+        return std::move(found_);
+    }
+
+  private:
+    // Not decided upon yet.
+    bool is_open(size_t i) const { return found_.roles[i] == StrokeRole::kAuto && found_.faults[i].empty(); }
+    bool is_free(size_t i) const { return is_open(i) && wanted_[i] == StrokeRole::kAuto; }
+
+    void give(size_t i, StrokeRole role) {
+        found_.roles[i] = role;
+        if (role == StrokeRole::kOutline) found_.outlines.push_back(i);
+        if (role == StrokeRole::kTrunk) found_.trunks.push_back(i);
+        if (role == StrokeRole::kBranch) found_.branches.push_back(i);
+    }
+
+    void leave_out(size_t i, const char* why) { found_.faults[i] = why; }
+
+    // The share of the other lines' points above the ring's lowest point that lie within its hull; 1 where
+    // there are none.
+    double share_within(size_t ring) const {
+        const FlatLine hull = flat_hull(lines_[ring]);
+        size_t within = 0, above = 0;
+        for (size_t i = 0; i < lines_.size(); i++) {
+            if (i == ring || shapes_[i].is_dot) continue;
+            // A few of each line tell as much as all.
+            const size_t step = std::max<size_t>(1, lines_[i].size() / 16);
+            for (size_t k = 0; k < lines_[i].size(); k += step) {
+                if (lines_[i][k].y < shapes_[ring].box.low.y) continue;
+                above++;
+                if (is_inside(hull, lines_[i][k])) within++;
+            }
+        }
+        return above == 0 ? 1.0 : static_cast<double>(within) / static_cast<double>(above);
+    }
+
+    void find_outline() {
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (wanted_[i] == StrokeRole::kOutline && is_open(i)) give(i, StrokeRole::kOutline);
+        if (!found_.outlines.empty()) return;
+        if (find_arcs()) return;
+        size_t highest = lines_.size(), best = lines_.size();
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (!shapes_[i].is_dot &&
+                (highest == lines_.size() || shapes_[i].box.high.y > shapes_[highest].box.high.y))
+                highest = i;
+        size_t tried = 0;
+        for (size_t i = 0; i < lines_.size(); i++) {
+            if (!is_free(i) || !shapes_[i].is_ring(i == highest ? kArchChord : kRingChord)) continue;
+            if (best < lines_.size() && shapes_[i].area <= shapes_[best].area) continue;
+            const bool closed = shapes_[i].chord < kClosedChord * shapes_[i].length;
+            // Hostile drawings have a thousand rings.
+            if ((closed && shapes_[i].area > kLeastCrown * whole_.area) || stands_alone(i) ||
+                (tried++ < 50 && share_within(i) >= 0.5))
+                best = i;
+        }
+        if (best < lines_.size() && !goes_around_trunk(best)) give(best, StrokeRole::kOutline);
+    }
+
+    bool stands_alone(size_t i) const {
+        for (size_t k = 0; k < lines_.size(); k++)
+            if (k != i && !shapes_[k].is_dot) return false;
+        return true;
+    }
+
+    // Whether this closed line is rather a trunk's outline: slender, and upright.
+    bool goes_around_trunk(size_t i) const {
+        const DVec2 size = shapes_[i].box.size();
+        return shapes_[i].length > 1.6 * size.y && shapes_[i].chord < 0.5 * shapes_[i].length &&
+               shapes_[i].area < 0.35 * size.y * size.y && shapes_[i].area > 2.0 * size.y &&
+               shapes_[i].box.low.y < whole_.box.low.y + kGroundZone * whole_.box.size().y &&
+               (stands_alone(i) ? false
+                                : shapes_[i].box.high.y < whole_.box.high.y - 0.2 * whole_.box.size().y);
+    }
+
+    // An outline of two arcs, such as the left and the right half: the ends of one lie at those of the other.
+    bool find_arcs() {
+        std::vector<size_t> arcs;
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (is_free(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
+                shapes_[i].is_ring(kArchChord) && shapes_[i].area > 0.5 * kLeastCrown * whole_.area)
+                arcs.push_back(i);
+        if (arcs.size() > 40) return false;
+        double largest = 0.0;
+        std::array<size_t, 2> best{};
+        for (size_t m = 0; m < arcs.size(); m++)
+            for (size_t n = m + 1; n < arcs.size(); n++) {
+                const FlatLine &a = lines_[arcs[m]], &b = lines_[arcs[n]];
+                const double near = 0.12 * (shapes_[arcs[m]].length + shapes_[arcs[n]].length);
+                const double one =
+                    std::max(glm::length(a.back() - b.front()), glm::length(b.back() - a.front()));
+                const double other =
+                    std::max(glm::length(a.back() - b.back()), glm::length(a.front() - b.front()));
+                if (std::min(one, other) > near) continue;
+                FlatLine both = a;
+                both.insert(both.end(), b.begin(), b.end());
+                const Shape joint = shape_of(both);
+                if (joint.area >
+                    std::max(largest, 1.25 * std::max(shapes_[arcs[m]].area, shapes_[arcs[n]].area))) {
+                    largest = joint.area;
+                    best = {arcs[m], arcs[n]};
+                }
+            }
+        if (largest < kLeastCrown * whole_.area || largest == 0.0) return false;
+        give(best[0], StrokeRole::kOutline);
+        give(best[1], StrokeRole::kOutline);
+        return true;
+    }
+
+    // How many ends of other lines lie near this one, at most 4.
+    int touches(size_t i) const {
+        const double near = std::max(8.0, 0.03 * whole_.box.size().y);
+        int count = 0;
+        for (size_t k = 0; k < lines_.size() && count < 4; k++) {
+            if (k == i || shapes_[k].is_dot || found_.roles[k] == StrokeRole::kOutline) continue;
+            if (std::min(nearest_on_line(lines_[i], lines_[k].front()).distance,
+                         nearest_on_line(lines_[i], lines_[k].back()).distance) < near)
+                count++;
+        }
+        return count;
+    }
+
+    void find_trunk() {
+        std::vector<size_t> told;
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (wanted_[i] == StrokeRole::kTrunk && is_open(i)) told.push_back(i);
+        std::stable_sort(told.begin(), told.end(),
+                         [&](size_t a, size_t b) { return shapes_[a].length > shapes_[b].length; });
+        for (size_t k = 0; k < told.size(); k++) {
+            if (k < 2)
+                give(told[k], StrokeRole::kTrunk);
+            else
+                leave_out(told[k], "A trunk has one line, or two for its sides; this is a further one.");
+        }
+        if (told.size() == 2 && !are_sides(told[0], told[1], true)) {
+            found_.trunks.pop_back();
+            found_.roles[told[1]] = StrokeRole::kAuto;
+            leave_out(told[1], "A tree has one trunk; this line does not stand beside the other one.");
+        }
+        if (told.size() > 1) return;
+        size_t trunk = told.empty() ? best_trunk() : told[0];
+        if (trunk == lines_.size()) return;
+        if (told.empty()) give(trunk, StrokeRole::kTrunk);
+        found_.goes_around = is_around(trunk);
+        if (found_.goes_around) return;
+        size_t other = lines_.size();
+        for (size_t i = 0; i < lines_.size(); i++)
+            if (is_free(i) && are_sides(trunk, i, false) &&
+                (other == lines_.size() || shapes_[i].length > shapes_[other].length))
+                other = i;
+        if (other < lines_.size()) give(other, StrokeRole::kTrunk);
+    }
+
+    bool is_around(size_t i) const {
+        const double height = shapes_[i].box.size().y;
+        return shapes_[i].length > 1.6 * height && shapes_[i].chord < 0.5 * shapes_[i].length &&
+               shapes_[i].area < 0.6 * height * height && shapes_[i].area > 3.0 * height;
+    }
+
+    // lines_.size(): none stands.
+    size_t best_trunk() const {
+        double lowest = 0.0;
+        bool any = false;
+        for (size_t i = 0; i < lines_.size(); i++) {
+            if (!is_free(i)) continue;
+            lowest = any ? std::min(lowest, shapes_[i].box.low.y) : shapes_[i].box.low.y;
+            any = true;
+        }
+        size_t best = lines_.size();
+        double most = 0.0;
+        int tried = 0;
+        for (size_t i = 0; any && i < lines_.size(); i++) {
+            if (!is_free(i) || shapes_[i].box.low.y > lowest + kGroundZone * whole_.box.size().y) continue;
+            if (tried++ > 50) break;
+            const int touched = touches(i);
+            const double upright = shapes_[i].box.size().y;
+            if (upright < 0.5 * shapes_[i].chord && touched == 0) continue;
+            if (upright < 0.25 * shapes_[i].chord) continue;
+            const double score = upright * (1.0 + 0.25 * touched);
+            if (score > most) {
+                most = score;
+                best = i;
+            }
+        }
+        return best;
+    }
+
+    // Whether both lines stand side by side from the ground up. told: the user says that both are the
+    // trunk's.
+    bool are_sides(size_t a, size_t b, bool told) const {
+        const FlatBox &one = shapes_[a].box, &other = shapes_[b].box;
+        const double low = std::max(one.low.y, other.low.y), high = std::min(one.high.y, other.high.y);
+        const double tall = std::max(one.size().y, other.size().y), common = high - low;
+        if (common < (told ? 0.3 : 0.4) * tall || common <= 0.0) return false;
+        if (!told && low - std::min(one.low.y, other.low.y) > kFeetZone * whole_.box.size().y) return false;
+        if (one.size().x > 0.8 * one.size().y || other.size().x > 0.8 * other.size().y) return false;
+        // Between them at eight heights; they neither cross nor part.
+        double foot = 0.0;
+        for (int k = 0; k < 8; k++) {
+            const double y = low + (0.05 + 0.9 * k / 7.0) * common;
+            const double between = x_at(lines_[b], y) - x_at(lines_[a], y);
+            if (k == 0) foot = between;
+            if (std::abs(between) < (told ? 1.0 : 3.0) || between * foot < 0.0) return false;
+            if (std::abs(between) > (told ? 2.5 : 1.5) * std::abs(foot) + 4.0) return false;
+        }
+        return std::abs(foot) < (told ? 1.0 : 0.5) * common;
+    }
+
+    // The mean of where a line crosses this height.
+    static double x_at(const FlatLine& line, double y) {
+        double sum = 0.0;
+        int count = 0;
+        for (size_t i = 0; i + 1 < line.size(); i++) {
+            const DVec2 a = line[i], b = line[i + 1];
+            if ((a.y <= y) == (b.y <= y)) continue;
+            sum += a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x);
+            count++;
+        }
+        return count == 0 ? line[0].x : sum / count;
+    }
+
+    // A ring beside the outline: a part of it, or left out.
+    bool is_more_outline(size_t i) {
+        if (found_.outlines.empty() || !shapes_[i].is_ring(0.5)) return false;
+        const size_t first = found_.outlines[0];
+        const bool small = shapes_[i].area < 0.02 * shapes_[first].area;
+        for (size_t k = 0; k < found_.outlines.size() && k < 50 && !small; k++) {
+            const FlatLine& outline = lines_[found_.outlines[k]];
+            if (crossings(lines_[i], outline).empty() &&
+                crossings({lines_[i].back(), lines_[i].front()}, outline).empty())
+                continue;
+            give(i, StrokeRole::kOutline);
+            return true;
+        }
+        if (shapes_[i].chord > 0.2 * shapes_[i].length) return false;
+        leave_out(i, is_inside(lines_[first], lines_[i][0])
+                         ? "This lies within the crown's outline and changes nothing of it."
+                         : "A tree has one crown, and this is a second outline; let it cross the first one.");
+        return true;
+    }
+
+    std::span<const FlatLine> lines_;
+    std::span<const StrokeRole> wanted_;
+    std::vector<Shape> shapes_;
+    Shape whole_;
+    Recognised found_;
+};
+
+}  // namespace
+
+Recognised recognise(std::span<const FlatLine> lines, std::span<const StrokeRole> wanted) {
+    return Recogniser(lines, wanted).run();
+}
+
+}  // namespace treerec
