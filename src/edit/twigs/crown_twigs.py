@@ -28,12 +28,12 @@ def bulging(base, middle, tip):
 def maple(size):
     """Pairs, each square to the last; the two beside a tip go on as long as it does."""
     steps = ((0.185, 0.21, 0.2), (0.28, 0.3, 0.3), (0.36, 0.38, 0.4))[size]
-    inner = {"step": steps[1], "wander": 3.5, "lift": 16, "buds": 2, "divergence": 90, "spread": 5, "angle": 46,
+    inner = {"step": steps[1], "straight": True, "wander": 3.5, "lift": 16, "buds": 2, "divergence": 90, "spread": 5, "angle": 46,
              "reach": tapering(1.0, 0.8), "ratio": 0.55, "bare": 0.45, "least": 0.85, "shortest": 0.12}
     trunk = dict(inner, step=steps[0], wander=2.5, lift=5, angle=54, tip_angle=42, reach=bulging(0.9, 1.0, 0.42),
                  ratio=(0.52, 0.46, 0.42)[size], bare=0.1)
-    return [trunk, inner, {"step": steps[2], "wander": 3.0, "lift": 30}] if size else [
-        trunk, {"step": steps[1], "wander": 3.5, "lift": 20}]
+    return [trunk, inner, {"step": steps[2], "straight": True, "wander": 3.0, "lift": 30}] if size else [
+        trunk, {"step": steps[1], "straight": True, "wander": 3.5, "lift": 20}]
 
 
 def ginkgo(size):
@@ -61,10 +61,10 @@ def poplar(size):
 def magnolia(size):
     """Where a year's growth ended three or four shoots leave from one place, and from its tip as many."""
     steps = ((0.13, 0.18), (0.15, 0.2), (0.18, 0.3))[size]
-    inner = {"step": steps[1], "wander": 5.0, "lift": 30, "buds": 3, "divergence": 60, "spread": 14, "angle": 48,
+    inner = {"step": steps[1], "wander": 5.0, "lift": (30, 25, 14)[size], "buds": 3, "divergence": 60, "spread": 14, "angle": 48,
              "reach": tapering(1.0, 1.0), "ratio": 0.5, "bare": 0.9, "crown": 3, "least": 0.85, "shortest": 0.1}
     trunk = dict(inner, step=steps[0], wander=3.5, lift=10, buds=3, divergence=45, angle=62, tip_angle=46,
-                 reach=bulging(0.85, 1.0, 0.5), ratio=(0.5, 0.5, 0.46)[size], bare=0.12, every=2, crown=(3, 3, 4)[size])
+                 reach=bulging((0.85, 0.8, 0.7)[size], 1.0, 0.5), ratio=(0.5, 0.5, 0.46)[size], bare=0.12, every=2, crown=(3, 3, 4)[size])
     return [trunk, inner, {"step": 0.3, "wander": 4, "lift": 40}] if size else [
         trunk, {"step": steps[1], "wander": 4, "lift": 30}]
 
@@ -72,12 +72,12 @@ def magnolia(size):
 # How it grows, the seeds by size, the radius of its tips, the exponent of the pipe model, degrees above the level that it
 # grew at, the colours of its stout and of its thin wood, its first line.
 KINDS = {
-    "maple": (maple, (33, 11, 1), 0.0022, 2.4, 35, (158, 132, 110), (172, 110, 92), "Maple, to fill a crown: shoots in pairs"),
+    "maple": (maple, (41, 35, 5), 0.0022, 2.4, 35, (158, 132, 110), (172, 110, 92), "Maple, to fill a crown: shoots in pairs"),
     "ginkgo": (ginkgo, (54, 20, 5), 0.0028, 2.5, 30, (150, 136, 116), (178, 160, 132),
                "Ginkgo, to fill a crown: long shoots, short ones along them"),
     "poplar": (poplar, (15, 40, 20), 0.0022, 2.4, 45, (160, 156, 136), (176, 158, 112),
                "Poplar, to fill a crown: shoots one by one, rising steeply"),
-    "magnolia": (magnolia, (24, 4, 45), 0.003, 2.6, 35, (146, 140, 132), (140, 116, 84),
+    "magnolia": (magnolia, (24, 36, 46), 0.003, 2.6, 35, (146, 140, 132), (140, 116, 84),
                  "Magnolia, to fill a crown: shoots several from one place"),
 }
 

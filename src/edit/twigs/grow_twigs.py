@@ -89,8 +89,9 @@ class Twig:
         for i in range(count):
             s = (i + 0.5) / count
             lift = rule.get("lift", 0.0) * (1 - s) + rule.get("tip_lift", rule.get("lift", 0.0)) * s
-            direction = self.lean(direction, lift * step)
-            direction = self.wander(direction, rule.get("wander", 3.0) * self.normal())
+            if i or not rule.get("straight"):
+                direction = self.lean(direction, lift * step)
+                direction = self.wander(direction, rule.get("wander", 3.0) * self.normal())
             if rule.get("zigzag"):
                 flip = -flip
                 direction = unit(turn(direction, self.across(direction, azimuth), flip * rule["zigzag"]))
