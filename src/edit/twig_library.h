@@ -12,7 +12,9 @@ struct LibraryTwig {
     std::string_view string;  // metres and degrees; read_lstring() makes a scion of it
 };
 
-// By name: apple, birch, cherry, dead, generic, maple, oak, pine, spruce, willow.
+// By name: apple, birch, cherry, dead, generic, maple, oak, pine, spruce, willow; and of ginkgo, magnolia,
+// maple and poplar NAME_short, NAME_medium and NAME_long, which fill the crown of a sketch
+// (sketch/species.h).
 std::span<const LibraryTwig> twig_library();
 
 // Throws Error for another name, listing these.

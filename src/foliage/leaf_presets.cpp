@@ -77,6 +77,34 @@ LeafRules palm() {
     return made;
 }
 
+LeafRules ginkgo() {
+    // Bunches from short shoots, which stand all along shoots of several years.
+    LeafRules made = rules(LeafArrangement::kFascicled, 0.045, 0.29, 60.0, 16.0);
+    made.twig_length = 1.1;
+    made.blade_width = 1.45;
+    made.curl = 12.0;
+    return made;
+}
+
+LeafRules poplar() {
+    // Long flat petioles: blades hang, and the least wind turns them.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.050, 0.27, 48.0, 36.0);
+    made.divergence = 144.0;  // every sixth leaf above the first
+    made.blade_width = 0.95;
+    made.curl = 12.0;
+    return made;
+}
+
+LeafRules magnolia() {
+    // Stiff leaves crowded at the ends of the shoots.
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.050, 0.34, 56.0, 4.0);
+    made.clustering = 0.4;
+    made.closing = 0.45;
+    made.blade_width = 0.42;
+    made.curl = 8.0;
+    return made;
+}
+
 constexpr double kLongest = 1e4;  // metres
 
 void require(double value, double low, double high, const char* what) {
@@ -87,8 +115,8 @@ void require(double value, double low, double high, const char* what) {
 }  // namespace
 
 std::vector<std::string> leaf_preset_names() {
-    return {"generic", "maple", "cherry", "oak",  "birch", "willow",
-            "apple",   "pine",  "spruce", "palm", "none"};
+    return {"generic", "maple",  "cherry", "oak",    "birch",  "willow",   "apple",
+            "pine",    "spruce", "palm",   "ginkgo", "poplar", "magnolia", "none"};
 }
 
 LeafRules leaf_preset(const std::string& name) {
@@ -114,6 +142,9 @@ LeafRules leaf_preset(const std::string& name) {
     if (name == "pine") return pine();
     if (name == "spruce") return spruce();
     if (name == "palm") return palm();
+    if (name == "ginkgo") return ginkgo();
+    if (name == "poplar") return poplar();
+    if (name == "magnolia") return magnolia();
     if (name == "none") {
         LeafRules none;
         none.enabled = false;

@@ -96,8 +96,8 @@ struct LeafRules {
     int maximum_leaves = 24000;  // beyond it fewer, larger leaves cover the same area
 };
 
-// "generic", "maple", "cherry", "oak", "birch", "willow", "apple", "pine", "spruce", "palm", "none". Throws
-// Error for another name, listing these.
+// "generic", "maple", "cherry", "oak", "birch", "willow", "apple", "pine", "spruce", "palm", "ginkgo",
+// "poplar", "magnolia", "none". Throws Error for another name, listing these.
 LeafRules leaf_preset(const std::string& name);
 std::vector<std::string> leaf_preset_names();
 

@@ -34,16 +34,19 @@ BarkColours colours_of(const std::string& preset) {
     if (preset == "willow") return {{0.15, 0.13, 0.10}, {0.45, 0.40, 0.32}, {0.60, 0.55, 0.45}};
     if (preset == "apple") return {{0.17, 0.14, 0.12}, {0.44, 0.39, 0.35}, {0.57, 0.53, 0.48}};
     if (preset == "spruce") return {{0.15, 0.10, 0.08}, {0.43, 0.31, 0.25}, {0.56, 0.45, 0.38}};
+    if (preset == "ginkgo") return {{0.15, 0.125, 0.105}, {0.435, 0.395, 0.345}, {0.61, 0.575, 0.52}};
+    if (preset == "poplar") return {{0.16, 0.145, 0.12}, {0.43, 0.415, 0.36}, {0.58, 0.565, 0.50}};
     if (preset == "palm") return {{0.20, 0.16, 0.12}, {0.50, 0.43, 0.34}, {0.63, 0.56, 0.46}};
     return {{0.14, 0.11, 0.085}, {0.42, 0.35, 0.285}, {0.57, 0.49, 0.405}};
 }
 
-// Long interlaced ridges between ragged fissures, with a finer net of cracks and fibres on them.
-BarkPoint fissured(DVec2 p, const BarkColours& colours, uint64_t seed) {
+// Long interlaced ridges between ragged fissures, with a finer net of cracks and fibres on them; nx ridges
+// around, ny up.
+BarkPoint fissured(DVec2 p, int nx, int ny, const BarkColours& colours, uint64_t seed) {
     const DVec2 warped =
         p + DVec2(0.060 * fractal(p, 5, 3, 5, seed + 10) + 0.012 * fractal(p, 30, 10, 3, seed + 15),
                   0.09 * fractal(p, 6, 4, 4, seed + 20));
-    const Cell plate = cells(warped, 13, 3, seed + 30);
+    const Cell plate = cells(warped, nx, ny, seed + 30);
     const Cell flake = cells(warped + DVec2(0.02 * fractal(p, 24, 12, 3, seed + 40), 0.0), 31, 10, seed + 50);
     // Fissures run up the stem; what crosses them is shallow, and both come and go.
     const double presence = smoothstep(-0.30, 0.25, fractal(p, 7, 5, 3, seed + 60) + 0.12);
@@ -158,12 +161,95 @@ BarkPoint birch(DVec2 p, uint64_t seed) {
     return point;
 }
 
+// The nearest of marks that are scattered evenly, nx around and ny up.
+struct Mark {
+    DVec2 offset;   // from it, in its share of the picture
+    double number;  // belongs to it, [0, 1)
+};
+
+Mark nearest_mark(DVec2 p, int nx, int ny, uint64_t seed) {
+    const double x = p.x * nx, y = p.y * ny;
+    const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
+    Mark nearest{DVec2(1e9), 0.0};
+    for (int i = 0; i < 9; i++) {
+        const int cx = ix + i % 3 - 1, cy = iy + i / 3 - 1;
+        const int wx = wrap(cx, nx), wy = wrap(cy, ny);
+        const DVec2 offset(x - cx - 0.2 - 0.6 * cell_number(wx, wy, seed),
+                           y - cy - 0.2 - 0.6 * cell_number(wx, wy, seed + 1));
+        if (glm::dot(offset, offset) < glm::dot(nearest.offset, nearest.offset))
+            nearest = {offset, cell_number(wx, wy, seed + 2)};
+    }
+    return nearest;
+}
+
+// Smooth and pale, with diamond-shaped lenticels; where it is old it has broken into furrows.
+BarkPoint poplar(DVec2 p, const BarkColours& colours, uint64_t seed) {
+    const DVec2 warped =
+        p + DVec2(0.012 * fractal(p, 6, 8, 3, seed + 210), 0.010 * fractal(p, 7, 6, 3, seed + 220));
+    const double grain = fractal(p, 70, 60, 3, seed + 230), cloud = fractal(p, 3, 4, 4, seed + 240);
+    const double wrinkle = fractal(warped, 6, 44, 3, seed + 250);
+    const Mark mark = nearest_mark(warped, 11, 10, seed + 260);
+    // A pit with a lip, some of them run together into a row across.
+    const double size = mix(0.10, 0.40, mark.number * mark.number);
+    const double rhombus = std::abs(mark.offset.x) / size + std::abs(mark.offset.y) / (1.15 * size);
+    const double there = mark.number > 0.22 ? 1.0 : 0.0;
+    const double pit = there * (1.0 - smoothstep(0.45, 0.80, rhombus + 0.45 * grain));
+    const double lip = there * smoothstep(0.62, 0.90, rhombus) * (1.0 - smoothstep(0.95, 1.45, rhombus));
+    BarkPoint point;
+    point.height = clamp01(0.52 + 0.05 * wrinkle + 0.05 * grain + 0.10 * cloud + 0.12 * lip - 0.34 * pit);
+    DVec3 colour =
+        glm::mix(DVec3(0.53, 0.525, 0.465), DVec3(0.735, 0.725, 0.67), clamp01(0.55 + 0.9 * cloud));
+    colour = glm::mix(colour, DVec3(0.52, 0.535, 0.42),
+                      0.35 * smoothstep(0.0, 0.4, fractal(p, 2, 3, 4, seed + 270)));
+    colour *= 1.0 + 0.20 * grain + 0.10 * wrinkle + 0.10 * lip;
+    colour = glm::mix(colour, DVec3(0.22, 0.19, 0.155), 0.88 * pit);
+    const double old = smoothstep(0.18, 0.30, fractal(warped, 7, 2, 4, seed + 280));
+    const BarkPoint furrow = fissured(p, 11, 3, colours, seed);
+    point.height = mix(point.height, furrow.height, old);
+    point.colour = glm::mix(colour, furrow.colour, old);
+    point.roughness = mix(clamp01(0.78 + 0.14 * pit + 0.10 * grain), furrow.roughness, old);
+    return point;
+}
+
+// Smooth and grey, with small bumps, faint rings and blots of lichen.
+BarkPoint pimpled(DVec2 p, uint64_t seed) {
+    const DVec2 warped =
+        p + DVec2(0.014 * fractal(p, 5, 6, 3, seed + 10), 0.014 * fractal(p, 6, 5, 3, seed + 20));
+    const double grain = fractal(p, 80, 80, 3, seed + 30), cloud = fractal(p, 3, 3, 4, seed + 40);
+    const double ring = fractal(warped, 3, 30, 4, seed + 50);
+    const auto bumps = [&](int nx, int ny, double share, uint64_t own) {
+        const Mark mark = nearest_mark(warped, nx, ny, seed + own);
+        if (mark.number > share) return 0.0;
+        const double size = mix(0.16, 0.40, mark.number / share);
+        // A little wider than high, as lenticels are.
+        const double away = glm::length(DVec2(mark.offset.x * 0.8, mark.offset.y)) / size;
+        return 1.0 - smoothstep(0.25, 1.0, away);
+    };
+    const double bump = std::max(bumps(16, 15, 0.6, 60), 0.8 * bumps(33, 31, 0.5, 70));
+    const double fold = 0.5 * smoothstep(0.20, 0.36, ring);
+    BarkPoint point;
+    point.height = clamp01(0.42 + 0.34 * bump + 0.10 * cloud + 0.06 * grain - 0.10 * fold);
+    DVec3 colour = glm::mix(DVec3(0.47, 0.46, 0.44), DVec3(0.62, 0.61, 0.585), clamp01(0.5 + 0.9 * cloud));
+    colour = glm::mix(colour, DVec3(0.56, 0.52, 0.465),
+                      0.3 * smoothstep(0.0, 0.4, fractal(p, 4, 3, 4, seed + 80)));
+    const double lichen = smoothstep(0.20, 0.30, fractal(p, 6, 7, 5, seed + 90));
+    colour = glm::mix(colour, DVec3(0.68, 0.69, 0.63), 0.5 * lichen);
+    colour *= 1.0 + 0.20 * grain - 0.16 * fold + 0.16 * bump;
+    colour = glm::mix(colour, DVec3(0.50, 0.45, 0.39), 0.6 * bump);
+    point.colour = colour;
+    point.roughness = clamp01(0.76 + 0.10 * lichen + 0.10 * grain);
+    return point;
+}
+
 BarkPoint bark_at(const std::string& preset, DVec2 p, const BarkColours& colours, uint64_t seed) {
     if (preset == "birch") return birch(p, seed);
     if (preset == "palm") return ringed(p, colours, seed);
     if (preset == "spruce") return scaly(p, 19, 13, 0.75, colours, seed);
     if (preset == "apple") return scaly(p, 11, 6, 0.65, colours, seed);
-    return fissured(p, colours, seed);
+    if (preset == "ginkgo") return fissured(p, 9, 2, colours, seed);
+    if (preset == "poplar") return poplar(p, colours, seed);
+    if (preset == "magnolia") return pimpled(p, seed);
+    return fissured(p, 13, 3, colours, seed);
 }
 
 }  // namespace
@@ -172,7 +258,11 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
     leaf_preset(preset);  // throws for an unknown name
     if (size < 16 || size > 4096) throw Error("A texture's size must be between 16 and 4096 pixels.");
     const BarkColours colours = colours_of(preset);
-    const bool white = preset == "birch";
+    // Metres of relief over metres of pixel.
+    const double relief = preset == "birch"      ? 0.010
+                          : preset == "magnolia" ? 0.008
+                          : preset == "ginkgo"   ? 0.027
+                                                 : 0.021;
     BarkTextures textures{Image(size, size, 3), Image(size, size, 3), Image(size, size, 3)};
     std::vector<float> height(static_cast<size_t>(size) * size);
     parallel_for(static_cast<size_t>(size), 16, [&](size_t begin, size_t end) {
@@ -191,7 +281,7 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
     const auto at = [&](int x, int y) {
         return height[static_cast<size_t>(wrap(y, size)) * size + wrap(x, size)];
     };
-    const double steepness = (white ? 0.010 : 0.021) * size;  // metres of relief over metres of pixel
+    const double steepness = relief * size;
     parallel_for(static_cast<size_t>(size), 32, [&](size_t begin, size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); y++) {
             for (int x = 0; x < size; x++) {

@@ -52,6 +52,40 @@ BladePoint lobe_at(const Shape& shape, double s, double t) {
     return point;
 }
 
+// A fan: a wedge from the petiole, its veins forking on their way to a wavy rim that is cleft in the middle.
+BladePoint fan_at(const Shape& shape, double s, double t) {
+    constexpr double kLean = 0.12;  // the sides are hollow: steeper at the base
+    BladePoint point;
+    const double reach = std::sqrt(s * s + t * t);
+    const double turn = reach > 1e-9 ? portable::atan2(t, s) : 0.0;
+    const double half = portable::asin(std::min(0.999, 0.5 * shape.width));
+    const double side = half * (1.0 - kLean + 2.0 * kLean * reach * reach);
+    const double share = turn / half;
+    // Where the rim lies: rounded to the corners, wavy, the two lobes not quite alike.
+    double rim = 1.0 - 0.10 * share * share + 0.016 * portable::sin(19.0 * turn + 1.1) +
+                 0.011 * portable::sin(43.0 * turn);
+    rim -= 0.09 * smoothstep(0.72, 1.08, std::abs(share));
+    const double off = std::abs(t + 0.018 * portable::sin(9.0 * s));
+    const double cleft =
+        shape.depth * (1.0 - smoothstep(0.0, 0.05, off)) + 0.06 * (1.0 - smoothstep(0.0, 0.22, off));
+    rim -= cleft;
+    point.inside = std::min(rim - reach, (side - std::abs(turn)) * std::max(reach, 0.02));
+    if (s < 0.0) point.inside = std::min(point.inside, -reach);
+    if (point.inside < -0.05) return point;
+    // Each vein forks twice, so that they keep their distance.
+    double line = 0.0;
+    for (int fork = 0; fork < 3; fork++) {
+        const double phase = turn / half * shape.veins * 0.5 * (1 << fork);
+        const double from = fork == 0 ? 0.0 : 0.20 + 0.24 * (fork - 1);
+        const double near = std::abs(phase - std::floor(phase) - 0.5) * 2.0;
+        line = std::max(
+            line, (1.0 - smoothstep(0.0, 0.55, 1.0 - near)) * smoothstep(from, from + 0.10, reach + 1e-9));
+    }
+    point.vein = 0.75 * line * smoothstep(0.0, 0.05, point.inside) + 0.5 * smoothstep(0.22, 0.0, reach);
+    point.relief = 0.010 * line + 0.035 * portable::cos(7.0 * turn) * reach;
+    return point;
+}
+
 }  // namespace
 
 Spray spray_of(const std::string& preset) {
@@ -149,6 +183,38 @@ Spray spray_of(const std::string& preset) {
                 {0.55, 0.60, 0.26},
                 {0.50, 0.49, 0.22},
                 Habit::kFrond};
+    if (preset == "ginkgo")
+        return {{1.45, 0.5, 1.0, Margin::kSmooth, 0, 0.30, 13, false, 0.62, true},
+                5,
+                false,
+                0.235,
+                1.95,
+                {0.30, 0.44, 0.11},
+                {0.55, 0.67, 0.22},
+                {0.66, 0.73, 0.37},
+                {0.44, 0.39, 0.30},
+                Habit::kShortShoots};
+    if (preset == "poplar")
+        return {{0.96, 0.30, 1.55, Margin::kSerrate, 15, 0.055, 6, false, 0.62},
+                3,
+                false,
+                0.30,
+                1.20,
+                {0.17, 0.34, 0.10},
+                {0.40, 0.57, 0.20},
+                {0.66, 0.70, 0.42},
+                {0.40, 0.36, 0.22}};
+    if (preset == "magnolia")
+        return {{0.42, 0.52, 1.08, Margin::kSmooth, 0, 0.0, 9, false, 0.10},
+                5,
+                false,
+                0.40,
+                1.75,
+                {0.055, 0.155, 0.065},
+                {0.20, 0.37, 0.15},
+                {0.46, 0.54, 0.26},
+                {0.30, 0.25, 0.18},
+                Habit::kRosette};
     return {{0.52, 0.42, 1.65, Margin::kSmooth, 0, 0.0, 7, false, 0.16},
             4,
             false,
@@ -161,6 +227,7 @@ Spray spray_of(const std::string& preset) {
 }
 
 BladePoint blade_at(const Shape& shape, double s, double t) {
+    if (shape.fan) return fan_at(shape, s, t);
     if (!shape.palmate) return lobe_at(shape, s, t);
     static constexpr double kAngles[5] = {0.0, 0.74, -0.74, 1.52, -1.52};
     static constexpr double kLengths[5] = {1.0, 0.86, 0.86, 0.54, 0.54};

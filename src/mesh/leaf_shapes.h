@@ -19,10 +19,12 @@ struct Shape {
     int veins;       // pairs of side veins
     bool palmate;    // five lobes from one point
     double petiole;  // over the leaf's length
+    bool fan =
+        false;  // veins that fork from the base, a cleft in the middle: the ginkgo's; width, depth are its
 };
 
 // How the picture of a spray is drawn.
-enum class Habit { kLeaves, kTuft, kFlatTwigs, kFrond };
+enum class Habit { kLeaves, kTuft, kFlatTwigs, kFrond, kShortShoots, kRosette };
 
 struct Spray {
     Shape shape;

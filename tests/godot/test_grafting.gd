@@ -2,7 +2,28 @@ extends "./suite.gd"
 ## Twigs, grafts, and the library of branches.
 
 const NAMES: PackedStringArray = [
-	"apple", "birch", "cherry", "dead", "generic", "maple", "oak", "pine", "spruce", "willow"
+	"apple",
+	"birch",
+	"cherry",
+	"dead",
+	"generic",
+	"ginkgo_long",
+	"ginkgo_medium",
+	"ginkgo_short",
+	"magnolia_long",
+	"magnolia_medium",
+	"magnolia_short",
+	"maple",
+	"maple_long",
+	"maple_medium",
+	"maple_short",
+	"oak",
+	"pine",
+	"poplar_long",
+	"poplar_medium",
+	"poplar_short",
+	"spruce",
+	"willow",
 ]
 
 
@@ -105,7 +126,7 @@ func test_the_library() -> void:
 		check(twig != null, "There is no %s." % NAMES[i])
 		if twig == null:
 			continue
-		check(twig.length > 0.5 and twig.length < 2.0, "%s is %s long." % [NAMES[i], twig.length])
+		check(twig.length > 0.5 and twig.length < 3.7, "%s is %s long." % [NAMES[i], twig.length])
 		check(twig.base_radius > 0.004, "%s has a radius of %s." % [NAMES[i], twig.base_radius])
 		check(twig.thumbnail != null, "%s has no picture." % NAMES[i])
 		check_equal(list.get_item_icon(i), library.twigs[i].thumbnail, "an icon")

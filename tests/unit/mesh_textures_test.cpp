@@ -36,7 +36,8 @@ double mean_step(const Image& image, int x0, int x1, bool columns) {
 }
 
 TEST(Textures, BarkIsSeamlessBothWays) {
-    for (const char* preset : {"generic", "birch", "apple", "spruce", "palm"}) {
+    for (const char* preset :
+         {"generic", "birch", "apple", "spruce", "palm", "ginkgo", "poplar", "magnolia"}) {
         const BarkTextures bark = make_bark_textures(preset, 128, 5);
         for (const Image* image : {&bark.albedo, &bark.normal, &bark.roughness}) {
             for (bool columns : {true, false}) {

@@ -13,6 +13,8 @@ import struct
 import sys
 import zlib
 
+import crown_twigs
+
 SIDE = 128  # pixels of a thumbnail
 
 
@@ -87,8 +89,9 @@ class Twig:
         for i in range(count):
             s = (i + 0.5) / count
             lift = rule.get("lift", 0.0) * (1 - s) + rule.get("tip_lift", rule.get("lift", 0.0)) * s
-            direction = self.lean(direction, lift * step)
-            direction = self.wander(direction, rule.get("wander", 3.0) * self.normal())
+            if i or not rule.get("straight"):
+                direction = self.lean(direction, lift * step)
+                direction = self.wander(direction, rule.get("wander", 3.0) * self.normal())
             if rule.get("zigzag"):
                 flip = -flip
                 direction = unit(turn(direction, self.across(direction, azimuth), flip * rule["zigzag"]))
@@ -121,6 +124,15 @@ class Twig:
                 elif own > rule.get("shortest", 0.05):
                     self.shoot(at, away, own, order + 1, rules)
         return at
+
+    def stretch(self, length):
+        """Scales it so that the farthest tip is so far along the wood."""
+        along = [0.0] * len(self.nodes)
+        for i, (position, parent, _) in enumerate(self.nodes):
+            if parent >= 0:
+                along[i] = along[parent] + math.dist(position, self.nodes[parent][0])
+        scale = length / max(along)
+        self.nodes = [(tuple(scale * x for x in position), parent, least) for position, parent, least in self.nodes]
 
     def radii(self, tip, exponent, taper=0.0):
         """The pipe model, and a little thinner towards each tip."""
@@ -343,6 +355,10 @@ TWIGS = {
     "generic": (generic, 1, 35, (152, 126, 100), (168, 136, 104), "A twig of no kind: one bud after another, all around"),
     "dead": (dead, 4, 15, (168, 164, 156), (186, 180, 168), "Dead wood: crooked, few twigs, snapped ends"),
 }
+for kind, (_, seeds, _, _, rise, stout, thin, title) in crown_twigs.KINDS.items():
+    for size, named in enumerate(crown_twigs.NAMES):
+        TWIGS[kind + "_" + named] = (
+            lambda t, kind=kind, size=size: crown_twigs.grow(t, kind, size), seeds[size], rise, stout, thin, title)
 
 
 def draw(twig, radius, rise, stout, thin):
