@@ -191,6 +191,10 @@ class Understanding {
         for (const size_t stroke : of_trunk)
             if (read_branch(stroke, drawn().trunk, std::nullopt)) place[stroke] = drawn_from_[stroke];
         for (const auto& [stroke, parent] : sides) {
+            if (place[parent] == lines_.size() && reading(parent).left_out) {
+                read_branch(stroke, drawn().trunk, std::nullopt);
+                continue;
+            }
             if (place[parent] == lines_.size()) {
                 leave_out(stroke, "This grows from a branch's branch; only the trunk's branches bear some.");
                 continue;
