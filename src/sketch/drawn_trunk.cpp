@@ -87,14 +87,14 @@ DrawnLine middle_of_sides(const FlatLine& left, const FlatLine& right) {
     const double radius = middle.radii.back();
     const double top_of_all = std::max(a.high.y, b.high.y);
     const Row from = row_at(longer, last.y, false);
-    if (!from.empty() && top_of_all > last.y + 2.0 * kRowStep) {
+    if (!from.empty() && top_of_all > last.y + std::max(2.0 * kRowStep, 0.1 * (top - bottom))) {
         const double off = last.x - 0.5 * (from.low + from.high);
         const int more = std::clamp(static_cast<int>((top_of_all - last.y) / kRowStep), 1, kMostRows);
         for (int i = 1; i <= more; i++) {
             const double share = static_cast<double>(i) / more;
             const Row row = row_at(longer, last.y + std::min(share, 0.999) * (top_of_all - last.y), false);
             if (row.empty()) continue;
-            middle.points.emplace_back(0.5 * (row.low + row.high) + off * (1.0 - share),
+            middle.points.emplace_back(0.5 * (row.low + row.high) + off * (1.0 - 0.8 * share),
                                        last.y + share * (top_of_all - last.y));
             middle.radii.push_back(std::max(0.5, radius * (1.0 - 0.8 * share)));
         }

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <cstring>
 
 #include "geometry/portable_math.h"
 
@@ -61,7 +61,11 @@ struct Raster {
 
 // Fills the cells whose centres the polygon winds around.
 void fill_polygon(Raster& raster, const FlatLine& polygon) {
-    std::vector<std::vector<std::pair<double, int>>> rows(static_cast<size_t>(raster.height));
+    struct Crossing {
+        int row, way;
+        double x;
+    };
+    std::vector<Crossing> found;
     for (size_t i = 0; i < polygon.size(); i++) {
         DVec2 a = (polygon[i] - raster.low) / raster.cell;
         DVec2 b = (polygon[i + 1 == polygon.size() ? 0 : i + 1] - raster.low) / raster.cell;
@@ -70,45 +74,71 @@ void fill_polygon(Raster& raster, const FlatLine& polygon) {
         const int first = static_cast<int>(std::ceil(a.y - 0.5)),
                   end = static_cast<int>(std::ceil(b.y - 0.5));
         for (int y = std::max(first, 0); y < std::min(end, raster.height); y++)
-            rows[static_cast<size_t>(y)].emplace_back(a.x + (y + 0.5 - a.y) / (b.y - a.y) * (b.x - a.x), way);
+            found.push_back({y, way, a.x + (y + 0.5 - a.y) / (b.y - a.y) * (b.x - a.x)});
     }
-    for (int y = 0; y < raster.height; y++) {
-        auto& row = rows[static_cast<size_t>(y)];
-        std::sort(row.begin(), row.end());
-        int winding = 0;
-        for (size_t i = 0; i + 1 < row.size(); i++) {
-            winding += row[i].second;
-            if (winding == 0) continue;
-            const int from = std::max(0, static_cast<int>(std::ceil(row[i].first - 0.5)));
-            const int to = std::min(raster.width, static_cast<int>(std::ceil(row[i + 1].first - 0.5)));
-            for (int x = from; x < to; x++)
-                raster.filled[raster.at(x, y)] = 1;
-        }
+    std::sort(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) {
+        return a.row < b.row || (a.row == b.row && a.x < b.x);
+    });
+    int winding = 0;
+    for (size_t i = 0; i + 1 < found.size(); i++) {
+        // A closed line crosses each row as often up as down.
+        winding += found[i].way;
+        if (winding == 0) continue;
+        const int from = std::max(0, static_cast<int>(std::ceil(found[i].x - 0.5)));
+        const int to = std::min(raster.width, static_cast<int>(std::ceil(found[i + 1].x - 0.5)));
+        if (from < to)
+            std::fill_n(raster.filled.begin() + static_cast<ptrdiff_t>(raster.at(from, found[i].row)),
+                        to - from, uint8_t{1});
     }
 }
 
 // Keeps the largest part that hangs together by sides. Returns its first cell (the lowest, then leftmost).
 size_t keep_largest(Raster& raster) {
-    std::vector<uint8_t> seen(raster.filled.size(), 0);
-    std::vector<size_t> part, largest;
-    for (size_t start = 0; start < seen.size(); start++) {
-        if (!raster.filled[start] || seen[start]) continue;
-        part = {start};
-        seen[start] = 1;
-        for (size_t i = 0; i < part.size(); i++) {
-            const size_t row = static_cast<size_t>(raster.width);
-            for (const size_t next : {part[i] - 1, part[i] + 1, part[i] - row, part[i] + row})
-                if (raster.filled[next] && !seen[next]) {
-                    seen[next] = 1;
-                    part.push_back(next);
-                }
+    struct Run {
+        size_t begin, end;  // cells
+        size_t part;        // a run of the same part; itself: the first one
+        size_t cells = 0;   // of the part, at its first run
+    };
+    std::vector<Run> runs;
+    const auto first_of = [&](size_t run) {
+        while (runs[run].part != run)
+            run = runs[run].part = runs[runs[run].part].part;
+        return run;
+    };
+    const size_t row = static_cast<size_t>(raster.width);
+    size_t below = 0, above = 0;  // where the runs of the row below begin, and those of this one
+    for (size_t start = 0; start < raster.filled.size(); start += row) {
+        below = above;
+        above = runs.size();
+        size_t under = below;
+        const uint8_t* const cells = raster.filled.data();
+        for (size_t i = start; i < start + row;) {
+            const void* const next = std::memchr(cells + i, 1, start + row - i);
+            if (!next) break;
+            const size_t begin = static_cast<size_t>(static_cast<const uint8_t*>(next) - cells);
+            const void* const gap = std::memchr(cells + begin, 0, start + row - begin);
+            i = gap ? static_cast<size_t>(static_cast<const uint8_t*>(gap) - cells) : start + row;
+            const size_t mine = runs.size();
+            runs.push_back({begin, i, mine, 0});
+            while (under < above && runs[under].end + row <= begin)
+                under++;
+            for (size_t k = under; k < above && runs[k].begin + row < i; k++) {
+                const size_t one = first_of(k), other = first_of(mine);
+                runs[std::max(one, other)].part = std::min(one, other);
+            }
         }
-        if (part.size() > largest.size()) largest.swap(part);
     }
-    std::fill(raster.filled.begin(), raster.filled.end(), 0);
-    for (const size_t cell : largest)
-        raster.filled[cell] = 1;
-    return largest.empty() ? 0 : largest[0];
+    size_t largest = 0;
+    for (size_t k = 0; k < runs.size(); k++) {
+        const size_t first = first_of(k);
+        runs[first].cells += runs[k].end - runs[k].begin;
+        if (runs[first].cells > runs[largest].cells) largest = first;
+    }
+    for (size_t k = 0; k < runs.size(); k++)
+        if (first_of(k) != largest)
+            std::fill_n(raster.filled.begin() + static_cast<ptrdiff_t>(runs[k].begin),
+                        runs[k].end - runs[k].begin, uint8_t{0});
+    return runs.empty() ? 0 : runs[largest].begin;
 }
 
 // The outer border of the part that `start` begins, through the middles of the cells' sides,

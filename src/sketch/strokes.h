@@ -94,7 +94,7 @@ struct DrawnTree {
     // (outline_stroke is nothing), one around what was.
     std::vector<DVec2> outline;
     std::optional<size_t> outline_stroke;
-    DrawnLine trunk;                  // from the ground up
+    DrawnLine trunk;  // from the ground up
     // points[0] is a point of the trunk's line; in the order of the strokes. A stroke right through the trunk
     // is two of them.
     std::vector<DrawnLine> branches;

@@ -191,6 +191,10 @@ class Understanding {
         for (const size_t stroke : of_trunk)
             if (read_branch(stroke, drawn().trunk, std::nullopt)) place[stroke] = drawn_from_[stroke];
         for (const auto& [stroke, parent] : sides) {
+            if (place[parent] == lines_.size() && reading(parent).left_out) {
+                read_branch(stroke, drawn().trunk, std::nullopt);
+                continue;
+            }
             if (place[parent] == lines_.size()) {
                 leave_out(stroke, "This grows from a branch's branch; only the trunk's branches bear some.");
                 continue;
@@ -307,7 +311,7 @@ class Understanding {
         if (!drawn().outline_stroke) return;
         for (const std::vector<DrawnLine>* lines : {&drawn().branches, &drawn().side_branches})
             for (const DrawnLine& branch : *lines)
-                if (leaves(branch.points.back()) && reading(branch.stroke).fault.empty())
+                if (line_leaves(branch.points) && reading(branch.stroke).fault.empty())
                     reading(branch.stroke).fault = "This branch leaves the crown; it stays as it was drawn.";
         const DrawnLine& trunk = drawn().trunk;
         const DVec2 top = trunk.points.back();
@@ -316,13 +320,30 @@ class Understanding {
             reading(trunk.stroke).fault = "The trunk leaves the crown; it stays as it was drawn.";
     }
 
-    bool leaves(const DVec2& tip) {
-        if (is_inside(drawn().outline, tip)) return false;
+    // Whether it ends outside, or comes out on its way; where it begins may be below the crown.
+    bool line_leaves(const FlatLine& line) {
+        if (leaves(line.back())) return true;
+        if (crossings(line, closed_outline()).size() < 2) return false;
+        bool inside = false;
+        for (const DVec2& p : line) {
+            if (is_inside(drawn().outline, p))
+                inside = true;
+            else if (inside && leaves(p))
+                return true;
+        }
+        return false;
+    }
+
+    bool leaves(const DVec2& p) {
+        return !is_inside(drawn().outline, p) && nearest_on_line(closed_outline(), p).distance > kNoMargin;
+    }
+
+    const FlatLine& closed_outline() {
         if (closed_outline_.empty()) {
             closed_outline_ = drawn().outline;
             closed_outline_.push_back(closed_outline_[0]);
         }
-        return nearest_on_line(closed_outline_, tip).distance > kNoMargin;
+        return closed_outline_;
     }
 
     // Gives the line `from` a point where branch k begins, and both the same one. The places hold for the

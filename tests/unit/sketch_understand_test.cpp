@@ -375,6 +375,12 @@ TEST(SketchUnderstand, WhatIsOddIsSaid) {
         EXPECT_TRUE(understood.strokes[left_out].left_out) << left_out;
         EXPECT_NE(understood.strokes[left_out].fault, "") << left_out;
     }
+    // Out of the crown on its way, and back into it.
+    FlatLine bulge = kRight;
+    for (const FlatLine& part : {even_line({660, 680}, {830, 640}), even_line({830, 640}, {700, 760})})
+        bulge.insert(bulge.end(), part.begin() + 1, part.end());
+    EXPECT_NE(understand_sketch(sketch_of({kTrunk, kCrown, bulge})).strokes[2].fault.find("leaves the crown"),
+              std::string::npos);
     // Right through the trunk.
     const Sketch through = sketch_of({kTrunk, kCrown, even_line({320, 520}, {660, 560})});
     const UnderstoodSketch both = understand_sketch(through);
