@@ -31,6 +31,8 @@ constexpr double kBranchThickness = 0.6;  // of its parent's, at most
 constexpr int kDeepest = 4;               // branches on branches
 constexpr size_t kMostTwigs = 4000;
 
+// Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
+constexpr double kStandsOut = 0.6;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 struct Filler {
@@ -113,7 +115,7 @@ struct Filler {
             }
         }
         // The limb itself goes on in a twig.
-        if (!printed()) {
+        if (!printed() && options.density > 0.0) {
             const DVec3 last = limb.points.back() - limb.points[limb.points.size() - 2];
             add(bound, index, length, normalized_or(last, axis), random.uniform(0.0, 2.0 * kPi), kDeepest);
         }
@@ -142,7 +144,7 @@ double leader_begin(const Limbs& limbs, const CrownSections& crown) {
     const double length = length_of(limbs.trunk.points);
     double begin = length;
     for (const Limb& branch : limbs.branches)
-        begin = std::min(begin, branch.along);
+        if (branch.parent < 0) begin = std::min(begin, branch.along);
     if (!limbs.branches.empty()) return begin;
     for (double along = 0.0; along < length; along += 0.01 * length)
         if (place_along(limbs.trunk.points, along).y >= crown.bottom()) return along;
@@ -166,9 +168,10 @@ double twig_growth(const SketchSpecies& species, double height) {
 }
 
 double leaf_margin(const SketchSpecies& species, double height) {
-    // A card leans off its twig and is as long as leaf_size; leaf_rules.h tells how small trees shrink it.
     const LeafRules rules = leaf_preset(species.name);
-    return 0.45 * rules.leaf_size * std::sqrt(std::min(height / 12.0, 1.0));
+    // leaf_rules.h tells how small trees shrink sprays.
+    const double small = rules.form == LeafForm::kSpray ? std::sqrt(std::min(height / 12.0, 1.0)) : 1.0;
+    return kStandsOut * rules.leaf_size * small + rules.petiole;
 }
 
 Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
@@ -191,7 +194,8 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     const double begin = leader_begin(limbs, crown);
     std::vector<std::vector<DVec3>> lines{line_from(limbs.trunk.points, begin)};
     for (const Limb& branch : limbs.branches) {
-        filler.filling.limbs.push_back({branch, 0});
+        // The trunk is the first of these.
+        filler.filling.limbs.push_back({branch, branch.parent + 1});
         filler.cell_of.push_back(lines.size());
         lines.push_back(branch.points);
     }

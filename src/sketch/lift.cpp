@@ -25,13 +25,6 @@ constexpr double kMostDepth = 1.2;
 // A branch's share of the trunk's thickness there, whatever its length.
 constexpr double kThinnestBranch = 0.25, kThickestBranch = 0.75;
 
-std::vector<DVec3> in_space(const std::vector<DVec2>& points, const CanvasPlace& place) {
-    std::vector<DVec3> out;
-    for (const DVec2& p : points)
-        out.emplace_back(place.metres(p), 0.0);
-    return out;
-}
-
 // The trunk's line with a point wherever a branch grows, in pixels; attach: gets those points' places in it.
 std::vector<DVec2> with_joints(const DrawnTree& drawn, std::vector<double>& radii,
                                std::vector<size_t>& attach) {
@@ -88,7 +81,8 @@ std::vector<DVec2> with_joints(const DrawnTree& drawn, std::vector<double>& radi
     return joined;
 }
 
-// Gives each point of the branch its depth: in proportion to the way along it, `tip` at the tip.
+// Gives each point of the branch its depth: its base's, and more in proportion to the way along it, `tip` at
+// the tip.
 void deepen(Limb& branch, double tip) {
     const double length = length_of(branch.points);
     double along = 0.0;
@@ -96,7 +90,7 @@ void deepen(Limb& branch, double tip) {
     for (size_t i = 1; i < branch.points.size(); i++) {
         along += glm::length(branch.points[i] - before);
         before = branch.points[i];
-        branch.points[i].z = tip * along / length;
+        branch.points[i].z = branch.points[0].z + tip * along / length;
     }
 }
 
@@ -109,22 +103,31 @@ double deepest_tip(const Limb& branch, const CrownSections& crown) {
     for (size_t i = 1; i < branch.points.size(); i++) {
         along += glm::length(branch.points[i] - branch.points[i - 1]);
         const double depth = crown.half_depth(branch.points[i].x, branch.points[i].y);
-        if (depth >= 0.0 && along > 0.0) most = std::min(most, depth * length / along);
+        // Whichever side it goes to.
+        const double room = depth - std::abs(branch.points[0].z);
+        if (depth >= 0.0 && along > 0.0) most = std::min(most, std::max(room, 0.0) * length / along);
     }
     return most;
 }
 
-void lift_truly(std::vector<Limb>& branches, const CrownSections& crown) {
-    for (Limb& branch : branches) {
-        Random random(branch.seed);
-        const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
-        deepen(branch, side * random.uniform(kShallowest, kDeepest) * deepest_tip(branch, crown));
+void lift_truly(Limb& branch, const CrownSections& crown) {
+    Random random(branch.seed);
+    const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
+    deepen(branch, side * random.uniform(kShallowest, kDeepest) * deepest_tip(branch, crown));
+}
+
+// v' = v R_y(angle), a row times the printed matrix, about `base`.
+void turn(std::vector<DVec3>& points, const DVec3& base, double degrees) {
+    const double c = portable::cos(degrees * kPi / 180.0), s = portable::sin(degrees * kPi / 180.0);
+    for (DVec3& p : points) {
+        const DVec3 v = p - base;
+        p = base + DVec3(v.x * c + v.z * s, v.y, -v.x * s + v.z * c);
     }
 }
 
-void turn_as_printed(std::vector<Limb>& branches, uint64_t seed, std::vector<std::string>& remarks) {
-    const size_t count = branches.size();
-    if (count == 0) return;
+// Degrees for each of so many branches.
+std::vector<double> printed_turns(size_t count, uint64_t seed, std::vector<std::string>& remarks) {
+    if (count == 0) return {};
     const double room = 2.0 * kMostTurn;
     double apart = kLeastApart;
     if (static_cast<double>(count - 1) * apart > room) {
@@ -143,24 +146,29 @@ void turn_as_printed(std::vector<Limb>& branches, uint64_t seed, std::vector<std
         angles[i] += static_cast<double>(i) * apart - kMostTurn;
     for (size_t i = count; i-- > 1;)
         std::swap(angles[i], angles[random.below(static_cast<uint32_t>(i + 1))]);
-    for (size_t i = 0; i < count; i++) {
-        const double radians = angles[i] * kPi / 180.0;
-        const double c = portable::cos(radians), s = portable::sin(radians);
-        const DVec3 base = branches[i].points[0];
-        for (DVec3& p : branches[i].points) {
-            // v' = v R_y(angle), a row times the printed matrix.
-            const DVec3 v = p - base;
-            p = base + DVec3(v.x * c + v.z * s, v.y, -v.x * s + v.z * c);
-        }
-    }
+    return angles;
+}
+
+// The line with few points, in the plane z = 0.
+Limb flat_limb(const DrawnLine& line, const Sketch& sketch, const CanvasPlace& place) {
+    const std::vector<size_t> own =
+        split_long_steps(line.points, simplify_line(line.points, {}, kTrueness), kLongestStep);
+    Limb limb;
+    for (const size_t i : own)
+        limb.points.emplace_back(place.metres(line.points[i]), 0.0);
+    limb.stroke = static_cast<int32_t>(line.stroke);
+    limb.seed = hash_seed(sketch.seed, sketch.strokes[line.stroke].id);
+    return limb;
 }
 
 }  // namespace
 
-double branch_radius(double length, double trunk_length, double trunk_radius, double foot_radius) {
-    const double fair = foot_radius * length / trunk_length;
-    return std::max(std::clamp(fair, kThinnestBranch * trunk_radius, kThickestBranch * trunk_radius),
-                    kLeastRadius);
+std::vector<double> radii_of(const Limb& branch, const Limbs& limbs) {
+    const Limb& host = branch.parent < 0 ? limbs.trunk : limbs.branches[static_cast<size_t>(branch.parent)];
+    const double there = value_along(host.points, host.radii, branch.along);
+    const double fair = limbs.trunk.radii[0] * length_of(branch.points) / length_of(limbs.trunk.points);
+    return tapered(branch.points, std::clamp(fair, kThinnestBranch * there, kThickestBranch * there),
+                   kLeastRadius);
 }
 
 Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
@@ -171,13 +179,10 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
     const std::vector<DVec2> joined = with_joints(drawn, radii, attach);
     std::vector<size_t> kept = simplify_line(joined, attach, kTrueness);
     kept = split_long_steps(joined, kept, kLongestStep);
-    std::vector<DVec2> trunk;
     for (const size_t i : kept)
-        trunk.push_back(joined[i]);
-    limbs.trunk.points = in_space(trunk, place);
+        limbs.trunk.points.emplace_back(place.metres(joined[i]), 0.0);
     limbs.trunk.stroke = static_cast<int32_t>(drawn.trunk.stroke);
     limbs.trunk.seed = hash_seed(sketch.seed, 0);
-    const double trunk_length = length_of(limbs.trunk.points);
     const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
                         : !radii.empty()           ? radii[0] * place.scale
                                                    : (crown.top() - limbs.trunk.points[0].y) / 40.0;
@@ -193,30 +198,43 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
     }
 
     for (size_t b = 0; b < drawn.branches.size(); b++) {
-        const DrawnLine& line = drawn.branches[b];
-        std::vector<DVec2> points = line.points;
-        points[0] = joined[attach[b]];
-        std::vector<size_t> own = simplify_line(points, {}, kTrueness);
-        own = split_long_steps(points, own, kLongestStep);
-        Limb branch;
-        std::vector<DVec2> flat;
-        for (const size_t i : own)
-            flat.push_back(points[i]);
-        branch.points = in_space(flat, place);
-        branch.stroke = static_cast<int32_t>(line.stroke);
-        branch.seed = hash_seed(sketch.seed, sketch.strokes[line.stroke].id);
+        Limb branch = flat_limb(drawn.branches[b], sketch, place);
+        branch.points[0] = DVec3(place.metres(joined[attach[b]]), 0.0);
         for (size_t i = 0; i + 1 < kept.size() && kept[i] < attach[b]; i++)
             branch.along += glm::length(limbs.trunk.points[i + 1] - limbs.trunk.points[i]);
         limbs.branches.push_back(std::move(branch));
     }
-    if (options.depth == SketchDepth::kPaper)
-        turn_as_printed(limbs.branches, sketch.seed, remarks);
-    else
-        lift_truly(limbs.branches, crown);
-    for (Limb& branch : limbs.branches) {
-        const double at = value_along(limbs.trunk.points, limbs.trunk.radii, branch.along);
-        branch.radii = tapered(branch.points, branch_radius(length_of(branch.points), trunk_length, at, foot),
-                               kLeastRadius);
+    // Of the second order: while their parents are flat, too, one finds where they grow. What lifts a branch
+    // leaves the shares of its length as they are.
+    const size_t first_order = limbs.branches.size();
+    std::vector<double> shares;
+    for (const DrawnLine& line : drawn.side_branches) {
+        Limb branch = flat_limb(line, sketch, place);
+        branch.parent = static_cast<int32_t>(*line.parent);
+        const std::vector<DVec3>& on = limbs.branches[*line.parent].points;
+        branch.along = nearest_along(on, branch.points[0]);
+        shares.push_back(branch.along / length_of(on));
+        branch.points[0] = place_along(on, branch.along);
+        limbs.branches.push_back(std::move(branch));
+    }
+    const bool printed = options.depth == SketchDepth::kPaper;
+    const std::vector<double> turns =
+        printed ? printed_turns(first_order, sketch.seed, remarks) : std::vector<double>();
+    for (size_t i = 0; i < limbs.branches.size(); i++) {
+        Limb& branch = limbs.branches[i];
+        if (i >= first_order) {
+            const auto parent = static_cast<size_t>(branch.parent);
+            const std::vector<DVec3>& on = limbs.branches[parent].points;
+            branch.along = shares[i - first_order] * length_of(on);
+            if (printed)  // with what it grows from
+                turn(branch.points, on[0], turns[parent]);
+            else
+                branch.points[0].z = place_along(on, branch.along).z;
+        } else if (printed) {
+            turn(branch.points, DVec3(branch.points[0]), turns[i]);
+        }
+        if (!printed) lift_truly(branch, crown);
+        branch.radii = radii_of(branch, limbs);
     }
     return limbs;
 }

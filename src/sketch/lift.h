@@ -29,7 +29,7 @@ struct CanvasPlace {
 Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
            const SketchOptions& options, std::vector<std::string>& remarks);
 
-// The radius that a branch of `length` metres begins with where the trunk has `trunk_radius`.
-double branch_radius(double length, double trunk_length, double trunk_radius, double foot_radius);
+// Of a branch, at its points: as much thinner than its parent as it is shorter than the trunk, within bounds.
+std::vector<double> radii_of(const Limb& branch, const Limbs& limbs);
 
 }  // namespace treerec

@@ -1,6 +1,9 @@
 #include "sketch/limbs.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "geometry/segment.h"
 
 namespace treerec {
 
@@ -33,6 +36,21 @@ DVec3 place_along(const std::vector<DVec3>& points, double along) {
 double value_along(const std::vector<DVec3>& points, const std::vector<double>& values, double along) {
     const auto [i, part] = find_along(points, along);
     return values[i] + (values[i + 1] - values[i]) * part;
+}
+
+double nearest_along(const std::vector<DVec3>& points, const DVec3& p) {
+    double along = 0.0, nearest = 0.0, least = 1e300;
+    for (size_t i = 0; i + 1 < points.size(); i++) {
+        double where;
+        const double square = square_to_segment(p, points[i], points[i + 1], where);
+        const double length = glm::length(points[i + 1] - points[i]);
+        if (square < least) {
+            least = square;
+            nearest = along + where * length;
+        }
+        along += length;
+    }
+    return nearest;
 }
 
 std::vector<double> tapered(const std::vector<DVec3>& points, double base, double least) {

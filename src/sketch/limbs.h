@@ -16,11 +16,12 @@ struct Limb {
     std::vector<DVec3> points;  // at least two
     std::vector<double> radii;  // of each
     int32_t stroke = -1;        // that it was drawn by (place in Sketch::strokes); -1: not drawn
-    double along = 0.0;         // of a branch: metres along the trunk's line to where it grows
+    double along = 0.0;         // of a branch: metres along its parent's line to where it grows
+    int32_t parent = -1;        // of a branch of the second order: place in Limbs::branches; -1: the trunk
     uint64_t seed = 0;          // of what is drawn by chance on it
 };
 
-// The trunk's points hold all the places where branches grow.
+// Parents come before what grows from them.
 struct Limbs {
     Limb trunk;
     std::vector<Limb> branches;
@@ -31,6 +32,8 @@ double length_of(const std::vector<DVec3>& points);
 DVec3 place_along(const std::vector<DVec3>& points, double along);
 // The same for the values at its points.
 double value_along(const std::vector<DVec3>& points, const std::vector<double>& values, double along);
+// The place on the line that is nearest to p: metres along it.
+double nearest_along(const std::vector<DVec3>& points, const DVec3& p);
 
 // d / l = R_i / R (papers/003, equation 2): at each point, from `base` at the first to 0 at the last, but at
 // least `least`. Metres.

@@ -133,23 +133,22 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
                                         bend * portable::sin(kPi * part));
     }
     limbs.trunk.radii = tapered(limbs.trunk.points, foot, std::max(0.5 * least, kLeastRadius));
-    const double trunk_length = length_of(limbs.trunk.points);
-    for (Limb& branch : limbs.branches) {
-        const double at = value_along(limbs.trunk.points, limbs.trunk.radii, branch.along);
-        branch.radii = tapered(branch.points, branch_radius(length_of(branch.points), trunk_length, at, foot),
-                               kLeastRadius);
-    }
+    for (Limb& branch : limbs.branches)
+        branch.radii = radii_of(branch, limbs);
 }
 
 void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
-    const size_t drawn = limbs.branches.size();
+    // Those of the second order come last.
+    size_t drawn = 0;
+    while (drawn < limbs.branches.size() && limbs.branches[drawn].parent < 0)
+        drawn++;
     const double trunk_length = length_of(limbs.trunk.points);
     const double height = crown.top() - crown.bottom();
     // The part of the trunk that bears them.
     double lowest = trunk_length, highest = 0.0;
-    for (const Limb& branch : limbs.branches) {
-        lowest = std::min(lowest, branch.along);
-        highest = std::max(highest, branch.along);
+    for (size_t b = 0; b < drawn; b++) {
+        lowest = std::min(lowest, limbs.branches[b].along);
+        highest = std::max(highest, limbs.branches[b].along);
     }
     size_t count = std::max(kFewestUnseen, static_cast<size_t>(std::ceil(kUnseenShare * drawn)));
     if (drawn < 2) {
@@ -167,7 +166,6 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
     std::vector<Stand> stands;
     for (const Limb& branch : limbs.branches)
         stands.push_back({azimuth_of(branch), branch.points[0].y});
-    const double foot = limbs.trunk.radii[0];
     for (size_t i = 0; i < count; i++) {
         const uint64_t own = hash_seed(seed, 1000 + i);
         Random random(own);
@@ -207,9 +205,7 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
             scale *= kFitStep;
         if (scale < kShortest) continue;
         branch.points = standing(profile, base, azimuth, scale, sideways);
-        const double at = value_along(limbs.trunk.points, limbs.trunk.radii, branch.along);
-        branch.radii = tapered(branch.points, branch_radius(length_of(branch.points), trunk_length, at, foot),
-                               kLeastRadius);
+        branch.radii = radii_of(branch, limbs);
         stands.push_back({azimuth, base.y});
         limbs.branches.push_back(std::move(branch));
     }
