@@ -172,6 +172,7 @@ struct Meeting {
     const char* name;
     std::vector<Polyline> lines;
     std::vector<bool> closed;
+    bool tailed = true;  // each open line begins where it is to
 };
 
 TEST(SketchPicture, LinesGoOnStraightWhereTheyMeet) {
@@ -216,7 +217,8 @@ TEST(SketchPicture, LinesGoOnStraightWhereTheyMeet) {
            {800.0, 400.0},
            {700.0, 650.0},
            {530.0, 690.0}}},
-         {false}},
+         {false},
+         false},
     };
     for (const double width : {1.0, 2.0, 5.0, 20.0})
         for (const Meeting& meeting : meetings) {
@@ -230,6 +232,10 @@ TEST(SketchPicture, LinesGoOnStraightWhereTheyMeet) {
                 EXPECT_LT(nearest(sketch, meeting.lines[i], &which), 2.0) << "line " << i;
                 const Polyline& points = sketch.strokes[which].points;
                 EXPECT_EQ(points.front() == points.back(), meeting.closed[i]) << "line " << i;
+                // Branches and trunks are given from their tails on, and so they are read.
+                const bool told = meeting.tailed && !meeting.closed[i];
+                EXPECT_LT(told ? glm::length(points.front() - meeting.lines[i].front()) : 0.0,
+                          4.0 + 0.5 * width);
             }
         }
 }
