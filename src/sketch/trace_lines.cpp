@@ -1,6 +1,7 @@
 #include "sketch/trace_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>

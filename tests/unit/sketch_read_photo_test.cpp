@@ -1,7 +1,9 @@
 // Drawings as JPEGs, turned as cameras leave them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
