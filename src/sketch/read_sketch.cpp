@@ -1,8 +1,7 @@
 #include "sketch/read_sketch.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
+#include <cstdint>
+#include <string_view>
 
 #include "error.h"
 #include "file_bytes.h"

@@ -1,4 +1,5 @@
 // Sketches as our own JSON.
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -58,7 +58,10 @@ Image decoded(std::string_view bytes, const std::string& who) {
 }  // namespace
 
 Sketch parse_sketch_picture(std::string_view bytes, const std::string& who) {
-    const Image picture = decoded(bytes, who);
+    return sketch_of_picture(decoded(bytes, who), who);
+}
+
+Sketch sketch_of_picture(const Image& picture, const std::string& who) {
     const int times = std::max(1, std::max(picture.width, picture.height) / kLargeEnough);
     const Image small = reduced(picture, times);
     LineMask mask = ink_of(small, who);

@@ -1,7 +1,6 @@
 // Sketches from SVG drawings.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "sketch/trace_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -85,7 +86,10 @@ DVec2 direction(const LineGraph& graph, const Arm& arm) {
 // Says which arms go on as which.
 class Joiner {
   public:
-    explicit Joiner(const LineGraph& graph) : graph_(graph), mates_(graph.edges.size()) {
+    static constexpr size_t kNoTrunk = static_cast<size_t>(-1);
+
+    explicit Joiner(const LineGraph& graph)
+        : graph_(graph), mates_(graph.edges.size()), on_trunk_(graph.nodes.size(), false) {
         Box all;
         for (const LineEdge& edge : graph.edges)
             if (edge.alive) all.add(edge.points);
@@ -103,6 +107,14 @@ class Joiner {
     }
 
     const Mates& mates() const { return mates_; }
+    // The place of the trunk's path, or kNoTrunk.
+    size_t trunk() const { return trunk_; }
+    // Whether the arm's end of an open line is where the line begins rather than ends: 2 at the trunk, 1
+    // where it meets another line, else 0.
+    int rank(const Arm& arm) const {
+        const size_t at = node(arm);
+        return on_trunk_[at] ? 2 : graph_.nodes[at].edges.size() > 1 ? 1 : 0;
+    }
 
   private:
     Arm& mate(const Arm& arm) { return mates_[arm.edge][arm.end]; }
@@ -215,7 +227,7 @@ class Joiner {
 
     // Branches that leave the trunk at one height are no line across it.
     void part_at_trunk(std::vector<Path>& paths) {
-        size_t trunk = paths.size(), top = paths.size();
+        size_t trunk = kNoTrunk, top = paths.size();
         double lowest = -INFINITY, highest = INFINITY;
         for (size_t i = 0; i < paths.size(); i++) {
             const Box box = box_of(paths[i]);
@@ -228,16 +240,16 @@ class Joiner {
                 top = i;
             }
         }
-        if (trunk == paths.size()) return;
-        std::vector<bool> on_trunk(graph_.nodes.size(), false);
+        trunk_ = trunk;
+        if (trunk == kNoTrunk) return;
         for (size_t i = 1; i < paths[trunk].arms.size(); i++)
-            on_trunk[node(paths[trunk].arms[i])] = true;
+            on_trunk_[node(paths[trunk].arms[i])] = true;
         const size_t count = paths.size();
         for (size_t i = 0; i < count; i++) {
             if (i == trunk || i == top || paths[i].closed) continue;
             for (size_t k = 1; k < paths[i].arms.size(); k++) {
                 const Path path = paths[i];
-                if (!on_trunk[node(path.arms[k])]) continue;
+                if (!on_trunk_[node(path.arms[k])]) continue;
                 const double before = length_of(path, 0, k), after = length_of(path, k, path.arms.size());
                 if (std::min(before, after) < kFarBothSides * std::max(before, after)) continue;
                 mate(path.arms[k]) = mate(path.arms[k - 1].other()) = Arm();
@@ -251,6 +263,8 @@ class Joiner {
 
     const LineGraph& graph_;
     Mates mates_;
+    std::vector<bool> on_trunk_;
+    size_t trunk_ = kNoTrunk;
     double diagonal_ = 0.0;
 };
 
@@ -354,11 +368,6 @@ std::vector<DVec2> smoothed(const std::vector<DVec2>& points, bool closed, doubl
     return smooth;
 }
 
-size_t degree_at(const LineGraph& graph, const Arm& arm) {
-    const size_t node = graph.edges[arm.edge].nodes[arm.end];
-    return node == LineEdge::kNone ? 0 : graph.nodes[node].edges.size();
-}
-
 }  // namespace
 
 std::vector<TracedLine> trace_lines(const LineMask& thin, const std::vector<float>& depths, double spacing,
@@ -366,13 +375,16 @@ std::vector<TracedLine> trace_lines(const LineMask& thin, const std::vector<floa
     const LineGraph graph = graph_of_lines(thin, depths, who);
     std::vector<std::pair<double, TracedLine>> found;
     Joiner joiner(graph);
-    for (const Path& path : joiner.run()) {
+    const std::vector<Path> paths = joiner.run();
+    for (const Path& path : paths) {
         std::vector<DVec2> points = pixels_of(graph, joiner.mates(), path);
         if (points.size() < 2) continue;
-        const Arm first = path.arms.front(), last = path.arms.back().other();
-        const bool met_first = degree_at(graph, first) > 1, met_last = degree_at(graph, last) > 1;
-        if (!path.closed && (met_first != met_last ? met_last : points.back().y > points.front().y))
-            std::reverse(points.begin(), points.end());
+        if (!path.closed) {
+            const int first = joiner.rank(path.arms.front()), last = joiner.rank(path.arms.back().other());
+            const bool told = first != last && static_cast<size_t>(&path - paths.data()) != joiner.trunk();
+            if (told ? last > first : points.back().y > points.front().y)
+                std::reverse(points.begin(), points.end());
+        }
         double length = 0.0;
         for (const Arm& arm : path.arms)
             length += graph.edges[arm.edge].length;
