@@ -96,7 +96,10 @@ void TreeReconstruction::set_leaf_arrangement(LeafArrangement p_arrangement) {
 
 TreeReconstruction::LeafArrangement TreeReconstruction::get_leaf_arrangement() const {
     const std::lock_guard lock(mutex_);
-    return treerec::leaves_per_node(leaf_rules_) > 1 ? LEAF_ARRANGEMENT_OPPOSITE : LEAF_ARRANGEMENT_ALTERNATE;
+    // Bunches follow one another as single leaves do.
+    const bool bunches = leaf_rules_.arrangement == treerec::LeafArrangement::kFascicled;
+    return treerec::leaves_per_node(leaf_rules_) > 1 && !bunches ? LEAF_ARRANGEMENT_OPPOSITE
+                                                                 : LEAF_ARRANGEMENT_ALTERNATE;
 }
 
 void TreeReconstruction::set_leaf_value(int p_index, double p_value) {

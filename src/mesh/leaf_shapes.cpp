@@ -184,7 +184,7 @@ Spray spray_of(const std::string& preset) {
                 {0.50, 0.49, 0.22},
                 Habit::kFrond};
     if (preset == "ginkgo")
-        return {{1.45, 0.5, 1.0, Margin::kSmooth, 0, 0.30, 13, false, 0.62, true},
+        return {{1.68, 0.5, 1.0, Margin::kSmooth, 0, 0.30, 15, false, 0.62, true},
                 5,
                 false,
                 0.235,

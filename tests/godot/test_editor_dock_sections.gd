@@ -131,7 +131,7 @@ func test_a_long_string_waits() -> void:
 func test_twigs_are_kept_in_a_library() -> void:
 	_begin(grown_tree(6))
 	var shown: Twigs = _dock.sections[&"twigs"] as Twigs
-	check_equal(shown.list.item_count, 10, "presets")
+	check_equal(shown.list.item_count, 22, "presets")
 	var path: String = folder.path_join("mine.tres")
 	shown.make(path)
 	check_equal(shown.list.item_count, 0, "twigs of a new library")

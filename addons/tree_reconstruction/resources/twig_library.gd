@@ -4,7 +4,7 @@ class_name TwigLibrary
 extends Resource
 ## A collection of branches to graft.
 ##
-## [method presets] holds the ten that ship with the addon. Save one of your own as a
+## [method presets] holds those that ship with the addon. Save one of your own as a
 ## [code].tres[/code] file and fill it in the inspector or with [method Twig.from_branch].
 
 const _THUMBNAIL: String = "res://addons/tree_reconstruction/presets/twigs/%s.png"

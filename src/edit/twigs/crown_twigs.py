@@ -69,15 +69,15 @@ def magnolia(size):
         trunk, {"step": steps[1], "wander": 4, "lift": 30}]
 
 
-# How it grows, the seeds by size, the radius of its tips, the exponent of the pipe model, degrees above the level that it
-# grew at, the colours of its stout and of its thin wood, its first line.
+# How it grows, the seeds by size (of 400 those whose wood fills its room best), the radius of its tips, the exponent of
+# the pipe model, degrees above the level that it grew at, the colours of its stout and of its thin wood, its first line.
 KINDS = {
-    "maple": (maple, (41, 35, 5), 0.0022, 2.4, 35, (158, 132, 110), (172, 110, 92), "Maple, to fill a crown: shoots in pairs"),
-    "ginkgo": (ginkgo, (54, 20, 5), 0.0028, 2.5, 30, (150, 136, 116), (178, 160, 132),
+    "maple": (maple, (315, 387, 249), 0.0022, 2.4, 35, (158, 132, 110), (172, 110, 92), "Maple, to fill a crown: shoots in pairs"),
+    "ginkgo": (ginkgo, (163, 320, 294), 0.0028, 2.5, 30, (150, 136, 116), (178, 160, 132),
                "Ginkgo, to fill a crown: long shoots, short ones along them"),
-    "poplar": (poplar, (15, 40, 20), 0.0022, 2.4, 45, (160, 156, 136), (176, 158, 112),
+    "poplar": (poplar, (264, 358, 148), 0.0022, 2.4, 45, (160, 156, 136), (176, 158, 112),
                "Poplar, to fill a crown: shoots one by one, rising steeply"),
-    "magnolia": (magnolia, (24, 36, 46), 0.003, 2.6, 35, (146, 140, 132), (140, 116, 84),
+    "magnolia": (magnolia, (181, 162, 329), 0.003, 2.6, 35, (146, 140, 132), (140, 116, 84),
                  "Magnolia, to fill a crown: shoots several from one place"),
 }
 

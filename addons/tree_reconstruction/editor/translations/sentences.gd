@@ -406,11 +406,17 @@ const PATTERNS: PackedStringArray = [
 	"Cherry",
 	"Dead",
 	"Generic",
+	"Ginkgo",
+	"Magnolia",
 	"Maple",
 	"Oak",
 	"Pine",
+	"Poplar",
 	"Spruce",
 	"Willow",
+	"%s Short",
+	"%s Medium",
+	"%s Long",
 	"Apple: wide angles, thick spurs, shoots that rise",
 	"Birch: fine twigs that hang at their ends",
 	"Cherry: few long shoots, short spurs between them",
@@ -421,6 +427,10 @@ const PATTERNS: PackedStringArray = [
 	"Pine: whorls of stout shoots, turned up at their ends",
 	"Spruce: a flat spray, its twigs hanging a little",
 	"Weeping willow: long whips",
+	"Maple, to fill a crown: shoots in pairs",
+	"Ginkgo, to fill a crown: long shoots, short ones along them",
+	"Poplar, to fill a crown: shoots one by one, rising steeply",
+	"Magnolia, to fill a crown: shoots several from one place",
 ]
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.
