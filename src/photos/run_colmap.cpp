@@ -27,6 +27,10 @@ namespace fs = std::filesystem;
 
 constexpr double kSiftEnd = 0.7;      // where corners are tracked, too, as a share of the whole
 constexpr double kAloneShare = 0.02;  // of the whole: placing cameras by SIFT alone, before that
+constexpr const char* kBlanks =
+    "The names of some photos have blanks in them, which COLMAP's list of matches can't hold: rename them "
+    "for "
+    "corners to be tracked.";
 constexpr const char* kSiftDatabase = "matching.db";
 
 struct Model {
@@ -327,12 +331,8 @@ ColmapRun run_colmap(const std::string& folder, const std::string& out, const Co
     const bool sift = options.matcher != PhotoMatcher::kPyrlk;
     bool tracked = options.matcher != PhotoMatcher::kSift;
     if (tracked && !names_can_be_paired(photos)) {
-        const bool asked = options.matcher != PhotoMatcher::kAuto;
-        const std::string why =
-            "The names of some photos have blanks in them, which COLMAP's list of matches can't hold: rename "
-            "them for corners to be tracked.";
-        if (!sift) throw Error(why);
-        if (asked) work.warnings.push_back(why);
+        if (!sift) throw Error(kBlanks);
+        if (options.matcher == PhotoMatcher::kBoth) work.warnings.emplace_back(kBlanks);
         tracked = false;
     }
     if (tracked && sift) work.sift_end = kSiftEnd;

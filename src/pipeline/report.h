@@ -59,7 +59,8 @@ struct ReportDetails {
 //   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
 //   warnings [sentence]
 //   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
-//   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
+//   where the photos were not taken around something), contradictions [{photos [name, name], shared, fitting,
+//   own}] and weak_joints [{from, to, degrees, points}] (photos/photo_joints.h), cameras [{name, degrees, away}] (in their order around
 //   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
 //   says where it was taken; photos/gps_scale.h), marker {photos (that show any), side_m (null: not told),
 //   metres_per_unit (null: unknown), spread, markers [{id, photos, kept (that agree), parallax_degrees,

@@ -247,6 +247,28 @@ const PATTERNS: PackedStringArray = [
 		+ " from there alone is missing. Add photos there, one every 10 to 15 degrees."
 	),
 	(
+		"The places of the photos contradict what they show: of %s points that %s and %s share, %s"
+		+ " fit where these were placed, and %s fit another place. So the circle of photos is bent,"
+		+ " and the tree is wrong. Take more photos around these two."
+	),
+	(
+		"Only %s points join the photos on both sides of the gap between %s and %s, so that the parts"
+		+ " of the circle may be turned against each other. Take a photo between these two."
+	),
+	(
+		"To compare the photos by both features and tracked corners (in New Tree from Photos: Compare"
+		+ " by) finds more points that join them."
+	),
+	(
+		"COLMAP's features alone placed %s of %s photos, so corners were tracked as well, which"
+		+ " placed %s."
+	),
+	(
+		"The names of some photos have blanks in them, which COLMAP's list of matches can't hold:"
+		+ " rename them for corners to be tracked."
+	),
+	"COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.",
+	(
 		"The photos look at one side: they go %s of the 360 degrees around what they show, and from"
 		+ " there a tree looks no different from a wall. Walk around the tree, or a third of the way"
 		+ " at least. If there is a tree in their cloud, tell where it stands."
@@ -428,6 +450,7 @@ const _GAP: String = "%s"
 const IN_EDITOR: Dictionary[String, String] = {
 	"(--one-tree)": "(in the Import dock: switch Separate Trees off)",
 	"(--marker)": "(in New Tree from Photos: Marker's side)",
+	"(--matcher both)": "(in New Tree from Photos: Compare by)",
 	"(--tree)": "(in the Import dock: Tree in File)",
 	"leave out --classes.": "clear Classes in the Import dock.",
 	"--classes all reads these too.": "'all' for Classes in the Import dock reads these too.",
