@@ -24,11 +24,15 @@ using namespace std::chrono_literals;
 class RunColmap : public WithStandIn<InFolder> {
   protected:
     // Corners are tracked in pictures that show something: photos_track_test.cpp has these.
-    ColmapRun run(const ColmapOptions& options = {.matcher = PhotoMatcher::kSift},
-                  Progress* progress = nullptr) {
+    static ColmapOptions sift() {
+        ColmapOptions options;
+        options.matcher = PhotoMatcher::kSift;
+        return options;
+    }
+    ColmapRun run(const ColmapOptions& options = sift(), Progress* progress = nullptr) {
         return run_colmap(path("photos"), path("out"), options, progress);
     }
-    std::string sentence(const ColmapOptions& options = {.matcher = PhotoMatcher::kSift}) {
+    std::string sentence(const ColmapOptions& options = sift()) {
         try {
             run(options);
         } catch (const Error& error) {
