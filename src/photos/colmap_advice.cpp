@@ -39,7 +39,7 @@ Error none_registered(size_t photos, size_t features) {
 std::string more_matches(size_t by_sift, const ColmapRun& run) {
     if (by_sift < run.registered)
         return "COLMAP's features alone placed " + std::to_string(by_sift) + " of " +
-               std::to_string(run.photos) + " photos, so corners were tracked as well, which placed " +
+               std::to_string(run.photos) + " photos; corners were tracked as well, and placed " +
                std::to_string(run.registered) + ".";
     return "COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.";
 }
@@ -82,14 +82,10 @@ std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_
         // A wider one is open, which is said above.
         if (joint.degrees <= kWideGap && named++ < kJointsNamed)
             advice.push_back("Only " + std::to_string(joint.points) +
-                             " points join the photos on both sides of the gap between " + joint.from +
-                             " and " + joint.to +
-                             ", so that the parts of the circle may be turned against each other. Take a "
-                             "photo between these two.");
+                             " points hold the circle together between " + joint.from + " and " + joint.to +
+                             ": take a photo between these two.");
     if (further && (bent || named > 0))
-        advice.push_back(
-            "To compare the photos by both features and tracked corners (--matcher both) finds more points "
-            "that join them.");
+        advice.push_back("To compare the photos by both (--matcher both) finds more such points.");
     return advice;
 }
 

@@ -28,9 +28,7 @@ namespace fs = std::filesystem;
 constexpr double kSiftEnd = 0.7;      // where corners are tracked, too, as a share of the whole
 constexpr double kAloneShare = 0.02;  // of the whole: placing cameras by SIFT alone, before that
 constexpr const char* kBlanks =
-    "The names of some photos have blanks in them, which COLMAP's list of matches can't hold: rename them "
-    "for "
-    "corners to be tracked.";
+    "Some photos' names have blanks in them: rename them for corners to be tracked.";
 constexpr const char* kSiftDatabase = "matching.db";
 
 struct Model {

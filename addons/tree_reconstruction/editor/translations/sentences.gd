@@ -251,22 +251,10 @@ const PATTERNS: PackedStringArray = [
 		+ " fit where these were placed, and %s fit another place. So the circle of photos is bent,"
 		+ " and the tree is wrong. Take more photos around these two."
 	),
-	(
-		"Only %s points join the photos on both sides of the gap between %s and %s, so that the parts"
-		+ " of the circle may be turned against each other. Take a photo between these two."
-	),
-	(
-		"To compare the photos by both features and tracked corners (in New Tree from Photos: Compare"
-		+ " by) finds more points that join them."
-	),
-	(
-		"COLMAP's features alone placed %s of %s photos, so corners were tracked as well, which"
-		+ " placed %s."
-	),
-	(
-		"The names of some photos have blanks in them, which COLMAP's list of matches can't hold:"
-		+ " rename them for corners to be tracked."
-	),
+	"Only %s points hold the circle together between %s and %s: take a photo between these two.",
+	"To compare the photos by both (in New Tree from Photos: Compare by) finds more such points.",
+	"COLMAP's features alone placed %s of %s photos; corners were tracked as well, and placed %s.",
+	"Some photos' names have blanks in them: rename them for corners to be tracked.",
 	"COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.",
 	(
 		"The photos look at one side: they go %s of the 360 degrees around what they show, and from"
