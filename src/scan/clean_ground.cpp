@@ -423,14 +423,14 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground
     std::vector<uint8_t> open_columns(has_ground.size());
     for (size_t c = 0; c < open_columns.size(); c++)
         open_columns[c] = grass > tolerance && is_open(static_cast<int>(c));
-    const double surface = surface_above(points, columns, ground, open_columns);
+    ground.surface = surface_above(points, columns, ground, open_columns);
     std::vector<uint8_t> open(points.size());  // by point: nothing stands in its column
     for (size_t i = 0; i < points.size(); i++) {
         const int c = columns.column_of(points[i]);
         open[i] = c >= 0 && open_columns[static_cast<size_t>(c)];
         const double above = ground.above(points[i]);
         if (std::abs(above) > (open[i] ? grass : tolerance)) continue;
-        goes[i] = c < 0 || open[i] || above < surface || layers[static_cast<size_t>(c)] != kAllLayers;
+        goes[i] = c < 0 || open[i] || layers[static_cast<size_t>(c)] != kAllLayers;
     }
     find_low_plants(points, ranges, ground, height, open, goes);
     return goes;
