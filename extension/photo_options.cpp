@@ -29,9 +29,10 @@ TypedArray<Dictionary> list_options() {
          "Which photos are compared: sequence takes neighbours by name, exhaustive all with all; auto "
          "compares all "
          "of up to 80."},
-        {"matcher", "sift", PROPERTY_HINT_ENUM, "sift,pyrlk,both",
+        {"matcher", "auto", PROPERTY_HINT_ENUM, "auto,sift,pyrlk,both",
          "How photos are compared: sift takes COLMAP's features, pyrlk tracks corners and is several times "
-         "faster where neighbours are near, both joins the two and gives more points."},
+         "faster where neighbours are near, both joins the two and gives more points; auto takes sift, and "
+         "both where that does not place all photos, or places some doubtfully."},
         {"dense", true, PROPERTY_HINT_NONE, "",
          "Matches the photos pixel by pixel; without it the cloud has the few points that placed the "
          "cameras."},

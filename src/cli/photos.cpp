@@ -61,8 +61,9 @@ std::vector<Option> all_options() {
          "which photos are compared: exhaustive (all), sequence (neighbours by name, the last with\n"
          "the first) or auto, the default: exhaustive for up to 80"},
         {"--matcher", "MATCHER",
-         "what photos share is found out by sift (COLMAP's features, the default), pyrlk (corners\n"
-         "tracked from photo to photo) or both"},
+         "what photos share is found out by sift (COLMAP's features), pyrlk (corners tracked from photo\n"
+         "to photo), both, or auto, the default: sift, and both where that does not place all photos,\n"
+         "or places some doubtfully"},
         {"--show-matches", "A,B", "nothing but OUT/matches_A_B.png: what is tracked from photo A to photo B"},
         {"--time", "TIME", "how much to find in each photo: quick, normal or best (default normal)"},
         {"--hold-out", "N",
@@ -172,7 +173,7 @@ void run_photos(const std::vector<std::string>& words) {
     options.colmap.program = arguments.text("--colmap", "");
     options.colmap.order = as_usage([&] { return parse_photo_order(arguments.text("--order", "auto")); });
     options.colmap.matcher =
-        as_usage([&] { return parse_photo_matcher(arguments.text("--matcher", "sift")); });
+        as_usage([&] { return parse_photo_matcher(arguments.text("--matcher", "auto")); });
     options.colmap.effort = as_usage([&] { return parse_photo_effort(arguments.text("--time", "normal")); });
     options.cloud = cloud_options_of(options.colmap.effort);
     options.cloud.dense = !arguments.has("--sparse");

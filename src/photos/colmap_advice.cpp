@@ -11,6 +11,7 @@ constexpr size_t kFewFeatures = 400;  // in a photo: sharp ones of bark and leav
 constexpr size_t kAScene = 5;         // photos that only another model has
 constexpr double kWideGap = 45.0;     // degrees
 constexpr size_t kNamed = 5;          // photos
+constexpr size_t kJointsNamed = 3;
 
 const char* const kHowToTake =
     "Walk around the tree and take a photo every 10 to 15 degrees (24 to 36 for the circle), each showing "
@@ -35,7 +36,15 @@ Error none_registered(size_t photos, size_t features) {
     return Error(begin + "they overlap too little, or do not show the same thing. " + kHowToTake);
 }
 
-std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_t>& models) {
+std::string more_matches(size_t by_sift, const ColmapRun& run) {
+    if (by_sift < run.registered)
+        return "COLMAP's features alone placed " + std::to_string(by_sift) + " of " +
+               std::to_string(run.photos) + " photos; corners were tracked as well, and placed " +
+               std::to_string(run.registered) + ".";
+    return "COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.";
+}
+
+std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_t>& models, bool further) {
     std::vector<std::string> advice;
     const bool two_scenes = models.size() > 1 && models[1] >= kAScene;
     if (two_scenes)
@@ -58,6 +67,25 @@ std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_
                          run.widest_gap->from + " and " + run.widest_gap->to +
                          ": what is seen from there alone is missing. Add photos there, one every 10 to 15 "
                          "degrees.");
+    const bool bent = !run.joints.contradictions.empty();
+    if (bent) {
+        const PhotoContradiction& worst = run.joints.contradictions[0];
+        advice.push_back("The places of the photos contradict what they show: of " +
+                         std::to_string(worst.shared) + " points that " + worst.one + " and " + worst.other +
+                         " share, " + std::to_string(worst.fitting) + " fit where these were placed, and " +
+                         std::to_string(worst.own) +
+                         " fit another place. So the circle of photos is bent, and the tree is wrong. Take "
+                         "more photos around these two.");
+    }
+    size_t named = 0;
+    for (const PhotoJoint& joint : run.joints.weak)
+        // A wider one is open, which is said above.
+        if (joint.degrees <= kWideGap && named++ < kJointsNamed)
+            advice.push_back("Only " + std::to_string(joint.points) +
+                             " points hold the circle together between " + joint.from + " and " + joint.to +
+                             ": take a photo between these two.");
+    if (further && (bent || named > 0))
+        advice.push_back("To compare the photos by both (--matcher both) finds more such points.");
     return advice;
 }
 

@@ -15,8 +15,12 @@ Error too_few_photos(size_t photos, const std::string& folder);
 // features: of a usual photo; 0 where that is not known.
 Error none_registered(size_t photos, size_t features);
 
-// On what a model lacks: photos, a part of the circle. models: the sizes of COLMAP's models, the largest
-// first, each but the first one without the photos that are in those before.
-std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_t>& models);
+// That corners were tracked, too, since SIFT's matches alone had placed `by_sift` photos, or doubtfully.
+std::string more_matches(size_t by_sift, const ColmapRun& run);
+
+// On what a model lacks: photos, a part of the circle, what holds it together. models: the sizes of COLMAP's
+// models, the largest first, each but the first one without the photos that are in those before. further:
+// another matcher may find more.
+std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_t>& models, bool further);
 
 }  // namespace treerec

@@ -109,7 +109,7 @@ void read_binary(const Source& camera_source, const Source& image_source, Camera
     const auto photos = image_in.value<uint64_t>();
     for (uint64_t i = 0; i < photos; i++) {
         Photo photo;
-        image_in.value<uint32_t>();
+        photo.number = image_in.value<uint32_t>();
         for (double& q : photo.rotation)
             q = image_in.value<double>();
         for (int k = 0; k < 3; k++)
@@ -161,9 +161,9 @@ void read_text(const Source& camera_source, const Source& image_source, Cameras&
     for (size_t i = 0; i < lines.size(); i += 2) {
         std::istringstream in(lines[i]);
         in.imbue(std::locale::classic());
-        uint32_t id = 0, camera = 0;
+        uint32_t camera = 0;
         Photo photo;
-        in >> id;
+        in >> photo.number;
         for (double& q : photo.rotation)
             in >> q;
         in >> photo.translation.x >> photo.translation.y >> photo.translation.z >> camera >> std::ws;

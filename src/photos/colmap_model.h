@@ -56,6 +56,7 @@ struct Photo {
     int camera = 0;                                      // index into PhotoModel::cameras
     std::array<double, 4> rotation{1.0, 0.0, 0.0, 0.0};  // quaternion w x y z, world to camera
     DVec3 translation{0.0};
+    uint32_t number = 0;  // COLMAP's, by which its points name it
 
     DVec3 to_camera(const DVec3& world) const;
     // Turns directions of the world into the camera's: its rows are the camera's axes.

@@ -10,6 +10,7 @@
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "photos/cameras_tell.h"
+#include "photos/free_space.h"
 #include "photos/pair_places.h"
 #include "photos/photo_picture.h"
 #include "photos/sky_mask.h"
@@ -30,6 +31,7 @@ constexpr double kCellPixels = 2.0;
 constexpr double kFinePixels = 4.0;     // of the matched pictures', have those that tell parts of a pixel,
 constexpr double kMostFine = 400.0;     // megapixels of all photos together at most: three bytes each
 constexpr double kCellReach = 1 << 20;  // cells to each side that have a number
+constexpr double kSlack = 2.0;          // cells, by which what a photo sees through a point lies behind it
 
 // How far what a photo shows is in front of it, in the model's unit.
 struct Depths {
@@ -136,12 +138,14 @@ std::vector<Pair> choose_pairs(const std::vector<PhotoSizes>& photos, const std:
     return pairs;
 }
 
-// What a pair sees, a sum for each cell, by cell. sky: of the first one.
+// What a pair sees, a sum for each cell, by cell. sky: of the first one. space: gets how far that one looks.
 std::vector<Sight> look(const PhotoSizes& one, const PhotoSizes& other, const PhotoSky& sky,
                         const Depths& depths, const Region& region, const Cells& cells, double cell,
-                        uint32_t number) {
+                        uint32_t number, FreeSpace& space) {
     std::vector<Sight> sights;
+    space = FreeSpace(one.matched);
     for (const PairPlace& seen : places_of_pair(one, other, sky, depths.least, depths.most)) {
+        space.add(seen.place, seen.unsure);
         if (!region.has(seen.place) || !cells.has(seen.place)) continue;
         Sight sight;
         sight.cell = cells.of(seen.place);
@@ -168,10 +172,17 @@ std::vector<Sight> look(const PhotoSizes& one, const PhotoSizes& other, const Ph
     return sights;
 }
 
-// The cells that enough pairs see, themselves or right beside; a point for each.
-PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double cell, int agreeing,
-                  const DVec3& origin) {
+// What enough pairs agree on.
+struct Agreed {
     PointCloud cloud;
+    std::vector<uint32_t> pairs;  // by point: that see it
+};
+
+// The cells that enough pairs see, themselves or right beside; a point for each.
+Agreed agreed(const std::vector<Sight>& sights, const Cells& cells, double cell, int agreeing,
+              const DVec3& origin) {
+    Agreed found;
+    PointCloud& cloud = found.cloud;
     cloud.frame.origin = origin;
     std::vector<size_t> starts;
     for (size_t i = 0; i < sights.size(); i++)
@@ -179,14 +190,13 @@ PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double c
     starts.push_back(sights.size());
     const size_t count = starts.size() - 1;
     const auto find = [&](uint64_t wanted) {
-        const auto found =
+        const auto at =
             std::lower_bound(starts.begin(), starts.end() - 1, wanted,
-                             [&](size_t at, uint64_t value) { return sights[at].cell < value; });
-        return found != starts.end() - 1 && sights[*found].cell == wanted
-                   ? static_cast<size_t>(found - starts.begin())
-                   : count;
+                             [&](size_t start, uint64_t value) { return sights[start].cell < value; });
+        return at != starts.end() - 1 && sights[*at].cell == wanted ? static_cast<size_t>(at - starts.begin())
+                                                                    : count;
     };
-    std::vector<uint8_t> keep(count, 0);
+    std::vector<uint32_t> by(count, 0);
     parallel_for(count, 4096, [&](size_t begin, size_t end) {
         std::vector<uint32_t> seen;
         for (size_t i = begin; i < end; i++) {
@@ -203,11 +213,12 @@ PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double c
                             seen.push_back(sights[k].pair);
                     }
             std::sort(seen.begin(), seen.end());
-            keep[i] = std::unique(seen.begin(), seen.end()) - seen.begin() >= agreeing;
+            by[i] = static_cast<uint32_t>(std::unique(seen.begin(), seen.end()) - seen.begin());
         }
     });
     for (size_t i = 0; i < count; i++) {
-        if (!keep[i]) continue;
+        if (by[i] < static_cast<uint32_t>(agreeing)) continue;
+        found.pairs.push_back(by[i]);
         Vec3 place{0.0F}, colour{0.0F};
         float weight = 0.0F;
         for (size_t k = starts[i]; k < starts[i + 1]; k++) {
@@ -221,7 +232,22 @@ PointCloud agreed(const std::vector<Sight>& sights, const Cells& cells, double c
         cloud.colors.push_back(
             {static_cast<uint8_t>(mean.x), static_cast<uint8_t>(mean.y), static_cast<uint8_t>(mean.z)});
     }
-    return cloud;
+    return found;
+}
+
+// Beside an edge, matching takes what lies behind it for as near as the edge: around a trunk hangs what is
+// far behind it. Who looks from elsewhere sees through that.
+void drop_seen_through(Agreed& found, const std::vector<FreeSpace>& spaces, double cell,
+                       const Progress& progress) {
+    std::vector<DVec3> places;
+    places.reserve(found.cloud.size());
+    for (const Vec3& p : found.cloud.positions)
+        places.push_back(found.cloud.frame.origin + DVec3(p));
+    const std::vector<uint32_t> through = count_seen_through(places, spaces, kSlack * cell, &progress);
+    std::vector<uint8_t> keep(places.size());
+    for (size_t i = 0; i < places.size(); i++)
+        keep[i] = through[i] <= found.pairs[i];
+    found.cloud.keep_only(keep);
 }
 
 // By how much a picture's sides are divided to have about so many megapixels.
@@ -301,13 +327,14 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
                 skies[i] = sky_in(photos[i].matched, region.sky, 0);
         });
     std::vector<std::vector<Sight>> seen(pairs.size());
+    std::vector<FreeSpace> spaces(pairs.size());
     std::atomic<size_t> done{0};
     parallel_for(pairs.size(), 1, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             matching.check();
             const auto [one, other] = pairs[i];
             seen[i] = look(photos[one], photos[other], skies[one], depths[one], region, cells, result.cell,
-                           static_cast<uint32_t>(i));
+                           static_cast<uint32_t>(i), spaces[i]);
             matching.update(static_cast<double>(++done) / static_cast<double>(pairs.size()), "Dense points");
         }
     });
@@ -319,7 +346,9 @@ Densified densify(const PhotoModel& model, std::span<const DVec3> sparse, const 
     }
     std::stable_sort(sights.begin(), sights.end(),
                      [](const Sight& a, const Sight& b) { return a.cell < b.cell; });
-    result.cloud = agreed(sights, cells, result.cell, options.agreeing, middle);
+    Agreed found = agreed(sights, cells, result.cell, options.agreeing, middle);
+    drop_seen_through(found, spaces, result.cell, matching);
+    result.cloud = std::move(found.cloud);
     if (result.cloud.empty()) throw Error("The photos agree on no point: are they sharp, and of one thing?");
     return result;
 }

@@ -24,6 +24,9 @@ struct Normal {
     DVec2 middle{0.0};
     double scale = 1.0;
     DVec2 of(const DVec2& p) const { return scale * (p - middle); }
+    DMat3 matrix() const {
+        return DMat3(scale, 0.0, 0.0, 0.0, scale, 0.0, -scale * middle.x, -scale * middle.y, 1.0);
+    }
 };
 
 Normal normal_of(std::span<const PlacePair> matches, DVec2 PlacePair::*place) {
@@ -91,30 +94,62 @@ bool null_of(std::array<Row, kSample> rows, Row& solution) {
     return true;
 }
 
-// The nearest matrix of rank 2; DMat3 is by columns: column j of the result holds f's entries (0..2, j).
-DMat3 of_rank_two(const Row& f) {
+// DMat3 is by columns: column j of the result holds f's entries (0..2, j).
+DMat3 matrix_of(const Row& f) {
     DMat3 matrix;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             matrix[j][i] = f[static_cast<size_t>(3 * i + j)];
+    return matrix;
+}
+
+SymmetricEigen<3> right_vectors(const DMat3& matrix) {
     const DMat3 square = glm::transpose(matrix) * matrix;
     SquareMatrix<3> asked;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             asked[i][j] = square[i][j];
-    const SymmetricEigen<3> eigen = symmetric_eigen(asked);
-    const auto least = eigen.vector(eigen.smallest());
-    const DVec3 way(least[0], least[1], least[2]);
+    return symmetric_eigen(asked);
+}
+
+DVec3 vector_of(const SymmetricEigen<3>& eigen, size_t i) {
+    const auto v = eigen.vector(i);
+    return DVec3(v[0], v[1], v[2]);
+}
+
+// The nearest matrix of rank 2.
+DMat3 of_rank_two(const DMat3& matrix) {
+    const SymmetricEigen<3> eigen = right_vectors(matrix);
+    const DVec3 way = vector_of(eigen, eigen.smallest());
     return matrix - glm::outerProduct(matrix * way, way);
+}
+
+// The nearest essential matrix: both singular values that are not 0 become their mean.
+DMat3 of_equal_values(const DMat3& matrix) {
+    const SymmetricEigen<3> eigen = right_vectors(matrix);
+    const size_t least = eigen.smallest();
+    DMat3 sum(0.0);
+    double values = 0.0;
+    for (size_t i = 0; i < 3; i++) {
+        if (i == least) continue;
+        const DVec3 right = vector_of(eigen, i), left = matrix * right;
+        const double value = glm::length(left);
+        if (!(value > 0.0)) return matrix;
+        values += value;
+        sum += glm::outerProduct(left / value, right);
+    }
+    return 0.5 * values * sum;
 }
 
 class Agreement {
   public:
-    Agreement(std::span<const PlacePair> matches, double tolerance)
-        : one_(normal_of(matches, &PlacePair::one)), other_(normal_of(matches, &PlacePair::other)) {
+    Agreement(std::span<const PlacePair> matches, const PairGeometryOptions& options)
+        : one_(normal_of(matches, &PlacePair::one)),
+          other_(normal_of(matches, &PlacePair::other)),
+          calibrated_(options.calibrated) {
         for (const PlacePair& match : matches)
             places_.push_back({one_.of(match.one), other_.of(match.other)});
-        const double scaled = tolerance * std::sqrt(one_.scale * other_.scale);
+        const double scaled = options.tolerance * std::sqrt(one_.scale * other_.scale);
         most_ = scaled * scaled;
     }
 
@@ -131,7 +166,7 @@ class Agreement {
         }
         Row f{};
         if (!null_of(rows, f)) return false;
-        found = of_rank_two(f);
+        found = nearest(f);
         return true;
     }
 
@@ -145,7 +180,7 @@ class Agreement {
                     sum[i][j] += row[i] * row[j];
         }
         const SymmetricEigen<9> eigen = symmetric_eigen(sum);
-        return of_rank_two(eigen.vector(eigen.smallest()));
+        return nearest(eigen.vector(eigen.smallest()));
     }
 
     // Which agree, and how well on the whole: the nearer to its line, the more a match counts (Torr and
@@ -153,11 +188,7 @@ class Agreement {
     double mark(const DMat3& f, std::vector<uint8_t>& agreeing) const {
         double score = 0.0;
         for (size_t m = 0; m < places_.size(); m++) {
-            const DVec3 one(places_[m].one, 1.0), other(places_[m].other, 1.0);
-            const DVec3 line = f * one, back = glm::transpose(f) * other;
-            const double error = glm::dot(other, line);
-            const double slope = line.x * line.x + line.y * line.y + back.x * back.x + back.y * back.y;
-            const double squared = slope > 0.0 ? error * error / slope : INFINITY;
+            const double squared = squared_sampson(f, places_[m]);
             agreeing[m] = squared < most_;
             if (agreeing[m]) score += 1.0 - squared / most_;
         }
@@ -166,7 +197,16 @@ class Agreement {
     size_t size() const { return places_.size(); }
 
   private:
+    DMat3 nearest(const Row& f) const {
+        const DMat3 matrix = matrix_of(f);
+        if (!calibrated_) return of_rank_two(matrix);
+        // That of the places themselves is an essential matrix.
+        const DMat3 one = one_.matrix(), back = glm::transpose(other_.matrix());
+        return glm::inverse(back) * of_equal_values(back * matrix * one) * glm::inverse(one);
+    }
+
     Normal one_, other_;
+    bool calibrated_;
     std::vector<PlacePair> places_;
     double most_ = 0.0;
 };
@@ -177,11 +217,19 @@ size_t count_of(const std::vector<uint8_t>& agreeing) {
 
 }  // namespace
 
+double squared_sampson(const DMat3& f, const PlacePair& match) {
+    const DVec3 one(match.one, 1.0), other(match.other, 1.0);
+    const DVec3 line = f * one, back = glm::transpose(f) * other;
+    const double error = glm::dot(other, line);
+    const double slope = line.x * line.x + line.y * line.y + back.x * back.x + back.y * back.y;
+    return slope > 0.0 ? error * error / slope : INFINITY;
+}
+
 std::vector<uint8_t> agreeing_on_geometry(std::span<const PlacePair> matches,
                                           const PairGeometryOptions& options, const Progress* progress) {
     std::vector<uint8_t> best(matches.size(), 0);
     if (matches.size() < std::max(options.least, kSample)) return best;
-    const Agreement agreement(matches, options.tolerance);
+    const Agreement agreement(matches, options);
     Random random(matches.size());
     std::vector<uint8_t> agreeing(matches.size());
     double most = 0.0;

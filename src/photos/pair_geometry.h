@@ -19,7 +19,14 @@ struct PairGeometryOptions {
     double tolerance = 2.0;  // pixels from the epipolar line (Sampson's distance)
     size_t least = 15;       // matches that agree, as COLMAP asks, and of them all
     double least_share = 0.25;
+    // The places are ways (x, y, 1) in the cameras' own coordinates, and the tolerance is in these: asked is
+    // an essential matrix, which has two equal singular values (Huang and Faugeras 1989).
+    bool calibrated = false;
 };
+
+// The square of how far a match is from the epipolar lines of `f`, in the places' unit (Sampson's distance;
+// Hartley and Zisserman, "Multiple View Geometry", 2004, 11.4.3). f: other' f one = 0.
+double squared_sampson(const DMat3& f, const PlacePair& match);
 
 // Which of the matches agree on one epipolar geometry: for each 1 or 0. All 0 where too few do: then the
 // photos don't show the same thing. The fundamental matrix is that of most agreement among random samples of

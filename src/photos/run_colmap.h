@@ -8,6 +8,7 @@
 
 #include "photos/cameras_tell.h"
 #include "photos/gps_scale.h"
+#include "photos/photo_joints.h"
 #include "progress.h"
 
 namespace treerec {
@@ -21,16 +22,18 @@ enum class PhotoOrder {
 
 // How it is found out what the photos share.
 enum class PhotoMatcher {
+    kAuto,   // kSift, and kBoth where that does not place all photos, or places them doubtfully
     kSift,   // COLMAP's own features
     kPyrlk,  // corners tracked from photo to photo (photos/match_pair.h): no SIFT
-    kBoth,   // the tracks of both; no fewer photos are placed than with kSift
+    kBoth,   // the tracks of both; no fewer photos are placed than with kSift, unless these contradict
+             // themselves
 };
 
 // How long it may take.
 enum class PhotoEffort { kQuick, kNormal, kBest };
 
-// "auto", "sequence", "exhaustive"; "sift", "pyrlk", "both"; "quick", "normal", "best". Throw Error for
-// another word.
+// "auto", "sequence", "exhaustive"; "auto", "sift", "pyrlk", "both"; "quick", "normal", "best". Throw Error
+// for another word.
 PhotoOrder parse_photo_order(const std::string& word);
 PhotoMatcher parse_photo_matcher(const std::string& word);
 PhotoEffort parse_photo_effort(const std::string& word);
@@ -38,7 +41,7 @@ PhotoEffort parse_photo_effort(const std::string& word);
 struct ColmapOptions {
     std::string program;  // or its folder; "": $COLMAP, PATH, the usual folders
     PhotoOrder order = PhotoOrder::kAuto;
-    PhotoMatcher matcher = PhotoMatcher::kSift;
+    PhotoMatcher matcher = PhotoMatcher::kAuto;
     PhotoEffort effort = PhotoEffort::kNormal;
     int threads = 0;  // 0: one per core
 };
@@ -51,6 +54,7 @@ struct ColmapRun {
     std::vector<std::string> missing;     // the names of the others
     std::vector<CameraAround> around;     // those that are known, around what was photographed
     std::optional<CircleGap> widest_gap;  // between them
+    PhotoJoints joints;                   // where they may be placed wrongly
     std::vector<std::string> warnings;    // what could be done better, as sentences
     GpsScale gps;                         // the model's unit, as far as the photos say where they were taken
 };

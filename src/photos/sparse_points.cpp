@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <utility>
 
 #include "error.h"
 #include "file_bytes.h"
@@ -11,8 +12,6 @@
 namespace treerec {
 
 namespace {
-
-constexpr size_t kTrackEntry = 8;  // bytes: a photo and a place in it
 
 std::vector<SparsePoint> parse_binary(std::string_view bytes, const std::string& path) {
     BinaryReader in(path, bytes);
@@ -27,9 +26,12 @@ std::vector<SparsePoint> parse_binary(std::string_view bytes, const std::string&
             channel = in.value<uint8_t>();
         point.error = in.value<double>();
         const auto track = in.value<uint64_t>();
-        in.skip(track, kTrackEntry);
-        point.track = static_cast<size_t>(track);
-        points.push_back(point);
+        for (uint64_t k = 0; k < track; k++) {
+            point.photos.push_back(in.value<uint32_t>());
+            in.skip(1, 4);  // the place in it
+        }
+        point.track = point.photos.size();
+        points.push_back(std::move(point));
     }
     return points;
 }
@@ -57,8 +59,9 @@ std::vector<SparsePoint> parse_text(std::string_view bytes, const std::string& p
                         ".");
         uint64_t photo = 0, place = 0;
         while (in >> photo >> place)
-            point.track++;
-        points.push_back(point);
+            point.photos.push_back(static_cast<uint32_t>(photo));
+        point.track = point.photos.size();
+        points.push_back(std::move(point));
     }
     return points;
 }

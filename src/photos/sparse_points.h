@@ -16,6 +16,7 @@ struct SparsePoint {
     Color8 color{};
     double error = 0.0;  // pixels: the mean distance of what the photos saw of it from where it falls
     size_t track = 0;    // photos that saw it
+    std::vector<uint32_t> photos{};  // these, by Photo::number
 };
 
 // points3D.bin, or else points3D.txt, of a model's folder, in the file's order. Throws Error, or Cancelled.

@@ -21,7 +21,7 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kMethod = "points 9";  // another number where another cloud comes out
+constexpr const char* kMethod = "points 10";  // another number where another cloud comes out
 constexpr double kFilmEnd = 0.1;
 constexpr double kHeicEnd = 0.05;
 constexpr double kColmapEnd = 0.6;

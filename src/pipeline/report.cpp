@@ -156,6 +156,15 @@ Json photos_json(const ReportDetails& details) {
     if (run.widest_gap)
         gap = {
             {"degrees", run.widest_gap->degrees}, {"from", run.widest_gap->from}, {"to", run.widest_gap->to}};
+    Json contradictions = Json::array(), weak = Json::array();
+    for (const PhotoContradiction& two : run.joints.contradictions)
+        contradictions.push_back({{"photos", {two.one, two.other}},
+                                  {"shared", two.shared},
+                                  {"fitting", two.fitting},
+                                  {"own", two.own}});
+    for (const PhotoJoint& joint : run.joints.weak)
+        weak.push_back(
+            {{"from", joint.from}, {"to", joint.to}, {"degrees", joint.degrees}, {"points", joint.points}});
     Json gps;
     if (run.gps.photos > 0)
         gps = {{"photos", run.gps.photos},
@@ -171,6 +180,8 @@ Json photos_json(const ReportDetails& details) {
             {"colmap", run.version},
             {"pairs", details.photo_pairs},
             {"widest_gap", gap},
+            {"contradictions", contradictions},
+            {"weak_joints", weak},
             {"cameras", cameras},
             {"gps", gps},
             {"marker", marker}};

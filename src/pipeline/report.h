@@ -59,15 +59,16 @@ struct ReportDetails {
 //   orders [{points .. coverage}]}: of the wood (fidelity/fidelity.h), from at most about 200000 points
 //   warnings [sentence]
 //   photos {photos, placed, missing [name], colmap (version), pairs, widest_gap {degrees, from, to} (null
-//   where the photos were not taken around something), cameras [{name, degrees, away}] (in their order around
-//   what was photographed), gps {photos, fixes, kept, metres_per_unit, relative_error} (null where no photo
-//   says where it was taken; photos/gps_scale.h), marker {photos (that show any), side_m (null: not told),
-//   metres_per_unit (null: unknown), spread, markers [{id, photos, kept (that agree), parallax_degrees,
-//   side_units (null: not measured), uneven, why_not (a sentence, or null)}]} (null where no photo shows one;
-//   photos/marker_scale.h), outline {photos (that judge), by ("masks", or "sky": then
-//   R_3d, Q and precision are upper bounds, and recall and iou null), hold_out (every how many one; 0: the
-//   tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), R_s, Q, recall, precision,
-//   iou, by_photo
+//   where the photos were not taken around something), contradictions [{photos [name, name], shared, fitting,
+//   own}] and weak_joints [{from, to, degrees, points}] (photos/photo_joints.h), cameras [{name, degrees,
+//   away}] (in their order around what was photographed), gps {photos, fixes, kept, metres_per_unit,
+//   relative_error} (null where no photo says where it was taken; photos/gps_scale.h), marker {photos (that
+//   show any), side_m (null: not told), metres_per_unit (null: unknown), spread, markers [{id, photos, kept
+//   (that agree), parallax_degrees, side_units (null: not measured), uneven, why_not (a sentence, or null)}]}
+//   (null where no photo shows one; photos/marker_scale.h), outline {photos (that judge), by ("masks", or
+//   "sky": then R_3d, Q and precision are upper bounds, and recall and iou null), hold_out (every how many
+//   one; 0: the tree was made of them), I, R_3d, R_3d_seen (of the points that each shows), R_s, Q, recall,
+//   precision, iou, by_photo
 //   [{name, inside (points on the tree), outside, recall, precision, iou}]} (null where nothing judges, and
 //   outline_lacks is a sentence, or null where nobody asked)}: of a scan that was made of photos alone
 //   bark {from "photos" or "drawn", why_drawn (a sentence, or null), photos, pixel_mm, detail_mm (null where

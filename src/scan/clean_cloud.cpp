@@ -106,6 +106,25 @@ class Cleaning {
         report_.steps.push_back({"Other trees", removed});
     }
 
+    // Leaves out what lies below the ground's surface at the foot. Counted as ground.
+    void take_below(const Ground& ground) {
+        if (!ground.found) return;
+        const std::vector<Vec3> left = points();
+        std::vector<uint32_t> kept;
+        size_t removed = 0;
+        for (size_t i = 0; i < alive_.size(); i++) {
+            const double above = ground.above(left[i]);
+            if (above < ground.surface && above >= -ground.tolerance)
+                removed += weights_[alive_[i]];
+            else
+                kept.push_back(alive_[i]);
+        }
+        if (kept.empty()) return;
+        alive_.swap(kept);
+        for (CleanStep& step : report_.steps)
+            if (step.name == "Ground") step.removed += removed;
+    }
+
     // Leaves out what stands beside the tree that is wanted.
     void take_beside(const Ground& ground, const DVec3& place, const Progress* progress) {
         const std::vector<uint8_t> goes =
@@ -166,6 +185,8 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     step(0.75);
     if (options.pick.enabled) cleaning.take_others(ground, spacing, options.pick, progress);
     if (options.pick.position) cleaning.take_beside(ground, *options.pick.position, progress);
+    // Not before: it holds the stems of a clump together.
+    cleaning.take_below(ground);
     step(0.85);
     if (options.remove_fragments) {
         const double share = cleaning.take("Fragments", find_fragments(cleaning.points(), spacing, progress));

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 
+#include "geometry/quantile.h"
 #include "geometry/random.h"
 #include "scan/clean_steps.h"
 #include "scan/robust.h"
@@ -294,6 +295,20 @@ bool is_walkable(const Ground& ground, int column) {
     return glm::length(slope) <= kSteepest;
 }
 
+// How far the ground's surface lies above the lowest points that it was found by, which those of photos
+// scatter below it.
+double surface_above(const std::vector<Vec3>& points, const Columns& columns, const Ground& ground,
+                     const std::vector<uint8_t>& open) {
+    std::vector<double> heights;
+    for (const Vec3& p : points) {
+        const int c = columns.column_of(p);
+        if (c < 0 || !open[static_cast<size_t>(c)]) continue;
+        if (const double above = ground.above(p); std::abs(above) <= ground.tolerance)
+            heights.push_back(above);
+    }
+    return heights.empty() ? 0.0 : std::max(0.0, quantile(heights, 0.5));
+}
+
 // Marks what grows out of the ground and ends low, and the tips of blades.
 void find_low_plants(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges,
                      const Ground& ground, double height, const std::vector<uint8_t>& open,
@@ -408,11 +423,13 @@ std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground
     std::vector<uint8_t> open_columns(has_ground.size());
     for (size_t c = 0; c < open_columns.size(); c++)
         open_columns[c] = grass > tolerance && is_open(static_cast<int>(c));
+    ground.surface = surface_above(points, columns, ground, open_columns);
     std::vector<uint8_t> open(points.size());  // by point: nothing stands in its column
     for (size_t i = 0; i < points.size(); i++) {
         const int c = columns.column_of(points[i]);
         open[i] = c >= 0 && open_columns[static_cast<size_t>(c)];
-        if (std::abs(ground.above(points[i])) > (open[i] ? grass : tolerance)) continue;
+        const double above = ground.above(points[i]);
+        if (std::abs(above) > (open[i] ? grass : tolerance)) continue;
         goes[i] = c < 0 || open[i] || layers[static_cast<size_t>(c)] != kAllLayers;
     }
     find_low_plants(points, ranges, ground, height, open, goes);

@@ -46,6 +46,7 @@ struct Ground {
     int depth = 0;
     std::vector<float> relief;  // by column, z * width + x
     double tolerance = 0.0;     // how thick the layer is taken to be, to either side
+    double surface = 0.0;       // how far above it half of its points lie; it runs along the lowest ones
 
     double above_plane(const Vec3& p) const {
         return p.y - height - glm::dot(slope, DVec2(p.x, p.z) - centre);

@@ -44,8 +44,11 @@ double noise_at(const DVec3& p) {
     return sum;
 }
 
+// A fence all around, as high as it is low: it ends at the camera's height, and is as even as the sky.
+constexpr double kFence = 5.0;
+
 // What the scene looks like along a ray: a stem of some texture, on a ground, before a grey sky.
-uint8_t seen_along(const DVec3& from, const DVec3& way) {
+uint8_t seen_along(const DVec3& from, const DVec3& way, bool fenced) {
     const double a = way.x * way.x + way.z * way.z;
     const double b = from.x * way.x + from.z * way.z;
     const double c = from.x * from.x + from.z * from.z - kRadius * kRadius;
@@ -54,6 +57,8 @@ uint8_t seen_along(const DVec3& from, const DVec3& way) {
     const double ground = way.y < 0.0 ? (-1.0 - from.y) / way.y : -1.0;
     double at = stem > 0.0 ? stem : ground;
     if (stem > 0.0 && ground > 0.0) at = std::min(stem, ground);
+    if (fenced && (at <= 0.0 || std::hypot(from.x + at * way.x, from.z + at * way.z) > kFence))
+        return way.y < 0.0 ? 60 : 180;
     if (at <= 0.0) return 128;
     const DVec3 p = from + at * way;
     const double bright = 0.6 * noise_at(40.0 * p) + 0.4 * noise_at(90.0 * p);
@@ -89,7 +94,7 @@ Camera usual_camera(int times = 1) {
     return camera;
 }
 
-Image take(const Photo& photo, const Camera& camera) {
+Image take(const Photo& photo, const Camera& camera, bool fenced) {
     Image picture(camera.width, camera.height, 3);
     const DMat3 back = glm::transpose(photo.turn());
     for (int y = 0; y < camera.height; y++)
@@ -99,7 +104,7 @@ Image take(const Photo& photo, const Camera& camera) {
                 for (const double u : {0.25, 0.75}) {
                     const DVec3 ray((x + u - camera.parameters[2]) / camera.parameters[0],
                                     (y + v - camera.parameters[3]) / camera.parameters[1], 1.0);
-                    sum += seen_along(photo.centre(), glm::normalize(back * ray));
+                    sum += seen_along(photo.centre(), glm::normalize(back * ray), fenced);
                 }
             const auto grey = static_cast<uint8_t>(std::lround(sum / 4.0));
             const uint8_t pixel[] = {grey, grey, static_cast<uint8_t>(grey / 2)};
@@ -108,16 +113,18 @@ Image take(const Photo& photo, const Camera& camera) {
     return picture;
 }
 
-// Photos on a part of a circle around the stem, 6 degrees apart, and points on it as a model has them.
-void fill(Scene& scene, int photos, const char* name, int times = 1) {
+// Photos on a part of a circle around the stem, 6 degrees apart, or where there is a fence on all of it, and
+// points on it as a model has them.
+void fill(Scene& scene, int photos, const char* name, int times = 1, bool fenced = false) {
     scene.folder = utf8_of(std::filesystem::temp_directory_path() / name);
     make_folder(scene.folder);
     scene.model.cameras.push_back(usual_camera(times));
     for (int i = 0; i < photos; i++) {
-        const double angle = glm::radians(6.0 * i);
-        Photo photo = photo_from({2.0 * std::sin(angle), 0.1 * (i % 3), 2.0 * std::cos(angle)}, {0, 0, 0});
+        const double angle = glm::radians((fenced ? 360.0 / photos : 6.0) * i);
+        const double height = fenced ? 0.0 : 0.1 * (i % 3);
+        Photo photo = photo_from({2.0 * std::sin(angle), height, 2.0 * std::cos(angle)}, {0, 0, 0});
         photo.name = std::to_string(i) + ".png";
-        const std::vector<uint8_t> bytes = encode_png(take(photo, scene.model.cameras.front()));
+        const std::vector<uint8_t> bytes = encode_png(take(photo, scene.model.cameras.front(), fenced));
         write_file(scene.folder + "/" + photo.name,
                    std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
         scene.model.photos.push_back(photo);
@@ -182,6 +189,24 @@ TEST(Densify, LargerPhotosAreMoreExact) {
     const Densified fine = densify(large.model, large.sparse, large.folder, options);
     EXPECT_NEAR(fine.cell / coarse.cell, 1.0, 0.01);
     EXPECT_LT(off_stem(fine), 0.7 * off_stem(coarse)) << off_stem(coarse);
+}
+
+// Matching takes the fence's edge for as near as the stem before it; photos from elsewhere see the stem
+// through what hangs there.
+TEST(Densify, NothingHangsAroundAStemBeforeAFence) {
+    Scene scene;
+    fill(scene, 36, "treerec_dense_fence", 1, true);
+    const Densified made = densify(scene.model, scene.sparse, scene.folder, {});
+    size_t on_stem = 0, hanging = 0;
+    for (const Vec3& position : made.cloud.positions) {
+        const DVec3 p = made.cloud.frame.origin + DVec3(position);
+        const double away = std::hypot(p.x, p.z);
+        if (std::abs(p.y) > 0.3) continue;
+        on_stem += away < 1.2 * kRadius;
+        hanging += away > 1.5 * kRadius;
+    }
+    EXPECT_GT(on_stem, 2000U);
+    EXPECT_LT(hanging, on_stem / 100) << on_stem;
 }
 
 TEST(Densify, IsTheSameOnAnyThreads) {

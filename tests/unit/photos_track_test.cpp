@@ -268,11 +268,36 @@ TEST_F(PhotosTrack, BothJoinsWhatSiftFound) {
               "feature_extractor exhaustive_matcher feature_importer matches_importer mapper mapper");
     EXPECT_TRUE(value_of(told[4], "--database_path").ends_with("tracks.db"));
     EXPECT_TRUE(value_of(told[5], "--database_path").ends_with("matching.db"));
-    EXPECT_FALSE(fs::exists(path("out/colmap/models.sift")));
+    EXPECT_FALSE(fs::exists(path("out/colmap/models.more")));
     // A database that is none.
     put("sift.db", "no database");
     fs::remove_all(path("out"));
     EXPECT_TRUE(has(sentence(), "matching.db' is damaged")) << sentence();
+}
+
+TEST_F(PhotosTrack, CornersAreTrackedAsNeeded) {
+    options_.matcher = PhotoMatcher::kAuto;
+    // So few matches of a pair are not asked whether they fit.
+    std::vector<DVec2> places;
+    for (int i = 0; i < 20; i++)
+        places.emplace_back(11.5 + 5.0 * i, 12.25);
+    put("sift.db", test::DatabaseWriter().bytes(test::colmap_tables(names_, places)));
+    ::setenv("STANDIN_DATABASE", path("sift.db").c_str(), 1);
+    EXPECT_EQ(run().registered, 9u);
+    EXPECT_EQ(commands(calls()), "feature_extractor exhaustive_matcher mapper");
+    run();
+    EXPECT_EQ(commands(calls()), "");
+    test::write_tiny_model(folder_ / "models" / "0", {{names_.begin(), names_.begin() + 7}});
+    fs::remove_all(path("out"));
+    EXPECT_EQ(run().registered, 7u);
+    const std::vector<Words> told = calls();
+    EXPECT_EQ(commands(told),
+              "feature_extractor exhaustive_matcher mapper feature_importer matches_importer mapper");
+    EXPECT_TRUE(value_of(told[2], "--database_path").ends_with("matching.db"));
+    EXPECT_TRUE(value_of(told[5], "--database_path").ends_with("tracks.db"));
+    EXPECT_FALSE(fs::exists(path("out/colmap/models.more")));
+    run();
+    EXPECT_EQ(commands(calls()), "");
 }
 
 TEST(PhotosPairFiles, DamagedOnesAreNone) {

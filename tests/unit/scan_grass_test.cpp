@@ -1,6 +1,7 @@
 // Trees in grass, which is thicker than the ground that is found at its lowest points.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fidelity/score.h"
@@ -60,6 +61,32 @@ TEST_P(InGrass, TheTreeIsAsItIsWithout) {
         EXPECT_NEAR(within.measured.height, without.measured.height, 0.02 * kHeight);
         EXPECT_NEAR(within.measured.dbh, without.measured.dbh, 0.1 * without.measured.dbh);
     }
+}
+
+// The ground of photos scatters to both sides of its surface, on which the tree stands.
+TEST(ScatteredGround, TheTreeStandsOnItsMiddle) {
+    constexpr double kHeight = 10.0, kScatter = 0.03;
+    const scan_test::Folder folder;
+    VirtualScanOptions scanner;
+    scanner.points = 12000;
+    const PointCloud scan = scan_tree(grow_tree({Habit::kBroadleaf, kHeight, 1}), scanner).cloud;
+    PointCloud cloud;
+    for (const Vec3& p : scan.positions)
+        cloud.positions.emplace_back(scan.frame.to_scan(DVec3(p)));
+    Random random(3);
+    for (int i = 0; i < 36000; i++) {
+        const double off = 5.0 * std::sqrt(random.uniform()), turn = 2.0 * kPi * random.uniform();
+        cloud.positions.emplace_back(off * std::cos(turn), off * std::sin(turn), kScatter * random.normal());
+    }
+    write_cloud(folder.file("tree.ply"), cloud);
+    ReconstructOptions options;
+    options.orient.up = UpAxis::kZ;
+    options.orient.metres_per_unit = 1.0;
+    const Tree tree = reconstruct_file(folder.file("tree.ply"), options).tree;
+    double lowest = kHeight;
+    for (const NodeId id : tree.depth_first())
+        lowest = std::min(lowest, tree.frame().to_scan(tree.node(id).position).z);
+    EXPECT_NEAR(lowest, 0.0, kScatter);
 }
 
 INSTANTIATE_TEST_SUITE_P(Habits, InGrass,

@@ -169,8 +169,10 @@ func _add_options() -> void:
 		["auto", "sequence", "exhaustive"]
 	)
 	Widgets.choose(_order, "auto")
-	_matcher = Widgets.choice(["Features", "Tracked corners", "Both"], ["sift", "pyrlk", "both"])
-	Widgets.choose(_matcher, "sift")
+	_matcher = Widgets.choice(
+		["As needed", "Features", "Tracked corners", "Both"], ["auto", "sift", "pyrlk", "both"]
+	)
+	Widgets.choose(_matcher, "auto")
 	_bark = Widgets.choice(["From the photos", "Drawn"], [true, false])
 	Widgets.choose(_bark, true)
 	_leaf_colors = Widgets.choice(["From the photos", "Drawn"], [true, false])

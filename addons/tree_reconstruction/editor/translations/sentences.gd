@@ -247,6 +247,16 @@ const PATTERNS: PackedStringArray = [
 		+ " from there alone is missing. Add photos there, one every 10 to 15 degrees."
 	),
 	(
+		"The places of the photos contradict what they show: of %s points that %s and %s share, %s"
+		+ " fit where these were placed, and %s fit another place. So the circle of photos is bent,"
+		+ " and the tree is wrong. Take more photos around these two."
+	),
+	"Only %s points hold the circle together between %s and %s: take a photo between these two.",
+	"To compare the photos by both (in New Tree from Photos: Compare by) finds more such points.",
+	"COLMAP's features alone placed %s of %s photos; corners were tracked as well, and placed %s.",
+	"Some photos' names have blanks in them: rename them for corners to be tracked.",
+	"COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.",
+	(
 		"The photos look at one side: they go %s of the 360 degrees around what they show, and from"
 		+ " there a tree looks no different from a wall. Walk around the tree, or a third of the way"
 		+ " at least. If there is a tree in their cloud, tell where it stands."
@@ -438,6 +448,7 @@ const _GAP: String = "%s"
 const IN_EDITOR: Dictionary[String, String] = {
 	"(--one-tree)": "(in the Import dock: switch Separate Trees off)",
 	"(--marker)": "(in New Tree from Photos: Marker's side)",
+	"(--matcher both)": "(in New Tree from Photos: Compare by)",
 	"(--tree)": "(in the Import dock: Tree in File)",
 	"leave out --classes.": "clear Classes in the Import dock.",
 	"--classes all reads these too.": "'all' for Classes in the Import dock reads these too.",
