@@ -18,7 +18,6 @@ constexpr double kLeafCover = 0.55;
 // The view's cells, of a leaf's length.
 constexpr double kCell = 0.5;
 constexpr size_t kMostCells = 300;  // along a side
-constexpr size_t kMostAdded = 600;
 
 enum class View { kFront, kSide };
 
@@ -99,12 +98,31 @@ DMat3 twig_axes(const Tree& scion, const TwigPlace& place) {
     return turn_about(place.way, place.spin) * turn_between(own, place.way);
 }
 
+double kept_wood(const Tree& scion, const TwigPlace& place, const DVec3& joint, const CrownSections& crown,
+                 double margin) {
+    const DMat3 axes = twig_axes(scion, place);
+    std::vector<bool> kept(static_cast<size_t>(scion.id_end()), false);
+    double wood = 0.0;
+    for (const NodeId id : scion.depth_first()) {
+        const Node& node = scion.node(id);
+        const auto own = static_cast<size_t>(id);
+        if (node.parent == kNoNode) {
+            kept[own] = true;
+        } else if (kept[static_cast<size_t>(node.parent)] &&
+                   crown.contains(joint + axes * (place.scale * node.position), margin)) {
+            kept[own] = true;
+            wood += place.scale * glm::length(node.position - scion.node(node.parent).position);
+        }
+    }
+    return wood;
+}
+
 void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecies& species, double growth,
-                double height, uint64_t seed, const Progress* progress) {
+                double height, double most_wood, uint64_t seed, const Progress* progress) {
     const LeafRules rules = leaf_preset(species.name);
     const double small = std::sqrt(std::min(height / 12.0, 1.0));
     const double leaf = rules.leaf_size * small;
-    const double margin = leaf_margin(species, height);
+    const double margin = leaf_margin(crown, species, height);
     const double side = std::max(crown.top() - crown.bottom(), 2.0 * crown.reach());
     const double cell = std::max(kCell * leaf, side / kMostCells);
     std::vector<LeafyScion> scions;
@@ -122,7 +140,14 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
         }
     };
 
-    size_t added = 0;
+    const auto wood_of = [&](const TwigPlace& place) {
+        return kept_wood(species.twigs[place.twig].scion, place,
+                         place_along(filling.limbs[place.limb].limb.points, place.along), crown, margin);
+    };
+    double all = 0.0;
+    for (const TwigPlace& place : filling.twigs)
+        all += wood_of(place);
+
     for (const View view : {View::kFront, View::kSide}) {
         Cover cover(crown, view, cell, kLeafCover * leaf, margin);
         for (const TwigPlace& place : filling.twigs)
@@ -135,7 +160,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
         for (size_t i = order.size(); i-- > 1;)
             std::swap(order[i], order[random.below(static_cast<uint32_t>(i + 1))]);
         for (const uint32_t i : order) {
-            if (!cover.open(i) || added >= kMostAdded) continue;
+            if (!cover.open(i) || all >= most_wood) continue;
             if (progress) progress->check();
             const DVec2 target = cover.middle(i);
             // The nearest wood as one sees it, that is in the crown.
@@ -182,7 +207,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             place.scale = chosen->scale;
             filling.twigs.push_back(place);
             mark(cover, place);
-            added++;
+            all += wood_of(place);
         }
     }
 }

@@ -12,6 +12,7 @@
 #include "sketch/close_gaps.h"
 #include "sketch/lift.h"
 #include "sketch/limb_cells.h"
+#include "tree/branches.h"
 
 namespace treerec {
 
@@ -19,8 +20,16 @@ namespace {
 
 constexpr double kLeastAngle = 30.0, kMostAngle = 70.0;  // degrees off the limb (papers/003, 4.2, step 2)
 constexpr double kGolden = 137.508 * kPi / 180.0;
-// Between places of one twig each, in the middle twig's lengths.
-constexpr double kSpacing = 0.2;
+// Between places of one twig each, in the middle twig's lengths, at least; and over the edge of the cube that
+// each would have if the leaves that a tree may bear were shared out in its crown.
+constexpr double kSpacing = 0.2, kShareSpacing = 0.7;
+// Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
+// many times what the rules allow, since beyond that fewer and larger ones stand.
+constexpr double kCovers = 28.0, kOfMostLeaves = 2.0;
+// The share of a twig's wood that is near enough to a tip to bear leaves.
+constexpr double kBearing = 0.6;
+// Of these, those that stand evenly; the rest is for gaps.
+constexpr double kEven = 0.5;
 constexpr double kBare = 0.12;  // of a branch, at its base
 constexpr double kMostScale = 1.3;
 // A branch for a place that no twig is long enough for: of the room there, and its steps.
@@ -32,7 +41,7 @@ constexpr int kDeepest = 4;               // branches on branches
 constexpr size_t kMostTwigs = 4000;
 
 // Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
-constexpr double kStandsOut = 0.6;
+constexpr double kStandsOut = 0.42;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 struct Filler {
@@ -96,8 +105,8 @@ struct Filler {
         const DMat3 frame = frame_about(axis);
         const double bare = begin > 0.0 || printed() ? begin : kBare * length;
         const int several = at_a_place();
-        const auto places = static_cast<size_t>(
-            std::max(1.0, std::floor((length - bare) * options.density / (spacing * several) + 0.5)));
+        const auto places =
+            static_cast<size_t>(std::max(1.0, std::floor((length - bare) / (spacing * several) + 0.5)));
         Random random(hash_seed(limb.seed, 11));
         const double first = random.uniform(0.0, 2.0 * kPi);
         for (size_t i = 0; i < places && options.density > 0.0; i++) {
@@ -167,11 +176,56 @@ double twig_growth(const SketchSpecies& species, double height) {
     return std::clamp(std::sqrt(height / species.height), kLeastGrowth, kMostGrowth);
 }
 
-double leaf_margin(const SketchSpecies& species, double height) {
+namespace {
+
+// By how much leaf_rules.h shrinks lengths on small trees; single leaves keep their size.
+double shrunk(double height) {
+    return std::sqrt(std::min(height / 12.0, 1.0));
+}
+
+double leaf_length(const LeafRules& rules, double height) {
+    return rules.leaf_size * (rules.form == LeafForm::kSpray ? shrunk(height) : 1.0);
+}
+
+// Leaves that would cover the crown's outline often enough.
+double covering_leaves(const CrownSections& crown, const LeafRules& rules, double height) {
+    const double length = leaf_length(rules, height);
+    return kCovers * crown.area() / (length * length * std::min(rules.blade_width, 1.0));
+}
+
+// Of leafy wood, metres: what bears as many leaves as are to stand in the crown.
+double wanted_wood(const CrownSections& crown, const LeafRules& rules, double height) {
+    const double count =
+        std::min(covering_leaves(crown, rules, height), kOfMostLeaves * rules.maximum_leaves);
+    return count * rules.internode * shrunk(height) / kBearing;
+}
+
+// Twigs are evenly left out until the rest have no more wood in the crown than that.
+void thin_out(Filling& filling, const SketchSpecies& species, const CrownSections& crown, double margin,
+              double most) {
+    double all = 0.0;
+    for (const TwigPlace& place : filling.twigs)
+        all += kept_wood(species.twigs[place.twig].scion, place,
+                         place_along(filling.limbs[place.limb].limb.points, place.along), crown, margin);
+    if (all <= most) return;
+    std::vector<TwigPlace> kept;
+    double due = 0.0;
+    for (const TwigPlace& place : filling.twigs) {
+        due += most / all;
+        if (due < 1.0) continue;
+        due -= 1.0;
+        kept.push_back(place);
+    }
+    filling.twigs = std::move(kept);
+}
+
+}  // namespace
+
+double leaf_margin(const CrownSections& crown, const SketchSpecies& species, double height) {
     const LeafRules rules = leaf_preset(species.name);
-    // leaf_rules.h tells how small trees shrink sprays.
-    const double small = rules.form == LeafForm::kSpray ? std::sqrt(std::min(height / 12.0, 1.0)) : 1.0;
-    return kStandsOut * rules.leaf_size * small + rules.petiole;
+    // Where they would be more than the rules allow, fewer and larger ones stand.
+    const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
+    return kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) + rules.petiole;
 }
 
 Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
@@ -180,15 +234,20 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     const bool printed = options.depth == SketchDepth::kPaper;
     const double growth = printed ? 1.0 : twig_growth(species, height);
     const double middle = species.twigs[species.twigs.size() / 2].length;
-    Filler filler{crown,
-                  species,
-                  options,
-                  progress,
-                  growth,
-                  printed ? 0.0 : leaf_margin(species, height),
-                  metres_per_pixel,
-                  kSpacing * growth * middle,
-                  {}};
+    const Tree& usual = species.twigs[species.twigs.size() / 2].scion;
+    const double wood = subtree_lengths(usual)[static_cast<size_t>(usual.root())];
+    const double wanted = options.density * wanted_wood(crown, leaf_preset(species.name), height);
+    const double count = std::max(kEven * wanted / (growth * wood), 1.0);
+    Filler filler{
+        crown,
+        species,
+        options,
+        progress,
+        growth,
+        printed ? 0.0 : leaf_margin(crown, species, height),
+        metres_per_pixel,
+        std::max(kSpacing * growth * middle, kShareSpacing * portable::cbrt(crown.volume() / count)),
+        {}};
     filler.filling.limbs.push_back({limbs.trunk, -1});
     filler.cell_of.push_back(0);
     const double begin = leader_begin(limbs, crown);
@@ -208,8 +267,9 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     if (begin < length_of(limbs.trunk.points)) filler.fill(*bound, 0, begin, 0);
     for (size_t i = 1; i < first_order; i++)
         filler.fill(*bound, i, 0.0, 0);
+    if (!printed) thin_out(filler.filling, species, crown, filler.margin, kEven * wanted);
     if (!printed && options.density > 0.0)
-        close_gaps(filler.filling, crown, species, growth, height, hash_seed(seed, 5), progress);
+        close_gaps(filler.filling, crown, species, growth, height, wanted, hash_seed(seed, 5), progress);
     return filler.filling;
 }
 

@@ -37,7 +37,7 @@ struct Filling {
 // How the species' twigs are scaled for a tree of that height, metres: a young tree has shorter shoots.
 double twig_growth(const SketchSpecies& species, double height);
 // Metres by which leaves stand out from wood: so far twigs stay from the crown's surface.
-double leaf_margin(const SketchSpecies& species, double height);
+double leaf_margin(const CrownSections& crown, const SketchSpecies& species, double height);
 
 // kSections (default): twigs stand evenly around each limb, by the species' arrangement, 30 to 70 degrees off
 //     its direction; a place whose room is longer than any twig gets a branch with twigs of its own. Then

@@ -72,7 +72,7 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     const Filling filling =
         fill_crown(limbs, crown, species, height, place.scale, sketch.seed, options, progress);
     AssembledTree assembled =
-        assemble_tree(filling, species, crown, !printed, leaf_margin(species, height), progress);
+        assemble_tree(filling, species, crown, !printed, leaf_margin(crown, species, height), progress);
     out.tree = std::move(assembled.tree);
     out.stroke_of_node = std::move(assembled.stroke_of_node);
     return out;
