@@ -37,12 +37,12 @@ func describe(id: int) -> String:
 		return sentence
 	match known.get("role", ""):
 		"outline":
-			return canvas.tr("The crown's outline. Reshape bends it, the right button rubs it out.")
+			return canvas.tr("The crown's outline. Reshape bends it, the right button erases it.")
 		"trunk":
-			return canvas.tr("The trunk. Reshape bends it, the right button rubs it out.")
+			return canvas.tr("The trunk. Reshape bends it, the right button erases it.")
 		"branch":
-			return canvas.tr("A branch. Reshape bends it, the right button rubs it out.")
-	return canvas.tr("A stroke. Reshape bends it, the right button rubs it out.")
+			return canvas.tr("A branch. Reshape bends it, the right button erases it.")
+	return canvas.tr("A stroke. Reshape bends it, the right button erases it.")
 
 
 func draw() -> void:
@@ -76,13 +76,13 @@ func draw() -> void:
 func _draw_hint(canvas: Variant, paper: Rect2) -> void:
 	var font: Font = canvas.get_theme_default_font()
 	var font_size: int = canvas.get_theme_default_font_size()
-	var width: float = paper.size.x * 0.8
+	var width: float = paper.size.x * 0.6
 	var words: String = canvas.tr(
 		"Draw the crown's outline, the trunk and its branches, in any order"
 	)
 	canvas.draw_multiline_string(
 		font,
-		paper.position + Vector2(paper.size.x * 0.1, paper.size.y * 0.45),
+		paper.position + Vector2(paper.size.x * 0.2, paper.size.y * 0.45),
 		words,
 		HORIZONTAL_ALIGNMENT_CENTER,
 		width,

@@ -9,6 +9,9 @@ const SceneAdder := preload("../import/scene_adder.gd")
 const FreePlace := preload("../import/free_place.gd")
 
 const _CHOOSER_SIZE: Vector2i = Vector2i(900, 600)
+# At the editor's scale of 1.
+const _SIZE: Vector2 = Vector2(620, 580)
+const _MARGIN: float = 8.0
 
 var panel: SketchPanel
 var window: AcceptDialog
@@ -72,10 +75,17 @@ func open() -> void:
 	if window.visible:
 		window.grab_focus()
 	else:
-		window.popup_centered_clamped(
-			Vector2i(Vector2(860, 720) * EditorInterface.get_editor_scale()), 0.9
-		)
+		_pop_up()
 	panel.canvas.grab_focus()
+
+
+# At the left, over the docks: the tree is seen beside it as it grows.
+func _pop_up() -> void:
+	var base: Window = EditorInterface.get_base_control().get_window()
+	var scale: float = EditorInterface.get_editor_scale()
+	window.popup_centered_clamped(Vector2i(_SIZE * scale), 0.9)
+	var left: int = 0 if window.is_embedded() else base.position.x
+	window.position.x = left + roundi(_MARGIN * scale)
 
 
 func _on_frame() -> void:

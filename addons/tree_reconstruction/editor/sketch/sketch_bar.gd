@@ -26,7 +26,7 @@ func _init() -> void:
 		),
 		Widgets.button(
 			"Erase",
-			"Rubs out the strokes that it is drawn over, as the right button does.",
+			"Erases the strokes that it is drawn over, as the right button does.",
 			&"Eraser"
 		),
 		Widgets.button(

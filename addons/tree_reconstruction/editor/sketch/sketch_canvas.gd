@@ -78,7 +78,7 @@ func _init() -> void:
 	clip_contents = true
 	mouse_default_cursor_shape = Control.CURSOR_CROSS
 	custom_minimum_size = Vector2(Widgets.px(320), Widgets.px(320))
-	tooltip_text = "Draw with the left button or a pen. The right button or the pen's end erases."
+	tooltip_text = "Draw with the left button or a pen. The right button or the pen's eraser erases."
 
 
 ## Whether a stroke is being drawn, bent or rubbed out.

@@ -54,9 +54,8 @@ func _init() -> void:
 	line.add_child(dice)
 	add_child(line)
 	add_child(HSeparator.new())
-	var titles: PackedStringArray = ["By Itself", "Outline", "Trunk", "Branch"]
 	role = (Widgets.choice(
-		titles,
+		["Automatic", "Outline", "Trunk", "Branch"],
 		[
 			TreeSketch.ROLE_AUTO,
 			TreeSketch.ROLE_OUTLINE,
@@ -64,13 +63,11 @@ func _init() -> void:
 			TreeSketch.ROLE_BRANCH
 		]
 	))
-	for i: int in titles.size():
-		role.set_item_auto_translate_mode(i, Node.AUTO_TRANSLATE_MODE_ALWAYS)
 	add_child(
 		(
 			Widgets
 			. line(
-				"Stroke Is",
+				"Stroke role",
 				(
 					"What the selected stroke is, where it was taken for something else. Click on a stroke"
 					+ " to select it."
@@ -80,9 +77,9 @@ func _init() -> void:
 		)
 	)
 	species.item_selected.connect(_on_species)
-	height.value_changed.connect(_on_number.bind(tr("Height of the Sketch"), &"height"))
-	density.value_changed.connect(_on_number.bind(tr("Density of the Sketch"), &"density"))
-	seed_field.value_changed.connect(_on_number.bind(tr("Seed of the Sketch"), &"seed"))
+	height.value_changed.connect(_on_number.bind(tr("Change Sketch Height"), &"height"))
+	density.value_changed.connect(_on_number.bind(tr("Change Sketch Density"), &"density"))
+	seed_field.value_changed.connect(_on_number.bind(tr("Change Sketch Seed"), &"seed"))
 	dice.pressed.connect(_on_dice)
 	role.item_selected.connect(_on_role)
 
@@ -129,7 +126,7 @@ func _add_species() -> void:
 
 func _on_species(_index: int) -> void:
 	value_chosen.emit(
-		tr("Species of the Sketch"), &"species", species.get_selected_metadata(), false
+		tr("Change Sketch Species"), &"species", species.get_selected_metadata(), false
 	)
 
 
@@ -139,7 +136,7 @@ func _on_number(value: float, title: String, property: StringName) -> void:
 
 
 func _on_dice() -> void:
-	value_chosen.emit(tr("Seed of the Sketch"), &"seed", randi_range(1, 999_999), false)
+	value_chosen.emit(tr("Change Sketch Seed"), &"seed", randi_range(1, 999_999), false)
 
 
 func _on_role(_index: int) -> void:

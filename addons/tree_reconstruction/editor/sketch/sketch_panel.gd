@@ -73,7 +73,7 @@ func _init(session: Session) -> void:
 	split.size_flags_vertical = Control.SIZE_EXPAND_FILL
 	canvas.size_flags_horizontal = Control.SIZE_EXPAND_FILL
 	canvas.size_flags_vertical = Control.SIZE_EXPAND_FILL
-	options.custom_minimum_size.x = Widgets.px(210)
+	options.custom_minimum_size.x = Widgets.px(190)
 	split.add_child(canvas)
 	split.add_child(options)
 	add_child(split)
@@ -437,7 +437,7 @@ func _on_tool(tool: int) -> void:
 func _on_role(role: int) -> void:
 	var sketch: TreeSketch = _current.duplicate() as TreeSketch
 	if sketch.set_stroke_role(canvas.selected, role as TreeSketch.Role):
-		_change(tr("Role of Stroke"), sketch)
+		_change(tr("Change Stroke Role"), sketch)
 
 
 func _on_value(title: String, property: StringName, value: Variant, merged: bool) -> void:

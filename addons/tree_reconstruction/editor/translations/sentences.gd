@@ -422,6 +422,8 @@ const PATTERNS: PackedStringArray = [
 	"Spruce: a flat spray, its twigs hanging a little",
 	"Weeping willow: long whips",
 ]
+const SketchSentences := preload("sketch_sentences.gd")
+const _ALL: PackedStringArray = PATTERNS + SketchSentences.PATTERNS
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.
 ## tests/tools/editor_strings.py checks that there are no others.
@@ -455,7 +457,7 @@ static func translate_list(list: String, domain: StringName) -> String:
 
 
 static func _translate(sentence: String, words: TranslationDomain) -> String:
-	for pattern: String in PATTERNS:
+	for pattern: String in _ALL:
 		var gaps: Variant = find_gaps(sentence, pattern)
 		if gaps == null:
 			continue
