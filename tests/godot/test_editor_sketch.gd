@@ -3,7 +3,7 @@ extends "./session_suite.gd"
 
 const SketchPanel := preload("res://addons/tree_reconstruction/editor/sketch/sketch_panel.gd")
 const Canvas := preload("res://addons/tree_reconstruction/editor/sketch/sketch_canvas.gd")
-const StrokeCurve := preload("res://addons/tree_reconstruction/editor/sketch/stroke_curve.gd")
+const Dock := preload("res://addons/tree_reconstruction/editor/dock/dock.gd")
 const TestSketch := preload("./test_sketch.gd")
 
 var _session: Session
@@ -391,27 +391,17 @@ func test_a_fault_is_red_and_has_its_sentence() -> void:
 	await _open()
 	await _draw_whole()
 	var sketch: TreeSketch = _panel.get_sketch()
-	var report: Dictionary = {
-		"strokes":
-		[
-			{"role": "outline", "fault": "", "repairs": [], "attach": null, "left_out": false},
-			{"role": "trunk", "fault": "", "repairs": [], "attach": null, "left_out": false},
-			{
-				"role": "branch",
-				"fault": "This branch meets no trunk.",
-				"repairs": ["gap"],
-				"attach": [502.0, 600.0],
-				"left_out": true
-			},
-			{"role": "branch", "fault": "", "repairs": [], "attach": null, "left_out": false},
-		],
-		"remarks": []
-	}
+	var fault: String = "This branch meets no trunk."
+	var strokes: Array[Dictionary] = []
+	for role: String in ["outline", "trunk", "branch", "branch"]:
+		strokes.append({"role": role, "fault": "", "repairs": [], "attach": null})
+	strokes[2].merge({"fault": fault, "repairs": ["gap"], "attach": [502.0, 600.0]}, true)
+	var report: Dictionary = {"strokes": strokes, "remarks": []}
 	_panel._known.add(sketch, report, _session)
 	_panel._put_on_paper()
-	check_equal(_panel.message.text, "This branch meets no trunk.", "what stands below the paper")
+	check_equal(_panel.message.text, fault, "what stands below the paper")
 	var place: Vector2 = _panel.canvas.to_control(Vector2(690.0, 400.0))
-	check_equal(_panel.canvas._get_tooltip(place), "This branch meets no trunk.", "the tooltip")
+	check_equal(_panel.canvas._get_tooltip(place), fault, "the tooltip")
 	_shut()
 
 
@@ -429,7 +419,7 @@ func test_strokes_go_through_files() -> void:
 	await _open()
 	await _draw_whole()
 	var path: String = folder.path_join("strokes.json")
-	_panel.save_file(path)
+	_panel.files.write(_panel.get_sketch(), path)
 	if FileAccess.get_file_as_string(path).is_empty():
 		check(false, "Nothing was saved.")
 		_shut()
@@ -438,11 +428,12 @@ func test_strokes_go_through_files() -> void:
 	_panel.bar.begin.pressed.emit()
 	check_equal(_panel.get_sketch().strokes.size(), 0, "strokes of a new sketch")
 	var other: TreeInstance3D = _added
-	_panel.load_file(path)
+	_panel.files.read(path)
 	await _wait()
 	check(_added != other, "The other tree was drawn over.")
 	check_equal(_panel.get_sketch().strokes.size(), drawn.size(), "strokes that were read")
-	_panel.load_file(folder.path_join("none.json"))
+	_panel.files.read(folder.path_join("none.json"))
+	await _wait()
 	check("none.json" in _panel.message.text, "It says: " + _panel.message.text)
 	_shut()
 
@@ -467,38 +458,30 @@ func test_another_tree_of_strokes_is_shown_when_it_is_selected() -> void:
 	_shut()
 
 
-# --- handles --------------------------------------------------------------------------------------
-
-
-func test_handles_fit_strokes() -> void:
-	var random: RandomNumberGenerator = RandomNumberGenerator.new()
-	random.seed = 4
-	for trial: int in 200:
-		var ends: PackedVector2Array = []
-		for i: int in 4:
-			ends.append(Vector2(random.randf_range(0, 1000), random.randf_range(0, 1000)))
-		var points: PackedVector2Array = []
-		for i: int in random.randi_range(2, 80):
-			points.append(ends[0].bezier_interpolate(ends[1], ends[2], ends[3], i / 80.0))
-		var curve: StrokeCurve = StrokeCurve.new(points)
-		check(curve.get_count() in [4, 6, 7], "It has %d handles." % curve.get_count())
-		check_equal(curve.get_points(), points, "points that nobody moved")
-		for handle: Vector2 in curve.handles:
-			check(handle.is_finite(), "A handle lies at %s." % handle)
-		curve.move(0, curve.handles[0] + Vector2(50.0, -20.0))
-		check(
-			curve.get_points()[0].distance_to(points[0] + Vector2(50.0, -20.0)) < 0.01,
-			"The end does not go along."
-		)
-	var closed: StrokeCurve = StrokeCurve.new(_strokes()[0]["points"])
-	check(closed.closed, "An outline isn't closed.")
-	check_equal(closed.get_count(), 6, "handles of an outline")
-	closed.move(0, closed.handles[0] + Vector2(0.0, -40.0))
-	var moved: PackedVector2Array = closed.get_points()
-	check(moved[0].distance_to(moved[-1]) < 40.0, "The outline opens.")
-	for same: Array in [[Vector2.ONE, Vector2.ONE], [Vector2.ONE, Vector2.ONE, Vector2.ZERO]]:
-		for handle: Vector2 in StrokeCurve.new(PackedVector2Array(same)).handles:
-			check(handle.is_finite(), "A handle lies at %s." % handle)
+func test_the_dock_leads_to_the_strokes() -> void:
+	await _open()
+	await _draw_whole()
+	var dock: Dock = Dock.new(_session)
+	tree.root.add_child(dock)
+	dock.set_folded([])
+	dock.update()
+	var stages: Variant = dock.sections[&"stages"]
+	check(stages._sketch.visible, "It doesn't lead to the strokes.")
+	check(not stages._no_scan.visible, "It misses a scan.")
+	for stage: StringName in [&"scan", &"clean", &"skeleton"]:
+		check(not stages.rows[stage].visible, "It offers to do %s again." % stage)
+	var wanted: Array[bool] = []
+	_session.sketch_wanted.connect(func() -> void: wanted.append(true))
+	stages._sketch.pressed.emit()
+	check_equal(wanted.size(), 1, "times that the window was asked for")
+	_added.reconstruction = grown_tree(3)
+	await _frame()
+	dock.update()
+	check(not stages._sketch.visible, "A tree of no strokes leads to some.")
+	check(stages.rows[&"scan"].visible, "Its stages are gone.")
+	dock.close()
+	dock.free()
+	_shut()
 
 
 func test_everything_has_a_tooltip() -> void:

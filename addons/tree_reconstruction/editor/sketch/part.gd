@@ -89,7 +89,8 @@ func _pop_up() -> void:
 
 
 func _on_frame() -> void:
-	panel.update()
+	if window.visible or panel.is_busy():
+		panel.update()
 
 
 # The tree is the scene's own: its strokes are saved with it there.
@@ -123,16 +124,20 @@ func _on_history_wanted(redo: bool) -> void:
 
 
 func _choose_to_load() -> void:
-	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_FILE, tr("Load Sketch"), panel.load_file)
+	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_FILE, tr("Load Sketch"), panel.files.read)
 	_chooser.filters = PackedStringArray(["*.json, *.svg, *.png;" + tr("Strokes and drawings")])
 	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
 
 
 func _choose_to_save() -> void:
-	_open_chooser(EditorFileDialog.FILE_MODE_SAVE_FILE, tr("Save Sketch"), panel.save_file)
+	_open_chooser(EditorFileDialog.FILE_MODE_SAVE_FILE, tr("Save Sketch"), _save)
 	_chooser.filters = PackedStringArray(["*.json;" + tr("Strokes")])
 	_chooser.current_file = "sketch.json"
 	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
+
+
+func _save(path: String) -> void:
+	panel.files.write(panel.get_sketch(), path)
 
 
 # Anywhere on the disk: a drawing may come from another program.
@@ -155,4 +160,4 @@ func _close_chooser() -> void:
 
 func _on_dropped(files: PackedStringArray) -> void:
 	if not files.is_empty():
-		panel.load_file(files[0])
+		panel.files.read(files[0])

@@ -169,7 +169,10 @@ func _gui_input(event: InputEvent) -> void:
 
 func _get_tooltip(at: Vector2) -> String:
 	var id: int = find_stroke(at)
-	return _look.describe(id) if id != 0 else tr(tooltip_text)
+	if id != 0:
+		return _look.describe(id)
+	# Where there are strokes, it would only be in the way of more.
+	return tr(tooltip_text) if strokes.is_empty() else ""
 
 
 func _draw() -> void:

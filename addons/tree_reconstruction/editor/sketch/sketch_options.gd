@@ -55,7 +55,7 @@ func _init() -> void:
 	add_child(line)
 	add_child(HSeparator.new())
 	role = (Widgets.choice(
-		["Automatic", "Outline", "Trunk", "Branch"],
+		["Auto", "Outline", "Trunk", "Branch"],
 		[
 			TreeSketch.ROLE_AUTO,
 			TreeSketch.ROLE_OUTLINE,

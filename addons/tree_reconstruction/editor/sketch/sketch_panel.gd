@@ -29,6 +29,7 @@ const Maker := preload("sketch_maker.gd")
 const Draft := preload("sketch_draft.gd")
 const Follow := preload("sketch_follow.gd")
 const Bar := preload("sketch_bar.gd")
+const Files := preload("sketch_files.gd")
 const Known := preload("sketch_known.gd")
 
 # A number that is turned has its tree once it rests for so long.
@@ -39,6 +40,7 @@ var options: Options = Options.new()
 var bar: Bar = Bar.new()
 var message: Label = Widgets.sentence()
 var maker: Maker
+var files: Files
 
 var _session: Session
 var _draft: Draft = Draft.new()
@@ -46,9 +48,13 @@ var _follow: Follow = Follow.new()
 var _known: Known = Known.new()
 # Whose tree is drawn on.
 var _node: WeakRef = weakref(null)
+# What the session edited when it was looked at last.
+var _edited: WeakRef = weakref(null)
 # The sketch of that tree when it was looked at last, and whether the node stood in the scene.
 var _seen: TreeSketch
 var _was_there: bool = false
+# How many edits did not fit the last tree.
+var _left_out: int = 0
 # As it is on the paper, with what is being made.
 var _current: TreeSketch = TreeSketch.new()
 # What is under way on the paper and was not followed yet.
@@ -68,6 +74,9 @@ func _init(session: Session) -> void:
 	maker.finished.connect(_on_finished)
 	maker.followed.connect(_on_followed)
 	maker.understood.connect(_on_understood)
+	files = Files.new(session)
+	files.loaded.connect(_on_loaded)
+	files.said.connect(_say)
 	add_child(bar)
 	var split: HBoxContainer = HBoxContainer.new()
 	split.size_flags_vertical = Control.SIZE_EXPAND_FILL
@@ -78,8 +87,12 @@ func _init(session: Session) -> void:
 	split.add_child(options)
 	add_child(split)
 	message.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	message.custom_minimum_size.y = Widgets.px(44)
-	add_child(message)
+	var scroll: ScrollContainer = ScrollContainer.new()
+	scroll.horizontal_scroll_mode = ScrollContainer.SCROLL_MODE_DISABLED
+	# Of any length: the window stays as large as it is.
+	scroll.custom_minimum_size.y = Widgets.px(44)
+	scroll.add_child(message)
+	add_child(scroll)
 	_connect_all()
 	_draft.begin(null)
 	_show()
@@ -90,7 +103,11 @@ func close() -> void:
 	canvas.cancel()
 	_follow.restore()
 	maker.close()
-	_session.node_changed.disconnect(_on_node_changed)
+
+
+## Whether something is under way that [method update] has to end.
+func is_busy() -> bool:
+	return canvas.is_busy() or maker.is_busy() or _due > 0 or not _held.is_empty()
 
 
 ## The strokes on the paper, with what is being made of them. Not to be changed.
@@ -135,6 +152,7 @@ func update() -> void:
 	if not _held.is_empty():
 		_go(_held.pop_front())
 		return
+	_take_edited()
 	var node: TreeInstance3D = get_node_drawn_on()
 	if node != null and not _was_there and _session.node == null:
 		# It was undone, and is back.
@@ -151,27 +169,6 @@ func settle() -> void:
 		maker.make(_due_title, _current, _log())
 
 
-## Reads strokes from a file, in the place of those that are there.
-func load_file(path: String) -> void:
-	var worker: TreeReconstructor = TreeReconstructor.new()
-	var read: TreeSketch = worker.load_sketch(path)
-	if read == null:
-		_session.say(worker.get_error_message(), Session.Kind.ERROR)
-		_say(_translated(worker.get_error_message()), &"error_color")
-		return
-	_change(tr("Load Sketch"), read)
-
-
-## Writes the strokes to a file.
-func save_file(path: String) -> void:
-	var worker: TreeReconstructor = TreeReconstructor.new()
-	if worker.save_sketch(_current, path) != OK:
-		_session.say(worker.get_error_message(), Session.Kind.ERROR)
-		_say(_translated(worker.get_error_message()), &"error_color")
-		return
-	_say(tr("The strokes were saved as %s.") % path, &"font_color")
-
-
 ## Undoes the last stroke or another step, or does it again.
 func step(redo: bool) -> void:
 	if canvas.is_busy():
@@ -184,7 +181,6 @@ func step(redo: bool) -> void:
 
 
 func _connect_all() -> void:
-	_session.node_changed.connect(_on_node_changed)
 	canvas.drawing.connect(_on_drawing)
 	canvas.bending.connect(_on_bending)
 	canvas.drawn.connect(_on_drawn)
@@ -218,6 +214,16 @@ func _shortcut_input(event: InputEvent) -> void:
 	else:
 		return
 	get_viewport().set_input_as_handled()
+
+
+# Another tree of strokes is edited now: that is drawn on.
+func _take_edited() -> void:
+	var node: TreeInstance3D = _session.node
+	if node == _edited.get_ref():
+		return
+	_edited = weakref(node)
+	if node != null and node != _node.get_ref() and sketch_of(node.reconstruction) != null:
+		set_node(node)
 
 
 # What is drawn on: the sketch of the tree that stands, if any does.
@@ -317,7 +323,11 @@ func _replace(order: Maker.Order, node: TreeInstance3D, tree: TreeReconstruction
 		node_wanted.emit(node)
 	var other: bool = _base().species != order.sketch.species
 	_session.replace_tree(order.title, tree, tree.leaf_preset if other else "")
-	Rerun.say_left_out(_session, order.replayed)
+	var left_out: int = (order.replayed.get("left_out", []) as Array).size()
+	if left_out != _left_out:
+		# Not with every stroke.
+		Rerun.say_left_out(_session, order.replayed)
+	_left_out = left_out
 
 
 # What makes no tree stays on the paper.
@@ -389,15 +399,6 @@ func _end_following() -> void:
 # --- what the user does ---------------------------------------------------------------------------
 
 
-func _on_node_changed() -> void:
-	var node: TreeInstance3D = _session.node
-	if node == null or node == _node.get_ref() or sketch_of(node.reconstruction) == null:
-		return
-	# What is under way belongs to the other one.
-	if not canvas.is_busy() and not maker.is_busy() and _due == 0:
-		set_node(node)
-
-
 func _on_drawn(points: PackedVector2Array, pressure: PackedFloat32Array) -> void:
 	_end_following()
 	var sketch: TreeSketch = _current.duplicate() as TreeSketch
@@ -424,6 +425,14 @@ func _on_clear() -> void:
 	var none: Array[Dictionary] = []
 	sketch.strokes = none
 	_change(tr("Clear Sketch"), sketch)
+
+
+func _on_loaded(sketch: TreeSketch, told: PackedStringArray) -> void:
+	canvas.cancel()
+	var changed: TreeSketch = _current.duplicate() as TreeSketch
+	for property: String in told:
+		changed.set(property, sketch.get(property))
+	_change(tr("Load Sketch"), changed)
 
 
 func _on_chosen(id: int) -> void:

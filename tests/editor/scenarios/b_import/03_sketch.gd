@@ -72,9 +72,6 @@ func _open() -> void:
 	if not await until(func() -> bool: return _window() != null, "the window opens"):
 		return
 	await user.frames(10)
-	# Where the tree will be seen beside it.
-	_window().position = Vector2i(8, 40)
-	await user.frames(10)
 	check_fits()
 	await picture("sketch-empty")
 
@@ -105,6 +102,24 @@ func _draw() -> void:
 	check(_tree().get_leaf_count() > 100, "It has only %d leaves." % _tree().get_leaf_count())
 	await user.frames(60)
 	await picture("sketch-made")
+	# For docs/sketch.md: the tree beside the window.
+	session().view.set(&"skeleton", false)
+	session().view.set(&"editing", false)
+	EditorInterface.distraction_free_mode = true
+	await user.frames(20)
+	var aside: Vector3 = view().get_camera_3d().global_basis.x * 6.0
+	var box: AABB = AABB(Vector3(0.0, 5.5, 0.0) - aside, Vector3.ZERO).grow(8.0)
+	session().view_wanted.emit(box)
+	await user.frames(40)
+	EditorInterface.get_selection().clear()
+	await user.frames(20)
+	await picture("tour-sketch")
+	check_equal(_canvas().get(&"strokes").size(), 5, "strokes while nothing is selected")
+	EditorInterface.get_selection().add_node(_tree())
+	session().view.set(&"editing", true)
+	session().view.set(&"skeleton", true)
+	EditorInterface.distraction_free_mode = false
+	await user.frames(20)
 
 
 func _undo() -> void:
