@@ -178,10 +178,17 @@ func test_strokes_become_a_tree_and_every_stroke_is_a_step() -> void:
 		_key(KEY_Z, true, true)
 		await _wait()
 		_check_tree(more, "after a redo")
-	# Nothing comes from nowhere.
-	_key(KEY_Z, true, true)
+	# Keys that come before a stroke is made wait for it.
+	_draw([Vector2(503.0, 480.0), Vector2(560.0, 380.0), Vector2(650.0, 250.0)])
+	_key(KEY_Z, true)
 	await _wait()
-	_check_tree(4, "after a redo of nothing")
+	await _wait()
+	_check_tree(4, "after a stroke and an undo at once")
+	_key(KEY_Z, true, true)
+	_key(KEY_Z, true)
+	await _wait()
+	await _wait()
+	_check_tree(4, "after a redo and an undo at once")
 	var roles: Array = _panel.canvas.understood.values().map(
 		func(stroke: Dictionary) -> String: return stroke["role"]
 	)

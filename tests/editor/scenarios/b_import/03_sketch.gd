@@ -107,8 +107,8 @@ func _draw() -> void:
 	session().view.set(&"editing", false)
 	EditorInterface.distraction_free_mode = true
 	await user.frames(20)
-	var aside: Vector3 = view().get_camera_3d().global_basis.x * 6.0
-	var box: AABB = AABB(Vector3(0.0, 5.5, 0.0) - aside, Vector3.ZERO).grow(8.0)
+	var aside: Vector3 = view().get_camera_3d().global_basis.x * 10.0
+	var box: AABB = AABB(Vector3(0.0, 5.5, 0.0) - aside, Vector3.ZERO).grow(4.5)
 	session().view_wanted.emit(box)
 	await user.frames(40)
 	EditorInterface.get_selection().clear()
