@@ -21,6 +21,8 @@ var _session: Session
 var _adder: SceneAdder
 var _title: String
 var _chooser: EditorFileDialog
+# Whether the skeleton was hidden for the window.
+var _skeleton_hidden: bool = false
 
 
 func enter(plugin: EditorPlugin, session: Session) -> void:
@@ -45,6 +47,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	window.add_child(panel)
 	window.files_dropped.connect(_on_dropped)
 	window.visible = false
+	window.visibility_changed.connect(_on_visibility_changed)
 	panel.close_wanted.connect(window.hide)
 	EditorInterface.get_base_control().add_child(window)
 	_title = tr("Sketch a Tree…")
@@ -57,6 +60,8 @@ func exit() -> void:
 	_plugin.get_tree().process_frame.disconnect(_on_frame)
 	_session.sketch_wanted.disconnect(open)
 	_plugin.remove_tool_menu_item(_title)
+	window.visibility_changed.disconnect(_on_visibility_changed)
+	_show_skeleton()
 	panel.close()
 	window.queue_free()
 	window = null
@@ -86,6 +91,22 @@ func _pop_up() -> void:
 	window.popup_centered_clamped(Vector2i(_SIZE * scale), 0.9)
 	var left: int = 0 if window.is_embedded() else base.position.x
 	window.position.x = left + roundi(_MARGIN * scale)
+
+
+# What is drawn is judged by its leaves, and lines over all twigs would be in the way of the pen.
+func _on_visibility_changed() -> void:
+	if not window.visible:
+		_show_skeleton()
+	elif _session.view.skeleton:
+		_skeleton_hidden = true
+		_session.view.skeleton = false
+
+
+# As it was before, unless the user chose otherwise.
+func _show_skeleton() -> void:
+	if _skeleton_hidden:
+		_skeleton_hidden = false
+		_session.view.skeleton = true
 
 
 func _on_frame() -> void:

@@ -73,6 +73,7 @@ func _open() -> void:
 		return
 	await user.frames(10)
 	check_fits()
+	check(not session().view.get(&"skeleton"), "Lines lie over the leaves.")
 	await picture("sketch-empty")
 
 
@@ -103,8 +104,6 @@ func _draw() -> void:
 	await user.frames(60)
 	await picture("sketch-made")
 	# For docs/sketch.md: the tree beside the window.
-	session().view.set(&"skeleton", false)
-	session().view.set(&"editing", false)
 	EditorInterface.distraction_free_mode = true
 	await user.frames(20)
 	var aside: Vector3 = view().get_camera_3d().global_basis.x * 10.0
@@ -116,8 +115,6 @@ func _draw() -> void:
 	await picture("tour-sketch")
 	check_equal(_canvas().get(&"strokes").size(), 5, "strokes while nothing is selected")
 	EditorInterface.get_selection().add_node(_tree())
-	session().view.set(&"editing", true)
-	session().view.set(&"skeleton", true)
 	EditorInterface.distraction_free_mode = false
 	await user.frames(20)
 
@@ -194,6 +191,7 @@ func _end() -> void:
 	await user.key("Escape")
 	if not await until(func() -> bool: return _window() == null, "it closes"):
 		return
+	check(session().view.get(&"skeleton") as bool, "The skeleton stays hidden.")
 	if _tree() == null:
 		return
 	EditorInterface.get_selection().clear()
