@@ -15,6 +15,7 @@ const _PARTS: PackedStringArray = [
 	"translations/part.gd",
 	"import/part.gd",
 	"photos/part.gd",
+	"sketch/part.gd",
 	"sharing/part.gd",
 	"viewport/part.gd",
 	"dock/part.gd",

@@ -24,3 +24,4 @@ cut scan 855x700+358+145 900
 cut branch 855x700+358+145 900
 cut graft 855x700+358+145 900
 cut leaves 1600x900+0+0 900
+cut sketch 1600x900+0+0 900

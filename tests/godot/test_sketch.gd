@@ -44,7 +44,9 @@ func test_strokes_keep_their_ids() -> void:
 func test_strokes_are_read_as_copies_and_made_whole() -> void:
 	var sketch: TreeSketch = small_sketch()
 	sketch.strokes[0]["points"] = PackedVector2Array()
-	check_equal((sketch.strokes[0]["points"] as PackedVector2Array).size(), 60, "points of the first")
+	check_equal(
+		(sketch.strokes[0]["points"] as PackedVector2Array).size(), 60, "points of the first"
+	)
 	var odd: Array[Dictionary] = [
 		{"points": PackedVector2Array([Vector2(1.0, 2.0)]), "id": 7, "role": 99},
 		{"points": PackedVector2Array()},
@@ -59,7 +61,9 @@ func test_strokes_are_read_as_copies_and_made_whole() -> void:
 
 func test_odd_values_are_refused() -> void:
 	expected_errors = [
-		"1 to 100000 pixels", "1 to 100000 pixels", "height must be a finite number",
+		"1 to 100000 pixels",
+		"1 to 100000 pixels",
+		"height must be a finite number",
 		"A stroke has at least one point"
 	]
 	var sketch: TreeSketch = TreeSketch.new()
@@ -84,7 +88,9 @@ func test_a_tree_of_strokes() -> void:
 	check_equal(kept.strokes, sketch.strokes, "the strokes that it keeps")
 	sketch.remove_stroke(1)
 	check_equal(kept.strokes.size(), 4, "strokes kept after one was taken from the sketch")
-	var roles: Array = worker.get_report()["strokes"].map(func(s: Dictionary) -> String: return s.role)
+	var roles: Array = worker.get_report()["strokes"].map(
+		func(s: Dictionary) -> String: return s.role
+	)
 	check_equal(roles, ["outline", "trunk", "branch", "branch"], "roles")
 	var again: TreeReconstruction = TreeReconstructor.new().sketch_tree(kept)
 	check_equal(again.skeleton, made.skeleton, "the same tree again")

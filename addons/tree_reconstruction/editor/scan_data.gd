@@ -45,13 +45,20 @@ func _init(jobs: Jobs, say: Callable) -> void:
 	_say = say
 
 
+## Where the scan of a tree lies, or nothing where the tree was not made of one.
+static func source_of(tree: TreeReconstruction) -> String:
+	if tree == null or tree.provenance.get("sketch") is TreeSketch:
+		return ""
+	return tree.provenance.get("source", "")
+
+
 ## Another tree is edited, or none, or it was reconstructed again. One of the same scan, in the same
 ## place, keeps its points.
 func set_tree(tree: TreeReconstruction) -> void:
 	var provenance: Dictionary = {} if tree == null else tree.provenance
 	if tree == _tree and is_same(provenance, _provenance):
 		return
-	var source: String = provenance.get("source", "")
+	var source: String = source_of(tree)
 	var skeleton: Dictionary = {} if tree == null else tree.skeleton
 	var frame: Array = [skeleton.get("frame"), skeleton.get("up_axis")]
 	var same: bool = not source.is_empty() and source == _source and frame == _frame

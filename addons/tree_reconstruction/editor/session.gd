@@ -22,6 +22,8 @@ signal view_wanted(box: AABB)
 signal reconstruction_wanted(changed: Dictionary)
 ## The user wants a tree of photos.
 signal photos_wanted
+## The user wants to draw a tree, or to draw on at the edited one.
+signal sketch_wanted
 ## A sentence for the user.
 signal said(sentence: String, kind: Kind)
 
@@ -344,18 +346,24 @@ func set_value(
 
 
 ## Gives the edited tree the wood, leaves and log of [param made], as what a reconstruction with
-## other options made. It stays the same resource, for all nodes that show it; its leaf rules stay.
-func replace_tree(title: String, made: TreeReconstruction) -> void:
+## other options made. It stays the same resource, for all nodes that show it; its leaf rules stay,
+## unless [param preset] names other leaves.
+func replace_tree(title: String, made: TreeReconstruction, preset: String = "") -> void:
 	if tree == null or made == null or made == tree:
 		return
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made))
+	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made, preset))
 	if edited == null:
 		return
 	begin_step(title, edited, imported)
 	_add_local(edited, imported)
 	add_replacement(edited, made)
+	if not preset.is_empty():
+		var before: Dictionary = _stored(edited)
+		edited.leaf_rule = null
+		edited.leaf_preset = preset
+		history.add_properties(edited, _stored(edited), before)
 	history.commit()
 
 

@@ -30,6 +30,7 @@ var _session: Session
 var _hint: Label
 var _no_tree: Label
 var _photos: Button
+var _sketch: Button
 var _welcome: ScrollContainer
 var _scroll: ScrollContainer
 var _timer: Timer = Timer.new()
@@ -78,6 +79,13 @@ func _init(session: Session) -> void:
 	)
 	_photos.pressed.connect(session.photos_wanted.emit)
 	hints.add_child(_photos)
+	_sketch = Widgets.button(
+		"Sketch a Tree…",
+		"Opens a window where a crown, a trunk and branches that you draw become a tree.",
+		&"Edit"
+	)
+	_sketch.pressed.connect(session.sketch_wanted.emit)
+	hints.add_child(_sketch)
 	_welcome.add_child(hints)
 	add_child(_welcome)
 	_scroll = ScrollContainer.new()

@@ -163,7 +163,7 @@ func _refresh() -> void:
 	var empty: bool = session.tree == null or session.tree.is_empty()
 	for button: Button in [bake, meshes, impostor.button, export_button]:
 		button.disabled = empty
-	cloud_button.disabled = empty or session.tree.provenance.get("source", "") == ""
+	cloud_button.disabled = empty or Session.ScanData.source_of(session.tree) == ""
 	log_button.disabled = empty or session.tree.edit_log.is_empty()
 
 

@@ -381,7 +381,7 @@ func _show(
 
 
 func _has_scan() -> bool:
-	return session.tree != null and not session.tree.provenance.get("source", "").is_empty()
+	return not Session.ScanData.source_of(session.tree).is_empty()
 
 
 func _on_follow_toggled(on: bool) -> void:

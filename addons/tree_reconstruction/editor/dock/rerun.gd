@@ -98,12 +98,14 @@ func _replay(raw: TreeReconstruction, node: int, old: TreeReconstruction) -> voi
 		return
 	_job = _session.jobs.start(
 		tr("Doing your edits again"),
-		_edit_again.bind(raw, log),
+		edit_again.bind(raw, log),
 		_on_edited_again.bind(raw, log, node, old)
 	)
 
 
-static func _edit_again(_running: Jobs.Job, raw: TreeReconstruction, log: String) -> Array:
+## Does the edits of a log again on a copy of [param raw]: that, and what
+## [method TreeReconstruction.replay] says of it. May run on a thread.
+static func edit_again(_running: Jobs.Job, raw: TreeReconstruction, log: String) -> Array:
 	var made: TreeReconstruction = raw.duplicate() as TreeReconstruction
 	return [made, made.replay(log)]
 
@@ -133,14 +135,19 @@ func _take(
 		return
 	_keep_rules(made, old)
 	_session.replace_tree(tr("Reconstruct Again"), made)
+	say_left_out(_session, replayed)
+	_end("")
+
+
+## Says which edits did not fit when they were done again.
+static func say_left_out(session: Session, replayed: Dictionary) -> void:
 	var left_out: Array = replayed.get("left_out", [])
 	if not left_out.is_empty():
 		var sentence: String = (
-			tr("%d of your edits don't fit the new tree and wait in its log. The first: %s")
+			session.tr("%d of your edits don't fit the new tree and wait in its log. The first: %s")
 			% [left_out.size(), left_out[0].reason]
 		)
-		_session.say(sentence, _session.Kind.WARNING)
-	_end("")
+		session.say(sentence, Session.Kind.WARNING)
 
 
 # The node may be gone, so it is known by its instance id.

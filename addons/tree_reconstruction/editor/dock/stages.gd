@@ -45,6 +45,7 @@ var rows: Dictionary[StringName, Row] = {}
 var rerun: Rerun
 
 var _no_scan: Label
+var _sketch: Button
 var _sentence: Label
 var _node: TreeInstance3D
 var _tree: TreeReconstruction
@@ -110,6 +111,13 @@ func _build() -> void:
 		"This tree wasn't made of a scan, so its first stages can't be done again."
 	)
 	body.add_child(_no_scan)
+	_sketch = Widgets.button(
+		"Edit Sketch",
+		"Opens the strokes that this tree was made of: draw on, and the tree follows.",
+		&"Edit"
+	)
+	_sketch.pressed.connect(session.sketch_wanted.emit)
+	body.add_child(_sketch)
 	_add_row(
 		SCAN,
 		"Scan",
@@ -273,8 +281,12 @@ func _show_options() -> void:
 func _show_scan_stages() -> void:
 	var provenance: Dictionary = {} if _tree == null else _tree.provenance
 	var report: Dictionary = provenance.get("report", {})
-	var scanned: bool = not (provenance.get("source", "") as String).is_empty()
-	_no_scan.visible = _tree != null and not scanned
+	var sketched: bool = provenance.get("sketch") is TreeSketch
+	var scanned: bool = not Session.ScanData.source_of(_tree).is_empty()
+	_no_scan.visible = _tree != null and not scanned and not sketched
+	_sketch.visible = sketched
+	for stage: StringName in _FROM_SCAN:
+		rows[stage].visible = not sketched
 	var times: Dictionary[StringName, float] = {}
 	for entry: Dictionary in report.get("stages", []):
 		var stage: StringName = _REPORTED.get(entry.name, SKELETON)

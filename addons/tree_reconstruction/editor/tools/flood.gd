@@ -111,7 +111,7 @@ func make_settings() -> Control:
 
 ## Floods the scan, on a thread.
 func run() -> void:
-	var source: String = session.tree.provenance.get("source", "") if session.tree != null else ""
+	var source: String = Session.ScanData.source_of(session.tree)
 	if source.is_empty():
 		session.say(tr("This tree wasn't made of a scan, so there is nothing to flood."))
 		return

@@ -47,7 +47,7 @@ func get_key() -> Key:
 func start() -> void:
 	places = []
 	session.tree_changed.connect(_forget)
-	if session.tree != null and not session.tree.provenance.get("source", "").is_empty():
+	if not Session.ScanData.source_of(session.tree).is_empty():
 		session.view.points = true
 		session.scan.request()
 

@@ -442,6 +442,8 @@ const PATTERNS: PackedStringArray = [
 	"Poplar, to fill a crown: shoots one by one, rising steeply",
 	"Magnolia, to fill a crown: shoots several from one place",
 ]
+const SketchSentences := preload("sketch_sentences.gd")
+const _ALL: PackedStringArray = PATTERNS + SketchSentences.PATTERNS
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.
 ## tests/tools/editor_strings.py checks that there are no others.
@@ -476,7 +478,7 @@ static func translate_list(list: String, domain: StringName) -> String:
 
 
 static func _translate(sentence: String, words: TranslationDomain) -> String:
-	for pattern: String in PATTERNS:
+	for pattern: String in _ALL:
 		var gaps: Variant = find_gaps(sentence, pattern)
 		if gaps == null:
 			continue

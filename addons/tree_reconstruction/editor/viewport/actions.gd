@@ -76,6 +76,8 @@ func _run_other(action: StringName, camera: Camera3D) -> void:
 		&"compare_photos":
 			turntable.stop()
 			photos.toggle(camera)
+		&"edit_sketch":
+			_session.sketch_wanted.emit()
 		&"screenshot":
 			if photos.is_open():
 				screenshot.save(photos.get_picture())

@@ -28,6 +28,7 @@ const _KEYS: Dictionary[StringName, Array] = {
 	&"view_selection": [KEY_F],
 	&"turntable": [KEY_O],
 	&"compare_photos": [KEY_F4],
+	&"edit_sketch": [],
 	&"screenshot": [KEY_F9],
 	&"select_all": [KEY_MASK_CTRL | KEY_A],
 	&"grow_selection": [KEY_EQUAL, KEY_KP_ADD, KEY_PLUS],

@@ -45,7 +45,10 @@ func update() -> void:
 		var action: StringName = _actions[id]
 		popup.set_item_shortcut(index, _shortcuts.get_shortcut(action), false)
 		popup.set_item_shortcut_disabled(index, true)
-		if action == &"edit_skeleton":
+		if action == &"edit_sketch":
+			var drawn: bool = _session.tree != null and _session.tree.provenance.has("sketch")
+			popup.set_item_disabled(index, not drawn)
+		elif action == &"edit_skeleton":
 			popup.set_item_checked(index, _session.view.editing)
 		elif Actions.SHOWN.has(action):
 			popup.set_item_checked(index, _session.view.get(Actions.SHOWN[action]))
@@ -116,6 +119,12 @@ func _fill() -> void:
 		tr("Stands where the photos were taken that the tree was made of. Nothing is changed.")
 	)
 	get_popup().add_separator()
+	_add(
+		&"edit_sketch",
+		tr("Edit Sketch"),
+		false,
+		tr("Opens the strokes that this tree was made of, if it was: draw on, and it follows.")
+	)
 	_add(
 		&"screenshot",
 		tr("Save Picture"),

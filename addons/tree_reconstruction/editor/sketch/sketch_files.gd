@@ -1,0 +1,59 @@
+@tool
+extends RefCounted
+## Strokes from and to files.
+
+## Strokes were read. [param told] are the properties of [TreeSketch] that the file tells: all
+## others stay as they are.
+signal loaded(sketch: TreeSketch, told: PackedStringArray)
+## A sentence for the user, and the color of the theme that it has.
+signal said(sentence: String, color: StringName)
+
+const Session := preload("../session.gd")
+const Jobs := preload("../jobs.gd")
+
+var _session: Session
+
+
+func _init(session: Session) -> void:
+	set_translation_domain(session.get_translation_domain())
+	_session = session
+
+
+## Reads strokes, on a thread: a drawing is thinned first.
+func read(path: String) -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	_session.jobs.start(
+		tr("Reading %s") % path.get_file(), _read.bind(worker, path), _on_read.bind(worker, path)
+	)
+
+
+## Writes strokes.
+func write(sketch: TreeSketch, path: String) -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	if worker.save_sketch(sketch, path) != OK:
+		_fail(worker)
+		return
+	said.emit(tr("The strokes were saved as %s.") % path, &"font_color")
+
+
+static func _read(_running: Jobs.Job, worker: TreeReconstructor, path: String) -> TreeSketch:
+	return worker.load_sketch(path)
+
+
+func _on_read(
+	sketch: TreeSketch, _ended: Jobs.Job, worker: TreeReconstructor, path: String
+) -> void:
+	if sketch == null:
+		_fail(worker)
+		return
+	var told: PackedStringArray = ["canvas_size", "strokes"]
+	# A drawing tells no more than its lines.
+	if path.get_extension().to_lower() == "json":
+		told.append_array(["species", "height", "seed"])
+	loaded.emit(sketch, told)
+
+
+func _fail(worker: TreeReconstructor) -> void:
+	var sentence: String = worker.get_error_message()
+	_session.say(sentence, Session.Kind.ERROR)
+	said.emit(Session.Sentences.translate(sentence, get_translation_domain()), &"error_color")

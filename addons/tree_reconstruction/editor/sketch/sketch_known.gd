@@ -1,0 +1,82 @@
+@tool
+extends RefCounted
+## What is known of the sketches that were made lately: what their strokes were taken for, what is
+## wrong with them, in the editor's language.
+
+const Session := preload("../session.gd")
+# So many steps can be undone without a sketch being read again.
+const _MOST: int = 64
+
+
+class Entry:
+	extends RefCounted
+
+	var sketch: TreeSketch
+	## By a stroke's id.
+	var strokes: Dictionary[int, Dictionary] = {}
+	var remarks: PackedStringArray = []
+	## Why it is no tree.
+	var sentence: String = ""
+
+
+var _entries: Array[Entry] = []
+
+
+func has(sketch: TreeSketch) -> bool:
+	return _find(sketch) != null
+
+
+## Remembers a report of [method TreeReconstructor.sketch_tree].
+func add(sketch: TreeSketch, report: Dictionary, session: Session) -> void:
+	var entry: Entry = Entry.new()
+	entry.sketch = sketch
+	var domain: StringName = session.get_translation_domain()
+	var ids: Array = sketch.strokes.map(func(stroke: Dictionary) -> int: return stroke["id"])
+	var known: Array = report.get("strokes", [])
+	for i: int in mini(known.size(), ids.size()):
+		var stroke: Dictionary = (known[i] as Dictionary).duplicate()
+		stroke["fault"] = Session.Sentences.translate(stroke.get("fault", ""), domain)
+		entry.strokes[ids[i]] = stroke
+	for remark: String in report.get("remarks", []):
+		entry.remarks.append(Session.Sentences.translate(remark, domain))
+	_entries.append(entry)
+	if _entries.size() > _MOST:
+		_entries.pop_front()
+
+
+## Remembers why no tree came of it.
+func set_sentence(sketch: TreeSketch, sentence: String) -> void:
+	_find(sketch).sentence = sentence
+
+
+## What each stroke was taken for, by its id.
+func get_strokes(sketch: TreeSketch) -> Dictionary[int, Dictionary]:
+	var entry: Entry = _find(sketch)
+	var none: Dictionary[int, Dictionary] = {}
+	return entry.strokes if entry != null else none
+
+
+func get_faults(sketch: TreeSketch) -> PackedStringArray:
+	var faults: PackedStringArray = []
+	for stroke: Dictionary in get_strokes(sketch).values():
+		if stroke["fault"] != "" and not stroke["fault"] in faults:
+			faults.append(stroke["fault"])
+	return faults
+
+
+func get_remarks(sketch: TreeSketch) -> PackedStringArray:
+	var entry: Entry = _find(sketch)
+	return entry.remarks if entry != null else PackedStringArray()
+
+
+func get_sentence(sketch: TreeSketch) -> String:
+	var entry: Entry = _find(sketch)
+	return entry.sentence if entry != null else ""
+
+
+# The latest one.
+func _find(sketch: TreeSketch) -> Entry:
+	for i: int in range(_entries.size() - 1, -1, -1):
+		if is_same(_entries[i].sketch, sketch):
+			return _entries[i]
+	return null
