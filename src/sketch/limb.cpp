@@ -27,6 +27,7 @@ constexpr double kReachJitters = 3.0;  // so far beside the stroke points are lo
 constexpr double kSlopeStretch = 0.4;  // of what was found, its last part, says how the limb goes on,
 constexpr double kLeastStretch = 0.3;  // and at least so many metres
 constexpr double kSteepest = 1.2;      // radians out of the picture
+constexpr double kJointRatio = 0.8;    // papers/000, algorithm 5
 constexpr double kOneAxis = 1e-3;
 constexpr double kLeastNodeStep = 0.04, kMostNodeStep = 0.4;
 
@@ -78,15 +79,8 @@ struct Lift {
     double jitter;
     const Progress* progress;
 
-    // The limb's radius in the middle, about.
-    double radius_at(double depth) const {
-        const double length = length_of(line) * depth / view.focal;
-        return law.base_radius(length) * law.share_at(0.4);
-    }
-
     Lifted from(const LimbHost& host) const {
         const DVec3 joint = tree.node(host.node).position;
-        const double radius = radius_at(host.depth);
         const LimbPath path = find_path(points, view, line, joint, jitter, progress);
         Lifted lifted;
         lifted.score = path.score;
@@ -99,6 +93,13 @@ struct Lift {
                 lifted.axis.push_back({out_of_camera(view, plane.meet(view, line[i], most)), 0.0, false});
             return lifted;
         }
+        PathRadius radius{law};
+        radius.covered = static_cast<double>(path.stops.back().sample) / static_cast<double>(line.size() - 1);
+        double length = glm::distance(joint, path.stops.front().place);
+        for (size_t i = 1; i < path.stops.size(); i++)
+            length += glm::distance(path.stops[i].place, path.stops[i - 1].place);
+        radius.base = std::min(law.base_radius(length / std::max(radius.covered, 0.1)),
+                               kJointRatio * tree.node(host.node).radius);
         const std::vector<DVec3> found = centre_path(points, joint, path, kAxisStep, radius, progress);
         const std::vector<uint8_t> shown = shown_places(points, found, radius);
         for (size_t i = 0; i < found.size(); i++)

@@ -9,7 +9,9 @@ namespace treerec {
 
 namespace {
 
-constexpr int kRounds = 6;
+constexpr int kRounds = 8;
+constexpr int kWideRounds = 4;
+constexpr double kDamping = 0.3;  // of the points' weight
 constexpr double kAround = 0.05;  // metres outside of the bark that still pull
 constexpr double kBeside = 0.08;  // metres along the axis that a place looks at
 constexpr double kStiff = 0.5;    // how far a place gives way to its neighbours, each round
@@ -62,34 +64,49 @@ void close_runs(std::vector<uint8_t>& shown, const std::vector<DVec3>& axis, uin
 }  // namespace
 
 std::vector<DVec3> centre_path(const std::vector<Vec3>& points, const DVec3& joint, const LimbPath& path,
-                               double step, double radius, const Progress* progress) {
+                               double step, const PathRadius& radius, const Progress* progress) {
     std::vector<DVec3> axis{joint};
     for (const LimbPath::Stop& stop : path.stops)
         axis.push_back(stop.place);
     const PointTree near(points);
-    const double reach = radius + kAround;
     for (int round = 0; round < kRounds; round++) {
         if (progress) progress->check();
         axis = every(axis, step);
         std::vector<DVec3> moved = axis;
         for (size_t i = 1; i < axis.size(); i++) {
             const DVec3 way = way_at(axis, i);
+            const DVec3 right = any_perpendicular(way), up = glm::cross(way, right);
+            const double r = radius.at(static_cast<double>(i) / static_cast<double>(axis.size() - 1));
+            // At first the path may lie on the bark: the far side is a diameter away.
+            const double reach = (round < kWideRounds ? 2.0 : 1.3) * r + kAround;
+            const double blur = 0.5 * r + kAround;
             Around around{static_cast<float>(reach * reach + kBeside * kBeside)};
             near.search(Vec3(axis[i]), around);
             std::sort(around.found.begin(), around.found.end());
-            DVec3 pull(0.0);
-            double weights = 0.0;
+            double weights = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+            DVec2 pull(0.0);
             for (const uint32_t k : around.found) {
                 const DVec3 off = DVec3(points[k]) - axis[i];
-                const double along = glm::dot(off, way);
-                const DVec3 across = off - way * along;
-                const double distance = glm::length(across) / reach;
-                if (std::abs(along) > kBeside || distance >= 1.0) continue;
-                const double weight = (1.0 - distance * distance) * (1.0 - distance * distance);
-                pull += across * weight;
+                if (std::abs(glm::dot(off, way)) > kBeside) continue;
+                const DVec2 p(glm::dot(off, right), glm::dot(off, up));
+                const double distance = glm::length(p);
+                const double rest = distance - r;
+                if (distance > reach || distance < 1e-6) continue;
+                const double part = std::min(1.0, std::abs(rest) / std::max(blur, reach - r));
+                const double weight = (1.0 - part * part) * (1.0 - part * part);
+                const DVec2 out = p / distance;
                 weights += weight;
+                xx += weight * out.x * out.x;
+                xy += weight * out.x * out.y;
+                yy += weight * out.y * out.y;
+                pull += out * (weight * rest);
             }
-            if (weights > 0.5) moved[i] += pull / weights;
+            if (weights < 0.5) continue;
+            xx += kDamping * weights;
+            yy += kDamping * weights;
+            const double area = xx * yy - xy * xy;
+            const DVec2 move = DVec2(yy * pull.x - xy * pull.y, xx * pull.y - xy * pull.x) / area;
+            moved[i] += right * move.x + up * move.y;
         }
         for (int pass = 0; pass < 2; pass++) {
             const std::vector<DVec3> before = moved;
@@ -102,12 +119,13 @@ std::vector<DVec3> centre_path(const std::vector<Vec3>& points, const DVec3& joi
 }
 
 std::vector<uint8_t> shown_places(const std::vector<Vec3>& points, const std::vector<DVec3>& axis,
-                                  double radius) {
+                                  const PathRadius& radius) {
     const PointTree near(points);
-    const double reach = radius + kShown;
     std::vector<uint8_t> shown(axis.size(), 0);
     for (size_t i = 0; i < axis.size(); i++) {
         const DVec3 way = way_at(axis, i);
+        const double reach =
+            radius.at(static_cast<double>(i) / static_cast<double>(axis.size() - 1)) + kShown;
         Around around{static_cast<float>(reach * reach + kBeside * kBeside)};
         near.search(Vec3(axis[i]), around);
         size_t count = 0;

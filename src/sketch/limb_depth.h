@@ -1,11 +1,13 @@
 // The way of a drawn limb through the points of a scan.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/point_tree.h"
 #include "sketch/limb.h"
+#include "sketch/limb_statistics.h"
 
 namespace treerec {
 
@@ -34,14 +36,25 @@ struct LimbPath {
 LimbPath find_path(const std::vector<Vec3>& points, const PinholeView& view, const std::vector<DVec2>& line,
                    const DVec3& joint, double jitter, const Progress* progress);
 
+// How thick a limb is along its path.
+struct PathRadius {
+    const RadiusLaw& law;
+    double base = 0.0;     // metres
+    double covered = 1.0;  // the share of the limb that the path covers
+
+    // share: of the path.
+    double at(double share) const { return std::max(base * law.share_at(share * covered), law.least); }
+};
+
 // The axis of the wood around the path: its places every `step` metres from the joint to the last stop, drawn
-// into the middle of the points around them. radius: of the wood, about, metres.
+// to where the points around them lie on bark of the limb's radius (Gauss and Newton's method on the circle
+// across the limb, damped: points on one side of it are enough).
 std::vector<DVec3> centre_path(const std::vector<Vec3>& points, const DVec3& joint, const LimbPath& path,
-                               double step, double radius, const Progress* progress);
+                               double step, const PathRadius& radius, const Progress* progress);
 
 // Whether points show the places of an axis: within a limb's radius and 4 cm of it, near the place. Short
 // gaps are closed, and short finds dropped.
 std::vector<uint8_t> shown_places(const std::vector<Vec3>& points, const std::vector<DVec3>& axis,
-                                  double radius);
+                                  const PathRadius& radius);
 
 }  // namespace treerec
