@@ -28,6 +28,8 @@ constexpr double kSlopeStretch = 0.4;  // of what was found, its last part, says
 constexpr double kLeastStretch = 0.3;  // and at least so many metres
 constexpr double kSteepest = 1.2;      // radians out of the picture
 constexpr double kJointRatio = 0.8;    // papers/000, algorithm 5
+// By how much more of a path's score another host must be better; one that the stroke does not fall on.
+constexpr double kMargin = 1.0, kNearMargin = 2.5;
 constexpr double kOneAxis = 1e-3;
 constexpr double kLeastNodeStep = 0.04, kMostNodeStep = 0.4;
 
@@ -179,7 +181,8 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
     for (const LimbHost& one : hung.hosts) {
         if (&one != &hung.hosts.front() && points.empty()) break;
         Lifted tried = lift.from(one);
-        if (&one != &hung.hosts.front() && !(tried.score > lifted.score + 1.0)) continue;
+        const double margin = host->on && !one.on ? kNearMargin : kMargin;
+        if (&one != &hung.hosts.front() && !(tried.score > lifted.score + margin)) continue;
         lifted = std::move(tried);
         host = &one;
     }

@@ -19,7 +19,7 @@ constexpr double kTailShare = 0.25;
 constexpr double kBears = 0.75;  // of the base radius that a limb of its length has: a host's least
 constexpr double kAlike = 0.5;   // of the thickest wood's radius: may hide it
 constexpr double kClearly = 1.5;
-constexpr size_t kMostHosts = 3;
+constexpr size_t kMostHosts = 4;
 
 double along_segment(const DVec2& p, const DVec2& a, const DVec2& b) {
     const DVec2 ab = b - a;
@@ -117,21 +117,26 @@ EndWood wood_at(const Picture& picture, const RadiusLaw& law, const DVec2& end, 
                          [](const Fall& a, const Fall& b) { return a.apart < b.apart; });
         std::vector<Fall> best;
         for (const Fall& fall : falls) {
-            if (found.on && fall.apart > jitter) break;
             const int32_t branch = picture.wood(fall.wood).branch;
             if (std::none_of(best.begin(), best.end(),
                              [&](const Fall& f) { return picture.wood(f.wood).branch == branch; }))
                 best.push_back(fall);
         }
-        for (const Fall& fall : best)
+        // Those that it falls on, the one in front first, go before those that are only near.
+        const auto on_end = std::find_if(best.begin(), best.end(),
+                                         [&](const Fall& fall) { return found.on && fall.apart > jitter; });
+        std::vector<Fall> on(best.begin(), found.on ? on_end : best.begin());
+        for (const Fall& fall : found.on ? on : best)
             found.thickest = std::max(found.thickest, picture.wood(fall.wood).radius);
-        if (found.on) {
-            std::erase_if(best, [&](const Fall& fall) {
-                return picture.wood(fall.wood).radius < kAlike * found.thickest;
-            });
-            std::stable_sort(best.begin(), best.end(),
-                             [](const Fall& a, const Fall& b) { return a.depth < b.depth; });
-        }
+        const auto thin = [&](const Fall& fall) {
+            return picture.wood(fall.wood).radius < kAlike * found.thickest;
+        };
+        std::erase_if(on, thin);
+        std::stable_sort(on.begin(), on.end(),
+                         [](const Fall& a, const Fall& b) { return a.depth < b.depth; });
+        for (auto near = found.on ? on_end : best.begin(); near != best.end(); ++near)
+            on.push_back(*near);
+        best = on;
         if (best.size() > kMostHosts) best.resize(kMostHosts);
         found.falls = best;
         break;
@@ -298,7 +303,8 @@ HungStroke hang_stroke(const Tree& tree, const LimbStatistics& statistics, const
     for (const Fall& fall : tail.falls) {
         const SeenWood& seen = picture.wood(fall.wood);
         const NodeId below = tree.node(seen.child).parent;
-        hung.hosts.push_back({seen.child, fall.part < 0.5 ? below : seen.child, fall.depth});
+        hung.hosts.push_back(
+            {seen.child, fall.part < 0.5 ? below : seen.child, fall.depth, fall.apart <= jitter});
     }
     return hung;
 }

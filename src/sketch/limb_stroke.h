@@ -24,6 +24,7 @@ struct LimbHost {
     NodeId child = kNoNode;  // the upper end of the segment
     NodeId node = kNoNode;   // the end of it that is nearer to where the stroke falls on it
     double depth = 0.0;      // metres before the camera, of the wood there
+    bool on = false;         // the stroke falls on it
 };
 
 struct HungStroke {
@@ -35,8 +36,9 @@ struct HungStroke {
 // The tail is the end that lies on wood, or nearer to it in the picture; where both lie on some, the one on
 // wood that is clearly thicker, else where the stroke begins. Its host is the segment that it falls on, the
 // one in front where several of about the same thickness do; or the nearest within 15 % of the stroke's
-// length. Wood that is clearly thinner than a limb of that length is no host where there is other. What lies
-// beyond the host's axis is cut off, if it is the shorter part. Throws Error where there is no wood near.
+// length; other wood so near is told after it, for the points to choose. Wood that is clearly thinner than a
+// limb of that length is no host where there is other. What lies beyond the host's axis is cut off, if it is
+// the shorter part. Throws Error where there is no wood near.
 HungStroke hang_stroke(const Tree& tree, const LimbStatistics& statistics, const LimbStroke& stroke,
                        double jitter, const Progress* progress);
 
