@@ -12,6 +12,7 @@
 #include "geometry/quantile.h"
 #include "geometry/random.h"
 #include "geometry/segment.h"
+#include "skeleton/skeleton.h"
 #include "sketch/limb.h"
 #include "sketch/limb_statistics.h"
 #include "synth/grow.h"
@@ -29,6 +30,7 @@ struct Trial {
     std::vector<DVec3> axis;    // from the host's node on
     std::vector<uint8_t> seen;  // of each place of the axis but the first, whether the cloud has points there
     LimbStroke stroke;
+    bool reconstructed = false;
 };
 
 inline double distance_to_line(const DVec3& p, const std::vector<DVec3>& line) {
@@ -56,9 +58,10 @@ inline PinholeView camera_at(const Tree& tree, double azimuth, double elevation,
     return view;
 }
 
-// One of the trunk's stouter limbs; nothing where the tree has none.
-inline std::optional<Trial> make_trial(Habit habit, uint64_t seed, double jitter = 3.0,
-                                       size_t points = 60000) {
+// One of the trunk's stouter limbs; nothing where the tree has none. reconstructed: the tree that lacks it is
+// made from the scan without it, instead of cut from the true one.
+inline std::optional<Trial> make_trial(Habit habit, uint64_t seed, double jitter = 3.0, size_t points = 60000,
+                                       bool reconstructed = false) {
     Trial trial;
     trial.truth = grow_tree({habit, 0.0, seed});
     const BranchList list = list_branches(trial.truth);
@@ -98,6 +101,16 @@ inline std::optional<Trial> make_trial(Habit habit, uint64_t seed, double jitter
         } else {
             trial.cloud_cut.positions.push_back(scan.cloud.positions[i]);
         }
+    }
+    trial.reconstructed = reconstructed;
+    if (reconstructed) {
+        // In the frame of the truth, so that places can be compared.
+        trial.tree = skeletonize(trial.cloud_cut, {}).tree;
+        for (const NodeId id : trial.tree.depth_first()) {
+            const DVec3 place = trial.tree.frame().to_scan(trial.tree.node(id).position);
+            trial.tree.set_position(id, trial.truth.frame().to_tree(place));
+        }
+        trial.tree.set_frame(trial.truth.frame());
     }
     for (size_t i = 1; i < trial.axis.size(); i++) {
         size_t near = 0;
@@ -160,10 +173,10 @@ inline Figures judge(const Trial& trial, const DrawnLimb& limb) {
     for (const LimbPlace& place : limb.axis)
         drawn.push_back(place.position);
     const BranchList list = list_branches(trial.tree);
-    figures.host =
-        list.branch_of[static_cast<size_t>(limb.host)] == list.branch_of[static_cast<size_t>(trial.attach)];
-    figures.host_off =
-        glm::distance(trial.tree.node(limb.host).position, trial.tree.node(trial.attach).position);
+    figures.host_off = glm::distance(trial.tree.node(limb.host).position, trial.axis.front());
+    figures.host = trial.reconstructed ? figures.host_off < 0.3
+                                       : list.branch_of[static_cast<size_t>(limb.host)] ==
+                                             list.branch_of[static_cast<size_t>(trial.attach)];
     size_t seen = 0, within = 0;
     for (size_t i = 0; i < trial.seen.size(); i++) {
         if (!trial.seen[i]) continue;
