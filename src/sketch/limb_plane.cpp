@@ -19,6 +19,7 @@ constexpr double kLengthWidth = 0.16;  // of the logarithm
 constexpr double kShareWidth = 0.15;   // of the host's length: siblings so near tell most
 // What the siblings do not tell: a share of each density that is even.
 constexpr double kEven = 0.12;
+constexpr double kFewTurns = 8.0;
 constexpr double kSamePlace = 0.02;  // metres along the host: a whorl
 constexpr double kShortest = 0.4;    // of the stroke's own length: shorter siblings are other things
 constexpr double kMostLoss = 45.0 * kDegree;
@@ -61,12 +62,13 @@ class Siblings {
             else if (!after_)
                 after_ = &side;
         }
-        for (size_t i = 0; i + 1 < sides.size(); i++) {
-            if (&sides[i] == before_) continue;  // the gap where it is missing
-            const double turn = turned_by(sides[i + 1].chord_azimuth - sides[i].chord_azimuth);
-            if (sides[i + 1].along - sides[i].along > kSamePlace) {
-                following_.push_back(turn);
-            } else {
+        for (size_t i = 0; i < sides.size(); i++) {
+            // The gap where it is missing tells nothing.
+            if (i + 1 < sides.size() && &sides[i] != before_ &&
+                sides[i + 1].along - sides[i].along > kSamePlace)
+                following_.push_back(turned_by(sides[i + 1].chord_azimuth - sides[i].chord_azimuth));
+            for (size_t k = i + 1; k < sides.size() && sides[k].along - sides[i].along <= kSamePlace; k++) {
+                const double turn = turned_by(sides[k].chord_azimuth - sides[i].chord_azimuth);
                 whorled_.push_back(turn);
                 whorled_.push_back(-turn);
             }
@@ -98,7 +100,7 @@ class Siblings {
         if (!beside_.empty() && !whorled_.empty()) {
             for (const double other : beside_)
                 density *= turn_density(whorled_, azimuth - other);
-            return portable::pow(density, 1.0 / static_cast<double>(beside_.size()));
+            return density;
         }
         if (before_) density *= turn_density(following_, azimuth - before_->chord_azimuth);
         if (after_) density *= turn_density(following_, after_->chord_azimuth - azimuth);
@@ -117,9 +119,11 @@ class Siblings {
         double sum = 0.0;
         for (const double one : turns)
             sum += gauss(turned_by(turn - one), kAzimuthWidth);
-        const double even = 1.0 / (2.0 * kPi);
-        if (turns.empty()) return even;
-        return (1.0 - kEven) * sum / static_cast<double>(turns.size()) + kEven * even;
+        // Few turns tell little.
+        const double count = static_cast<double>(turns.size());
+        const double share = std::max(kEven, kFewTurns / (kFewTurns + count));
+        const double even = share / (2.0 * kPi);
+        return turns.empty() ? even : (1.0 - share) * sum / count + even;
     }
 
     double share_;
