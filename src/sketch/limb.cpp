@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "sketch/limb_depth.h"
 #include "sketch/limb_plane.h"
@@ -30,6 +31,9 @@ constexpr double kSteepest = 1.2;      // radians out of the picture
 constexpr double kJointRatio = 0.8;    // papers/000, algorithm 5
 // By how much more of a path's score another host must be better; one that the stroke does not fall on.
 constexpr double kMargin = 1.0, kNearMargin = 2.5;
+constexpr double kRadiusSpread = 0.9;  // of the logarithm of a limb's radius over the usual one
+constexpr double kClearlyMore = 0.03;  // of the points on its bark
+constexpr double kStouterShare = 0.3;  // measured: then its own points tell its radius
 constexpr double kOneAxis = 1e-3;
 constexpr double kLeastNodeStep = 0.04, kMostNodeStep = 0.4;
 
@@ -68,7 +72,7 @@ void require(const Tree& tree, const LimbStroke& stroke, const LimbOptions& opti
 struct Lifted {
     std::vector<LimbPlace> axis;
     double score = 0.0;
-    bool foreshortened = false;
+    double stouter = 1.0;  // than limbs of its length are
 };
 
 struct Lift {
@@ -102,7 +106,24 @@ struct Lift {
             length += glm::distance(path.stops[i].place, path.stops[i - 1].place);
         radius.base = std::min(law.base_radius(length / std::max(radius.covered, 0.1)),
                                kJointRatio * tree.node(host.node).radius);
-        const std::vector<DVec3> found = centre_path(points, joint, path, kAxisStep, radius, progress);
+        // A limb may be stouter than its siblings: of the radii tried, the one whose bark has the points.
+        const double most_radius = kJointRatio * tree.node(host.node).radius;
+        const double usual = radius.base;
+        std::vector<DVec3> found;
+        double best = -1.0;
+        for (const double factor : {1.0, 0.7, 1.4, 2.0, 2.8}) {
+            PathRadius tried = radius;
+            tried.base = std::min(factor * usual, most_radius);
+            if (factor > 1.0 && tried.base < 1.2 * usual) break;
+            std::vector<DVec3> centred = centre_path(points, joint, path, kAxisStep, tried, progress);
+            const double unusual = portable::log(factor) / kRadiusSpread;
+            const double share = bark_share(points, centred, tried) * portable::exp(-0.5 * unusual * unusual);
+            if (share <= best + kClearlyMore) continue;
+            best = share;
+            found = std::move(centred);
+            radius.base = tried.base;
+        }
+        lifted.stouter = radius.base / usual;
         const std::vector<uint8_t> shown = shown_places(points, found, radius);
         for (size_t i = 0; i < found.size(); i++)
             lifted.axis.push_back({found[i], 0.0, i > 0 && shown[i] != 0});
@@ -171,8 +192,11 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
     std::vector<Vec3> points;
     if (cloud && cloud->size() > 0) {
         progress.update(0.2, "Limb");
-        points = points_beside(tree, *cloud, wood, view, line, kReachJitters * options.jitter + thick,
-                               options.tolerance, &progress);
+        const double widest = view.focal / likeliest.depth * tree.node(likeliest.node).radius;
+        points =
+            points_beside(tree, *cloud, wood, view, line,
+                          kReachJitters * options.jitter + std::max(thick, std::min(3.0 * thick, widest)),
+                          options.tolerance, &progress);
     }
     progress.update(0.5, "Limb");
     const Lift lift{tree, statistics, view, line, points, law, options.jitter + 0.5 * thick, &progress};
@@ -189,9 +213,9 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
 
     DrawnLimb limb;
     limb.host = host->node;
+    const double stouter = lifted.stouter;
     limb.axis = std::move(lifted.axis);
     limb.remarks = std::move(hung.remarks);
-    set_limb_radii(limb.axis, law, tree.node(limb.host).radius);
     for (size_t i = 1; i < limb.axis.size(); i++) {
         const double part = glm::distance(limb.axis[i].position, limb.axis[i - 1].position);
         limb.length += part;
@@ -200,6 +224,8 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
     if (!(limb.length > 1e-6))
         throw Error("The stroke is too short to be a limb: draw it along the whole limb.");
     limb.measured /= limb.length;
+    set_limb_radii(limb.axis, law, limb.measured > kStouterShare ? stouter : 1.0,
+                   tree.node(limb.host).radius);
     if (limb.measured <= 0.0)
         limb.remarks.emplace_back(
             "No points of the scan lie along the stroke that the tree lacks: how far the limb reaches "

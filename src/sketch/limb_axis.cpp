@@ -17,7 +17,8 @@ constexpr double kBeside = 0.08;  // metres along the axis that a place looks at
 constexpr double kStiff = 0.5;    // how far a place gives way to its neighbours, each round
 constexpr double kShown = 0.04;   // metres outside of the bark
 constexpr size_t kLeastShown = 2;
-constexpr double kClosed = 0.30;  // metres of a gap that is none
+constexpr double kOnBark = 0.006;  // metres, and an eighth of the radius
+constexpr double kClosed = 0.30;   // metres of a gap that is none
 constexpr double kDropped = 0.15;
 
 // The points within a reach of a place.
@@ -116,6 +117,32 @@ std::vector<DVec3> centre_path(const std::vector<Vec3>& points, const DVec3& joi
         axis = moved;
     }
     return axis;
+}
+
+double bark_share(const std::vector<Vec3>& points, const std::vector<DVec3>& axis, const PathRadius& radius) {
+    const PointTree near(points);
+    double shares = 0.0;
+    size_t places = 0;
+    for (size_t i = 1; i < axis.size(); i++) {
+        const DVec3 way = way_at(axis, i);
+        const double r = radius.at(static_cast<double>(i) / static_cast<double>(axis.size() - 1));
+        const double reach = 2.0 * r + kAround;
+        Around around{static_cast<float>(reach * reach + kBeside * kBeside)};
+        near.search(Vec3(axis[i]), around);
+        size_t on = 0, all = 0;
+        for (const uint32_t k : around.found) {
+            const DVec3 off = DVec3(points[k]) - axis[i];
+            const double along = glm::dot(off, way);
+            const double distance = glm::length(off - way * along);
+            if (std::abs(along) > kBeside || distance > reach) continue;
+            all++;
+            on += std::abs(distance - r) < kOnBark + 0.125 * r ? 1 : 0;
+        }
+        if (all < kLeastShown) continue;
+        shares += static_cast<double>(on) / static_cast<double>(all);
+        places++;
+    }
+    return places > 0 ? shares / static_cast<double>(places) : 0.0;
 }
 
 std::vector<uint8_t> shown_places(const std::vector<Vec3>& points, const std::vector<DVec3>& axis,

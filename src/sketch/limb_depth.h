@@ -52,6 +52,9 @@ struct PathRadius {
 std::vector<DVec3> centre_path(const std::vector<Vec3>& points, const DVec3& joint, const LimbPath& path,
                                double step, const PathRadius& radius, const Progress* progress);
 
+// The share of the points around the axis that lie on bark of that radius, 0..1, each place counting alike.
+double bark_share(const std::vector<Vec3>& points, const std::vector<DVec3>& axis, const PathRadius& radius);
+
 // Whether points show the places of an axis: within a limb's radius and 4 cm of it, near the place. Short
 // gaps are closed, and short finds dropped.
 std::vector<uint8_t> shown_places(const std::vector<Vec3>& points, const std::vector<DVec3>& axis,

@@ -136,6 +136,8 @@ RadiusLaw LimbStatistics::radius_law(int32_t order) const {
         (branch.order == order ? same : others).push_back(static_cast<int32_t>(i));
     }
     law.least = quantile(tips, 0.05);
+    // Few limbs of an order still say how these taper, better than many twigs.
+    const bool own_profile = !same.empty();
     if (same.size() < kLeastLimbs) same.insert(same.end(), others.begin(), others.end());
     law.profile.fill(1.0);
     if (same.empty()) {
@@ -155,6 +157,7 @@ RadiusLaw LimbStatistics::radius_law(int32_t order) const {
         const Branch& branch = list_.branches[static_cast<size_t>(i)];
         const double base = base_radius(i);
         places.emplace_back(portable::log(branch.length), portable::log(base));
+        if (own_profile && branch.order != order) continue;
         double along = 0.0, radius = base;
         size_t next = 0;
         NodeId before = branch.attach;

@@ -53,7 +53,7 @@ class LimbStatistics {
     std::vector<DMat3> frames(int32_t branch) const;
 
     // Robust: Theil and Sen's line (the median of the slopes of all pairs) and the medians of the profiles of
-    // the limbs of that order, of all orders above 0 where there are fewer than five.
+    // the limbs of that order; the line is of all orders above 0 where there are fewer than five of it.
     RadiusLaw radius_law(int32_t order) const;
     // Limbs (places in list()) to take twigs from: of that order, and as thick at the base within a factor of
     // two. Where these have too few side branches, those of that order; then all but the trunk.

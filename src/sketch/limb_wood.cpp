@@ -68,12 +68,12 @@ std::vector<double> internodes(std::vector<double> known, double room, Random& r
 
 }  // namespace
 
-void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double host_radius) {
+void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double stouter, double host_radius) {
     double length = 0.0;
     for (size_t i = 1; i < axis.size(); i++)
         length += glm::distance(axis[i].position, axis[i - 1].position);
     const double most = kJointRatio * host_radius;
-    const double base = std::min(law.base_radius(length), most);
+    const double base = std::min(stouter * law.base_radius(length), most);
     double along = 0.0;
     for (size_t i = 0; i < axis.size(); i++) {
         if (i > 0) along += glm::distance(axis[i].position, axis[i - 1].position);

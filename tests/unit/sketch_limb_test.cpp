@@ -32,7 +32,7 @@ struct Stem {
     DVec3 to{1.0, 2.8, -0.9};
     NodeId joint = kNoNode;
 
-    explicit Stem(double shown = 1.0, uint64_t seed = 4) {
+    explicit Stem(double shown = 1.0, uint64_t seed = 4, double radius = 0.03) {
         Random random(seed, 3);
         NodeId id = tree.add_root({0, 0, 0}, 0.08, kTrunkFlag);
         const DVec3 top(0.0, 4.0, 0.0);
@@ -55,7 +55,7 @@ struct Stem {
             test::add_cone(cloud, random, base, end, 0.03, 0.01, 0.008, 0.0);
         }
         const DVec3 reach = from + (to - from) * shown;
-        test::add_cone(cloud, random, from, reach, 0.03, 0.03 - 0.02 * shown, 0.008, 0.0);
+        test::add_cone(cloud, random, from, reach, radius, radius * (1.0 - 0.67 * shown), 0.008, 0.0);
         stroke.view = limb_trials::camera_at(tree, 0.0, 0.0, 1.5);
         draw(from, to);
     }
@@ -157,6 +157,20 @@ TEST(SketchLimb, DepthComesFromThePointsAndNotFromWhatLiesBehind) {
     const std::vector<DVec3> truth{stem.from, stem.to};
     for (const LimbPlace& place : limb.axis)
         EXPECT_LT(limb_trials::distance_to_line(place.position, truth), 0.05);
+}
+
+// Its own points tell its thickness; without them its siblings do.
+TEST(SketchLimb, AStoutLimbIsAsStoutAsItsPoints) {
+    const Stem stem(1.0, 4, 0.046);
+    const DrawnLimb limb = draw_limb(stem.tree, &stem.cloud, stem.stroke);
+    EXPECT_GT(limb.axis.front().radius, 0.039);
+    const std::vector<DVec3> truth{stem.from, stem.to};
+    for (const LimbPlace& place : limb.axis)
+        EXPECT_LT(limb_trials::distance_to_line(place.position, truth), 0.03);
+    const double usual = draw_limb(stem.tree, nullptr, stem.stroke).axis.front().radius;
+    EXPECT_LT(usual, 0.036);
+    const Stem slender;
+    EXPECT_NEAR(draw_limb(slender.tree, &slender.cloud, slender.stroke).axis.front().radius, 0.03, 0.006);
 }
 
 TEST(SketchLimb, WhereThePointsEndItGoesOnInItsPlane) {
