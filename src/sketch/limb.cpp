@@ -233,7 +233,7 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
             "the camera or away from it is guessed from the tree's other limbs.");
     progress.update(0.8, "Twigs");
     std::vector<TwigOnLimb> twigs;
-    if (options.twigs) twigs = draw_twigs(tree, statistics, order, limb.axis, options.seed);
+    if (options.twigs) twigs = draw_twigs(statistics, order, limb.axis, options.seed);
     limb.twigs = twigs.size();
     limb.scion = limb_scion(tree, limb.host, limb.axis, twigs, node_step(tree));
     limb.command = graft_command(limb.host, limb.scion, &progress);

@@ -101,7 +101,7 @@ std::vector<SideBranch> LimbStatistics::measure_sides(int32_t index,
         one.branch = child;
         one.along = along[place];
         one.share = branch.length > 0.0 ? one.along / branch.length : 0.0;
-        const DVec3 way = glm::transpose(frame) * sets_out(tree_, list_, side, frame[1]);
+        const DVec3 way = glm::transpose(frame_about(frame[1])) * sets_out(tree_, list_, side, frame[1]);
         one.angle = angle_between(way, DVec3(0.0, 1.0, 0.0));
         one.azimuth = portable::atan2(way.x, way.z);
         const DVec3 reach =

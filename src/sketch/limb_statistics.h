@@ -18,10 +18,11 @@ struct SideBranch {
     double internode = 0.0;  // to the sibling before it; of the first one to the base
     bool first = false;
     // Between the parent's direction and the way it sets out (scion_direction()), and the azimuth of that
-    // about the parent, in a frame that is carried along it without turning.
+    // about the parent, from the side of it that is up (frame_about()): flat sprays stay flat.
     double angle = 0.0;
     double azimuth = 0.0;
-    // The same of its chord, from its base to its tip.
+    // The same of its chord, from its base to its tip, but the azimuth in a frame that is carried along the
+    // parent without turning.
     double lean = 0.0;
     double chord_azimuth = 0.0;
     double chord = 0.0;

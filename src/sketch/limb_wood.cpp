@@ -82,7 +82,7 @@ void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double s
     }
 }
 
-std::vector<TwigOnLimb> draw_twigs(const Tree& tree, const LimbStatistics& statistics, int32_t order,
+std::vector<TwigOnLimb> draw_twigs(const LimbStatistics& statistics, int32_t order,
                                    const std::vector<LimbPlace>& axis, uint64_t seed) {
     std::vector<DVec3> line;
     std::vector<double> radii;
@@ -128,7 +128,7 @@ std::vector<TwigOnLimb> draw_twigs(const Tree& tree, const LimbStatistics& stati
     std::vector<TwigOnLimb> twigs;
     std::vector<double> own_angles;
     const std::vector<SideBranch>& pattern = statistics.sides(like);
-    const double turn = random.uniform(0.0, 2.0 * kPi);
+    const double side = random.below(2) == 0 ? 1.0 : -1.0;
     for (size_t i = 0; i < places.size(); i++) {
         const double share = places[i] / length;
         const auto at = std::lower_bound(donors.begin(), donors.end(), share,
@@ -157,11 +157,10 @@ std::vector<TwigOnLimb> draw_twigs(const Tree& tree, const LimbStatistics& stati
         twig.child =
             statistics.list().nodes_of(statistics.list().branches[static_cast<size_t>(best->side.branch)])[0];
         twig.scale = best_scale;
-        twig.azimuth = turn + pattern[i * pattern.size() / places.size()].azimuth;
+        twig.azimuth = side * pattern[i * pattern.size() / places.size()].azimuth;
         own_angles.push_back(best->side.angle);
         twigs.push_back(twig);
     }
-    (void)tree;
     std::sort(angles.begin(), angles.end());
     std::vector<size_t> ranks(twigs.size());
     std::iota(ranks.begin(), ranks.end(), size_t{0});
@@ -233,12 +232,13 @@ Tree limb_scion(const Tree& tree, NodeId host, const std::vector<LimbPlace>& axi
                             std::min(value_along(line, radii, place), limb.node(at).radius), flags);
         nodes.push_back(at);
     }
-    DMat3 frame = frame_about(DVec3(0.0, 1.0, 0.0));
+    DVec3 way(0.0, 1.0, 0.0);
     size_t twig = 0;
     NodeId before = limb.root();
     for (size_t i = 0; i < nodes.size(); i++) {
-        const DVec3 way = normalized_or(limb.node(nodes[i]).position - limb.node(before).position, frame[1]);
-        if (glm::dot(way, frame[1]) > -0.999999) frame = turn_between(frame[1], way) * frame;
+        way = normalized_or(limb.node(nodes[i]).position - limb.node(before).position, way);
+        // Up is the tree's, the scion's axes are the host's.
+        const DMat3 frame = into * frame_about(glm::transpose(into) * way);
         for (; twig < twigs.size() && twigs[twig].along <= places[i] + 1e-6; twig++)
             place_twig(limb, nodes[i], tree, twigs[twig], frame);
         before = nodes[i];

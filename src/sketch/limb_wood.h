@@ -17,16 +17,16 @@ void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double s
 struct TwigOnLimb {
     double along = 0.0;      // metres from the limb's base
     double angle = 0.0;      // radians off the limb's direction there
-    double azimuth = 0.0;    // radians about it, in a frame carried along the axis
+    double azimuth = 0.0;    // radians about it, from the side that is up (frame_about())
     NodeId child = kNoNode;  // the lowest node of the twig of this tree that it is a copy of
     double scale = 1.0;
 };
 
 // The first at a place where kindred limbs have theirs; internodes and angles are even quantiles of the
 // kindred limbs', the internodes in an order drawn by chance, the angles in the order of the twigs that they
-// are copied to; azimuths follow one kindred limb. Each is a copy of a twig that stands at about that share
-// of a kindred limb. Empty where the tree has no such twig.
-std::vector<TwigOnLimb> draw_twigs(const Tree& tree, const LimbStatistics& statistics, int32_t order,
+// are copied to; azimuths follow one kindred limb, or its mirror image. Each is a copy of a twig that stands
+// at about that share of a kindred limb. Empty where the tree has no such twig.
+std::vector<TwigOnLimb> draw_twigs(const LimbStatistics& statistics, int32_t order,
                                    const std::vector<LimbPlace>& axis, uint64_t seed);
 
 // The whole limb as a scion of the host (edit/scion.h): an axis with a node every `step` metres and where
