@@ -69,6 +69,8 @@ void run_marker(const std::vector<std::string>& words);
 
 const Command& sketch_command();
 void run_sketch(const std::vector<std::string>& words);
+// Of --onto, in sketch_onto.cpp.
+void run_sketch_onto(const Arguments& arguments);
 
 const Command& textures_command();
 void run_textures(const std::vector<std::string>& words);

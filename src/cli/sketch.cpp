@@ -6,6 +6,7 @@
 #include "file_bytes.h"
 #include "pipeline/export.h"
 #include "pipeline/sketch_report.h"
+#include "sketch/read_limb.h"
 #include "sketch/read_sketch.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
@@ -42,8 +43,9 @@ bool wants_sketch(const std::string& path) {
 const Command& sketch_command() {
     static const Command command{
         "sketch",
-        "sketch STROKES -o FILE [options]",
-        "Makes a whole tree of a few freehand strokes.",
+        "sketch STROKES -o FILE [options]\n       treerec sketch LIMB.json --onto TREE [--scan SCAN] -o FILE "
+        "[options]",
+        "Makes a whole tree of a few freehand strokes, or draws missing limbs over a scan.",
         {{"-o", "FILE",
           "the file to write: .glb .gltf .obj .ply .txt .csv .lstring, or .json for the strokes; again for "
           "more",
@@ -63,10 +65,17 @@ const Command& sketch_command() {
          {"--density", "F", "of twigs, 0 to 4 (default 1)"},
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
+         {"--onto", "TREE", "the skeleton that gets the limbs of LIMB.json (see 'treerec info')"},
+         {"--scan", "SCAN",
+          "its point cloud, with --onto: tells how far away a limb is, and how true the tree"},
+         {"--log", "FILE", "with --onto: writes the limbs as edits, to be replayed ('treerec edit')"},
+         {"--up", "AXIS", "with --onto: the axis to the sky of a skeleton that does not say (default z)"},
+         {"--tree", "N", "with --onto: which tree of a file with several (default: the largest)"},
          {"--quiet", "", "print errors only"}},
         "STROKES: our own .json, an .svg of paths, or a .png of a drawing: a crown's outline, a trunk, and "
-        "its "
-        "branches, in any order."};
+        "its branches, in any order.\n"
+        "LIMB.json: a camera and a stroke along each missing limb, each of which becomes an edit; see "
+        "docs/sketch.md. With --report its fidelity before and after is printed, too."};
     return command;
 }
 
@@ -76,10 +85,16 @@ void run_sketch(const std::vector<std::string>& words) {
     if (positional.empty()) throw UsageError("Of which strokes? Name a .json, .svg or .png file.");
     if (positional.size() > 1)
         throw UsageError("'" + positional[1] + "' is too much; name files to write with -o.");
+    if (!arguments.has("--onto"))
+        for (const char* name : {"--scan", "--log", "--up", "--tree"})
+            if (arguments.has(name))
+                throw UsageError(std::string(name) +
+                                 " is for limbs: name the tree that gets them with --onto.");
     const std::vector<std::string>& outs = arguments.all("-o");
     const bool report = arguments.has("--report");
     if (outs.empty() && !report)
         throw UsageError("Where to? Name at least one file to write with -o, or ask for --report.");
+    if (arguments.has("--onto")) return run_sketch_onto(arguments);
     SketchOptions options;
     options.depth =
         one_of(arguments, "--depth", {"true", "paper"}) == "paper" ? SketchDepth::kPaper : SketchDepth::kTrue;
@@ -104,6 +119,8 @@ void run_sketch(const std::vector<std::string>& words) {
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet || report);
     progress.update(0.0, "Reading");
+    if (wants_sketch(positional[0]) && is_limb_file(positional[0]))
+        throw Error("'" + positional[0] + "' has limbs to be drawn onto a tree: name the tree with --onto.");
     Sketch sketch = read_sketch(positional[0]);
     if (arguments.has("--species")) sketch.species = arguments.text("--species", "");
     sketch.height = arguments.number("--height", sketch.height, 0.05, 200.0);

@@ -29,6 +29,8 @@ const char* const kUsage =
     "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
+    "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
+    "scans\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --variants [SCAN…|SKELETON…] new individuals of a tree, with bark, in a second\n"
     "       bench --photos FOLDER… [-- ARG…]   photos matched by sift, pyrlk and both; ARG: of 'treerec "
@@ -37,7 +39,7 @@ const char* const kUsage =
     "between\n"
     "                                          photos, judged by their COLMAP model\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth), --most-points N (of --scaling),\n"
+    "options: --repetitions N, --seeds N (of --synth and --limbs), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
     "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
@@ -72,7 +74,7 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
-            word == "--variants" || word == "--help") {
+            word == "--variants" || word == "--limbs" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -129,6 +131,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--synth") {
         bench_synth(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--limbs") {
+        bench_limbs(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--strings") {
