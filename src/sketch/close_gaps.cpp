@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "edit/scion.h"
 #include "foliage/leaf_rules.h"
@@ -18,6 +20,12 @@ constexpr double kLeafCover = 0.55;
 // The view's cells, of a leaf's length.
 constexpr double kCell = 0.5;
 constexpr size_t kMostCells = 300;  // along a side
+// Twigs for gaps that one place of a limb bears at most, and how long a place is, in shortest twigs: more
+// would stand like a broom.
+constexpr int kMostAtAPlace = 4;
+constexpr double kPlace = 0.3;
+// As foliage/snags.cpp has it: of the host, anywhere, and at the crown's foot.
+constexpr double kSnagRadii = 6.0, kLowSnagRadii = 12.0, kLowShare = 0.15;
 
 enum class View { kFront, kSide };
 
@@ -148,6 +156,16 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     for (const TwigPlace& place : filling.twigs)
         all += wood_of(place);
 
+    const double place_length = kPlace * growth * species.twigs.front().length;
+    const auto place_of = [&](double along) { return static_cast<int>(along / place_length); };
+    std::map<std::pair<size_t, int>, int> borne;
+    // Short twigs on stout wood are taken for dead ones (foliage/snags.h).
+    const double low = crown.bottom() + kLowShare * (crown.top() - crown.bottom());
+    const auto bears_no_leaves = [&](const Limb& limb, double along, double length) {
+        const double radius = value_along(limb.points, limb.radii, along);
+        const bool is_low = place_along(limb.points, along).y < low;
+        return radius > 2.0 * rules.maximum_radius && length < (is_low ? kLowSnagRadii : kSnagRadii) * radius;
+    };
     for (const View view : {View::kFront, View::kSide}) {
         Cover cover(crown, view, cell, kLeafCover * leaf, margin);
         for (const TwigPlace& place : filling.twigs)
@@ -176,7 +194,11 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
                         square_to_segment(DVec3(target, 0.0), DVec3(a, 0.0), DVec3(b, 0.0), where);
                     const double length = glm::length(points[k + 1] - points[k]);
                     const DVec3 p = points[k] + (points[k + 1] - points[k]) * where;
-                    if (square < least && crown.contains(p)) {
+                    if (square >= least || !crown.contains(p)) continue;
+                    if (bears_no_leaves(filling.limbs[l].limb, along + where * length, std::sqrt(square)))
+                        continue;
+                    if (const auto there = borne.find({l, place_of(along + where * length)});
+                        there == borne.end() || there->second < kMostAtAPlace) {
                         least = square;
                         place.limb = l;
                         place.along = along + where * length;
@@ -206,6 +228,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             place.twig = chosen->twig;
             place.scale = chosen->scale;
             filling.twigs.push_back(place);
+            borne[{place.limb, place_of(place.along)}]++;
             mark(cover, place);
             all += wood_of(place);
         }

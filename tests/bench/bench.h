@@ -69,6 +69,8 @@ void bench_pairs(const std::string& photos, const std::string& model);
 // Limbs removed from grown trees of each habit and drawn anew from random cameras, with the points of the
 // limb and without: how near they come to it. With repetitions set, limb by limb, too.
 void bench_limbs(const Settings& settings);
+// Strokes to trees of every species: time, and how well crowns fill their outlines. repetitions: sketches.
+void bench_sketches(const Settings& settings);
 
 // Time to write and read L-strings of 10 MB, and to rewrite a grammar.
 void bench_strings(const Settings& settings);

@@ -29,6 +29,7 @@ const char* const kUsage =
     "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
+    "       bench --sketch                     strokes to trees: time, and crowns against their outlines\n"
     "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
     "scans\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
@@ -74,7 +75,7 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
-            word == "--variants" || word == "--limbs" || word == "--help") {
+            word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -131,6 +132,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--synth") {
         bench_synth(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--sketch") {
+        bench_sketches(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--limbs") {
