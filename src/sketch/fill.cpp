@@ -225,7 +225,8 @@ double leaf_margin(const CrownSections& crown, const SketchSpecies& species, dou
     const LeafRules rules = leaf_preset(species.name);
     // Where they would be more than the rules allow, fewer and larger ones stand.
     const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
-    return kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) + rules.petiole;
+    return kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
+           rules.petiole;
 }
 
 Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
