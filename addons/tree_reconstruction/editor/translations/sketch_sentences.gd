@@ -71,7 +71,7 @@ const PATTERNS: PackedStringArray = [
 	"%s cannot be read as JSON: something is wrong or missing in line %s, at its byte %s.",
 	"%s has a number that is too large.",
 	"%s is JSON, but no sketch: it has lists in lists in lists.",
-	"%s is JSON, but no sketch: it does not begin with {\"format\": \"treerec sketch\".",
+	'%s is JSON, but no sketch: it does not begin with {"format": "treerec sketch".',
 	"%s is no sketch: its format is %s, and not 'treerec sketch'.",
 	"%s does not tell the version of its format, a whole number from 1 on.",
 	(
@@ -83,7 +83,7 @@ const PATTERNS: PackedStringArray = [
 	"%s has a 'seed' that is no whole number from 0 on.",
 	"%s has no list of 'strokes'.",
 	"%s has a '%s' that is no number.",
-	"%s has a stroke, number %s, that is no {\"points\": ...}.",
+	'%s has a stroke, number %s, that is no {"points": ...}.',
 	"%s has a stroke, number %s, whose point %s is not [x, y], two numbers.",
 	"%s has a stroke, number %s, whose 'pressure' is no list.",
 	"%s has a stroke, number %s, that has a pressure that is no number.",
