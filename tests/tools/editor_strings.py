@@ -119,7 +119,7 @@ def sentences():
         source = without_comments(path.read_text(encoding="utf-8"))
         table = source[source.index("const PATTERNS") :]
         table = table[table.index("[") + 1 : table.index("\n]\n")]
-        for entry in re.split(r",\n\t(?=[\"(\]]|\s*[\"(])", table):
+        for entry in re.split(r",\n\t(?=[\"'(\]]|\s*[\"'(])", table):
             word = expression(entry, 0)
             if word:
                 yield word
