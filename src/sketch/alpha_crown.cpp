@@ -22,7 +22,8 @@ namespace treerec {
 
 std::unique_ptr<const CrownBound> alpha_crown(const CrownSections&, const LimbCells&, size_t, uint64_t,
                                               const Progress*) {
-    throw Error("This build makes no alpha shapes, since it was made without CGAL; take sections instead.");
+    throw Error(
+        "This build was made without CGAL and has no alpha shapes; let sections bound the crown instead.");
 }
 
 #else

@@ -14,7 +14,7 @@ constexpr size_t kRows = 1024;
 }  // namespace
 
 CrownSections::CrownSections(const std::vector<DVec2>& outline, bool square) : square_(square) {
-    if (outline.size() < 3) throw Error("The crown's outline encloses nothing.");
+    if (outline.size() < 3) throw Error("The crown's outline encloses nothing; draw it around the crown.");
     bottom_ = top_ = outline[0].y;
     left_ = right_ = outline[0].x;
     for (const DVec2& p : outline) {
@@ -23,7 +23,8 @@ CrownSections::CrownSections(const std::vector<DVec2>& outline, bool square) : s
         left_ = std::min(left_, p.x);
         right_ = std::max(right_, p.x);
     }
-    if (!(top_ - bottom_ > 1e-9)) throw Error("The crown's outline encloses nothing.");
+    if (!(top_ - bottom_ > 1e-9))
+        throw Error("The crown's outline encloses nothing; draw it around the crown.");
     const double row_height = (top_ - bottom_) / kRows;
     std::vector<std::vector<double>> crossings(kRows);
     for (size_t i = 0; i < outline.size(); i++) {
@@ -51,7 +52,7 @@ CrownSections::CrownSections(const std::vector<DVec2>& outline, bool square) : s
         }
     }
     rows_.push_back(static_cast<uint32_t>(sections_.size()));
-    if (sections_.empty()) throw Error("The crown's outline encloses nothing.");
+    if (sections_.empty()) throw Error("The crown's outline encloses nothing; draw it around the crown.");
 }
 
 std::span<const CrownSections::Section> CrownSections::at(double y) const {

@@ -183,7 +183,7 @@ LineMask ink_of(const Image& picture, const std::string& who) {
     const int threshold = otsu_threshold(levels, contrast);
     if (contrast < kLeastContrast)
         throw Error(who +
-                    " shows no drawing: all of it has nearly one colour. Draw dark lines on light paper.");
+                    " shows no drawing: all of it has nearly one color. Draw dark lines on light paper.");
     LineMask mask(picture.width, picture.height);
     size_t inked = 0;
     for (size_t i = 0; i < levels.size(); i++) {

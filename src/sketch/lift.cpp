@@ -133,8 +133,8 @@ std::vector<double> printed_turns(size_t count, uint64_t seed, std::vector<std::
     if (static_cast<double>(count - 1) * apart > room) {
         apart = room / static_cast<double>(count - 1);
         remarks.push_back("There are " + std::to_string(count) +
-                          " branches: they can't be turned at least 10 degrees apart within 60 to either "
-                          "side, and stand closer.");
+                          " branches, too many to be turned 10 degrees apart within 60 degrees to either "
+                          "side; they stand closer together.");
     }
     // As many chance angles in what the gaps leave, in order, and the gaps between them again.
     Random random(hash_seed(seed, 3));

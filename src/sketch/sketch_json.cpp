@@ -81,7 +81,7 @@ class Reader {
                  ", at its byte " + std::to_string(before.size() - start + 1));
         } catch (const Json::exception&) {
             // The one other thing that a text can have: 1e999.
-            fail("has a number that is too large to be one");
+            fail("has a number that is too large");
         }
         if (too_deep) fail("is JSON, but no sketch: it has lists in lists in lists");
         return json;

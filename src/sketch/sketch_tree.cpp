@@ -18,9 +18,9 @@ constexpr double kMostDensity = 4.0;
 
 void check_options(const SketchOptions& options, double height) {
     if (!(options.density >= 0.0 && options.density <= kMostDensity))
-        throw Error("The density of twigs must be within 0 and 4.");
+        throw Error("The density of twigs must be from 0 to 4.");
     if (!(options.trunk_radius >= 0.0 && options.trunk_radius <= kThickest * height))
-        throw Error("The trunk's radius must be within 0 and a fifth of the tree's height.");
+        throw Error("The trunk's radius must be from 0 to a fifth of the tree's height.");
 }
 
 double highest_of(const DrawnTree& drawn) {
@@ -51,7 +51,8 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
 
     const DVec2 foot = drawn.trunk.points[0];
     const double pixels = highest_of(drawn) - foot.y;
-    if (!(pixels > 1.0)) throw Error("Nothing of the drawing stands above the trunk's foot.");
+    if (!(pixels > 1.0))
+        throw Error("Nothing is drawn above the trunk's foot; draw the tree from the ground up.");
     const CanvasPlace place{foot, height / pixels};
     const double shown = sketch.canvas.y / kCanvasHeight;
     out.foot = DVec2(foot.x, kCanvasHeight - foot.y) * shown;

@@ -38,7 +38,7 @@ std::string stroke_fault(const Stroke& stroke, double farthest) {
         return "has " + std::to_string(stroke.pressure.size()) + " pressures for " +
                std::to_string(stroke.points.size()) + " points; it needs one for each, or none";
     for (const float p : stroke.pressure)
-        if (!(p >= 0.0F && p <= 1.0F)) return "has a pressure that is not within 0 and 1";
+        if (!(p >= 0.0F && p <= 1.0F)) return "has a pressure that is not from 0 to 1";
     return {};
 }
 
@@ -81,11 +81,11 @@ void Sketch::number_strokes() {
 std::string sketch_fault(const Sketch& sketch) {
     const DVec2 canvas = sketch.canvas;
     if (!is_side(canvas.x) || !is_side(canvas.y))
-        return " has a canvas whose sides are not 0.001 to 1000000 pixels.";
+        return " has a canvas whose sides are not from 0.001 to 1000000 pixels.";
     if (std::max(canvas.x, canvas.y) > kMostOblong * std::min(canvas.x, canvas.y))
         return " has a canvas that is more than 100 times as long one way as the other.";
     if (!(sketch.height >= 0.0 && sketch.height <= kHighest))
-        return " has a tree whose height is not within 0 and 200 metres.";
+        return " has a tree whose height is not from 0 to 200 metres.";
     if (sketch.strokes.size() > kMostStrokes)
         return " has " + std::to_string(sketch.strokes.size()) + " strokes; at most " +
                std::to_string(kMostStrokes) + " make a tree.";

@@ -59,7 +59,7 @@ class Understanding {
         read_trunk();
         if (!drawn().outline.empty() && found_.branches.empty() &&
             reach_into_crown(drawn().trunk, drawn().outline))
-            result_.remarks.emplace_back("The trunk ends below the crown; it was led on into it.");
+            result_.remarks.emplace_back("The trunk ends below the crown; it was extended into it.");
         read_branches();
         if (drawn().outline.empty()) make_up_outline();
         say_what_leaves();
@@ -92,7 +92,7 @@ class Understanding {
         const MadeOutline made = make_outline(rings);
         if (made.polygon.empty()) {
             for (const size_t stroke : found_.outlines)
-                leave_out(stroke, "This outline goes around nothing; draw it around the crown.");
+                leave_out(stroke, "This outline encloses nothing; draw it around the crown.");
             found_.outlines.clear();
             return;
         }
@@ -104,7 +104,7 @@ class Understanding {
                 mark(stroke, StrokeRepair::kUnited);
         if (made.hull)
             reading(found_.outlines[0]).fault =
-                "This outline goes to and fro; what is around all of it was taken.";
+                "This outline crosses itself or runs to and fro; the line around all of it was taken.";
     }
 
     void read_trunk() {
@@ -129,7 +129,7 @@ class Understanding {
         }
         if (drawn().outline.empty())
             throw Error(
-                "Nothing in the drawing stands like a trunk or goes around like a crown. Draw a trunk "
+                "Nothing in the drawing looks like a trunk or like a crown's outline. Draw a trunk "
                 "from the ground up, or the outline of the crown.");
         const size_t outline = found_.outlines[0];
         trunk.stroke = outline;
@@ -196,7 +196,9 @@ class Understanding {
                 continue;
             }
             if (place[parent] == lines_.size()) {
-                leave_out(stroke, "This grows from a branch's branch; only the trunk's branches bear some.");
+                leave_out(
+                    stroke,
+                    "This grows from a branch of a branch; only branches of the trunk may have branches.");
                 continue;
             }
             const DrawnLine from = drawn().branches[place[parent]];
@@ -246,7 +248,7 @@ class Understanding {
         if (sketch_.strokes[stroke].role == StrokeRole::kAuto &&
             mended.bridged > std::max(1.5 * length, 2.0 * kNearBranch)) {
             told.repairs.clear();
-            leave_out(stroke, "This is too short for how far from the trunk it lies; begin it at the trunk.");
+            leave_out(stroke, "This is short and begins far from the trunk; draw it from the trunk on.");
             return false;
         }
         for (const StrokeRepair repair : mended.repairs) {

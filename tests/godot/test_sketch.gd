@@ -121,17 +121,17 @@ func test_strokes_go_through_a_file() -> void:
 	check_equal(read.species, "maple", "species")
 	check_equal(read.seed, 7, "seed")
 	DirAccess.remove_absolute(SKETCH_FILE)
-	check_equal(worker.load_sketch(SKETCH_FILE), null, "what is read of no file")
+	check(worker.load_sketch(SKETCH_FILE) == null, "A file that is gone is read.")
 	check(SKETCH_FILE.get_file() in worker.get_error_message(), worker.get_error_message())
 
 
 func test_what_makes_no_tree_gets_a_sentence() -> void:
 	var worker: TreeReconstructor = TreeReconstructor.new()
-	check_equal(worker.sketch_tree(TreeSketch.new()), null, "a tree of nothing")
+	check(worker.sketch_tree(TreeSketch.new()) == null, "No strokes make a tree.")
 	check(worker.get_error_message().ends_with("."), worker.get_error_message())
 	var sketch: TreeSketch = small_sketch()
 	sketch.species = "baobab"
-	check_equal(worker.sketch_tree(sketch), null, "a tree of an unknown species")
+	check(worker.sketch_tree(sketch) == null, "An unknown species makes a tree.")
 	check("baobab" in worker.get_error_message(), worker.get_error_message())
 
 

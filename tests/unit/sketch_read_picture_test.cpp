@@ -258,7 +258,7 @@ TEST(SketchPicture, SaysWhyThereIsNoTree) {
     const auto of = [](const Image& picture) { return sentence_of(png_of(picture)); };
     Image plain(200, 200, 4);
     std::fill(plain.pixels.begin(), plain.pixels.end(), uint8_t{255});
-    EXPECT_NE(of(plain).find("all of it has nearly one colour"), std::string::npos) << of(plain);
+    EXPECT_NE(of(plain).find("all of it has nearly one color"), std::string::npos) << of(plain);
     EXPECT_NE(of(paint(300, 300, {{{20.0, 150.0}, {280.0, 150.0}}}, {90.0, true})).find("filled areas"),
               std::string::npos);
     Image specks = plain;

@@ -148,7 +148,7 @@ TEST(SketchRead, JsonThatIsNoSketchGetsASentence) {
     expect_says(json_fault(with_strokes(R"({"points": [[1, NaN]]})")), "cannot be read as JSON");
     expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "pressure": [1, 1]})")),
                 "2 pressures for 1 points");
-    expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "pressure": [1.5]})")), "0 and 1");
+    expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "pressure": [1.5]})")), "0 to 1");
     expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "pressure": ["a"]})")), "no number");
     expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "role": "root"})")), "'root'");
     expect_says(json_fault(with_strokes(R"({"points": [[1, 2]], "id": -4})")), "'id'");

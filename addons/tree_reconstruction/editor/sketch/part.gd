@@ -146,7 +146,8 @@ func _on_history_wanted(redo: bool) -> void:
 
 func _choose_to_load() -> void:
 	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_FILE, tr("Load Sketch"), panel.files.read)
-	_chooser.filters = PackedStringArray(["*.json, *.svg, *.png;" + tr("Strokes and drawings")])
+	var endings: String = "*.json, *.svg, *.png, *.jpg, *.jpeg;"
+	_chooser.filters = PackedStringArray([endings + tr("Strokes and drawings")])
 	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
 
 

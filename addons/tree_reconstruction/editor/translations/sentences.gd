@@ -410,40 +410,10 @@ const PATTERNS: PackedStringArray = [
 		+ " and is white where the tree is."
 	),
 	"All of the photos' masks are black: none shows a tree.",
-	# The library of twigs.
-	"Apple",
-	"Birch",
-	"Cherry",
-	"Dead",
-	"Generic",
-	"Ginkgo",
-	"Magnolia",
-	"Maple",
-	"Oak",
-	"Pine",
-	"Poplar",
-	"Spruce",
-	"Willow",
-	"%s Short",
-	"%s Medium",
-	"%s Long",
-	"Apple: wide angles, thick spurs, shoots that rise",
-	"Birch: fine twigs that hang at their ends",
-	"Cherry: few long shoots, short spurs between them",
-	"Dead wood: crooked, few twigs, snapped ends",
-	"A twig of no kind: one bud after another, all around",
-	"Maple: buds in pairs, each pair square to the last",
-	"Oak: crooked, tufts of twigs where a year's growth ended",
-	"Pine: whorls of stout shoots, turned up at their ends",
-	"Spruce: a flat spray, its twigs hanging a little",
-	"Weeping willow: long whips",
-	"Maple, to fill a crown: shoots in pairs",
-	"Ginkgo, to fill a crown: long shoots, short ones along them",
-	"Poplar, to fill a crown: shoots one by one, rising steeply",
-	"Magnolia, to fill a crown: shoots several from one place",
 ]
+const TwigSentences := preload("twig_sentences.gd")
 const SketchSentences := preload("sketch_sentences.gd")
-const _ALL: PackedStringArray = PATTERNS + SketchSentences.PATTERNS
+const _ALL: PackedStringArray = PATTERNS + TwigSentences.PATTERNS + SketchSentences.PATTERNS
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.
 ## tests/tools/editor_strings.py checks that there are no others.
