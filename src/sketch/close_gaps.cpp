@@ -22,10 +22,10 @@ constexpr double kCell = 0.5;
 constexpr size_t kMostCells = 300;  // along a side
 // Twigs for gaps that one place of a limb bears at most, and how long a place is, in shortest twigs: more
 // would stand like a broom.
-constexpr int kMostAtAPlace = 4;
+constexpr int kMostAtAPlace = 3;
 constexpr double kPlace = 0.3;
-// As foliage/snags.cpp has it: of the host, anywhere, and at the crown's foot.
-constexpr double kSnagRadii = 6.0, kLowSnagRadii = 12.0, kLowShare = 0.15;
+// Of the host, at the crown's foot, as foliage/snags.cpp has it.
+constexpr double kLowSnagRadii = 12.0, kLowShare = 0.1;
 
 enum class View { kFront, kSide };
 
@@ -159,12 +159,12 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     const double place_length = kPlace * growth * species.twigs.front().length;
     const auto place_of = [&](double along) { return static_cast<int>(along / place_length); };
     std::map<std::pair<size_t, int>, int> borne;
-    // Short twigs on stout wood are taken for dead ones (foliage/snags.h).
+    // Short twigs low on stout wood are taken for dead ones (foliage/snags.h).
     const double low = crown.bottom() + kLowShare * (crown.top() - crown.bottom());
     const auto bears_no_leaves = [&](const Limb& limb, double along, double length) {
         const double radius = value_along(limb.points, limb.radii, along);
         const bool is_low = place_along(limb.points, along).y < low;
-        return radius > 2.0 * rules.maximum_radius && length < (is_low ? kLowSnagRadii : kSnagRadii) * radius;
+        return is_low && radius > 2.0 * rules.maximum_radius && length < kLowSnagRadii * radius;
     };
     for (const View view : {View::kFront, View::kSide}) {
         Cover cover(crown, view, cell, kLeafCover * leaf, margin);
@@ -186,7 +186,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             double least = 1e300;
             for (size_t l = 0; l < filling.limbs.size(); l++) {
                 const std::vector<DVec3>& points = filling.limbs[l].limb.points;
-                double along = 0.0;
+                double passed = 0.0;
                 for (size_t k = 0; k + 1 < points.size(); k++) {
                     const DVec2 a = cover.seen(points[k]), b = cover.seen(points[k + 1]);
                     double where;
@@ -194,16 +194,15 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
                         square_to_segment(DVec3(target, 0.0), DVec3(a, 0.0), DVec3(b, 0.0), where);
                     const double length = glm::length(points[k + 1] - points[k]);
                     const DVec3 p = points[k] + (points[k + 1] - points[k]) * where;
+                    const double along = passed + where * length;
+                    passed += length;
                     if (square >= least || !crown.contains(p)) continue;
-                    if (bears_no_leaves(filling.limbs[l].limb, along + where * length, std::sqrt(square)))
-                        continue;
-                    if (const auto there = borne.find({l, place_of(along + where * length)});
-                        there == borne.end() || there->second < kMostAtAPlace) {
-                        least = square;
-                        place.limb = l;
-                        place.along = along + where * length;
-                    }
-                    along += length;
+                    if (bears_no_leaves(filling.limbs[l].limb, along, std::sqrt(square))) continue;
+                    const auto there = borne.find({l, place_of(along)});
+                    if (there != borne.end() && there->second >= kMostAtAPlace) continue;
+                    least = square;
+                    place.limb = l;
+                    place.along = along;
                 }
             }
             if (least >= 1e300) continue;
