@@ -9,7 +9,9 @@ const _SIZE: Vector2i = Vector2i(330, 330)
 const _SUPERSAMPLING: int = 2
 const _COLUMNS: int = 2
 const _INK: Dictionary[String, Color] = {
-	"outline": Color(0.25, 0.5, 0.2), "trunk": Color(0.4, 0.26, 0.15), "branch": Color(0.6, 0.42, 0.25)
+	"outline": Color(0.25, 0.5, 0.2),
+	"trunk": Color(0.4, 0.26, 0.15),
+	"branch": Color(0.6, 0.42, 0.25)
 }
 
 var _viewport: SubViewport = SubViewport.new()
@@ -51,7 +53,9 @@ func _draw() -> void:
 	)
 	sheet.fill(Color.WHITE)
 	for i: int in rows.size():
-		var place: Vector2i = Vector2i(i % columns * _SIZE.x * 3, floori(float(i) / columns) * _SIZE.y)
+		var place: Vector2i = Vector2i(
+			i % columns * _SIZE.x * 3, floori(float(i) / columns) * _SIZE.y
+		)
 		sheet.blit_rect(rows[i], Rect2i(Vector2i.ZERO, rows[i].get_size()), place)
 	if arguments[1].get_extension() == "jpg":
 		sheet.save_jpg(arguments[1], 0.9)
