@@ -25,7 +25,7 @@ constexpr double kGolden = 137.508 * kPi / 180.0;
 constexpr double kSpacing = 0.2, kShareSpacing = 0.7;
 // Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
 // many times what the rules allow, since beyond that fewer and larger ones stand.
-constexpr double kCovers = 28.0, kOfMostLeaves = 2.0;
+constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
 // The share of a twig's wood that is near enough to a tip to bear leaves.
 constexpr double kBearing = 0.6;
 // Of these, those that stand evenly; the rest is for gaps.
