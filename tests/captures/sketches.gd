@@ -42,6 +42,7 @@ func _draw() -> void:
 		var row: Image = Image.create_empty(_SIZE.x * 3, _SIZE.y, false, Image.FORMAT_RGB8)
 		_put(row, await _paper(sketch, maker.get_report()["strokes"]), 0)
 		_shown.reconstruction = tree
+		await _shown.rebuilt
 		_put(row, await _look(tree, 0.0), 1)
 		_put(row, await _look(tree, 0.5 * PI), 2)
 		rows.append(row)
@@ -82,7 +83,7 @@ func _open_stage() -> void:
 	environment.sky = Sky.new()
 	environment.sky.sky_material = sky
 	environment.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
-	environment.ambient_light_energy = 0.9
+	environment.ambient_light_energy = 0.7
 	environment.tonemap_mode = Environment.TONE_MAPPER_FILMIC
 	var world: WorldEnvironment = WorldEnvironment.new()
 	world.environment = environment
@@ -96,7 +97,7 @@ func _open_stage() -> void:
 	var plane: PlaneMesh = PlaneMesh.new()
 	plane.size = Vector2(200.0, 200.0)
 	var earth: StandardMaterial3D = StandardMaterial3D.new()
-	earth.albedo_color = Color(0.42, 0.5, 0.3)
+	earth.albedo_color = Color(0.16, 0.2, 0.09)
 	earth.roughness = 1.0
 	plane.material = earth
 	ground.mesh = plane
@@ -117,7 +118,7 @@ func _look(tree: TreeReconstruction, turn: float) -> Image:
 	var way: Vector3 = Vector3(sin(turn), 0.12, cos(turn)).normalized()
 	_camera.position = middle + 100.0 * way
 	_camera.look_at_from_position(_camera.position, middle)
-	for frame: int in 12:
+	for frame: int in 4:
 		await process_frame
 	_viewport.render_target_update_mode = SubViewport.UPDATE_ONCE
 	await process_frame
@@ -132,7 +133,6 @@ func _look(tree: TreeReconstruction, turn: float) -> Image:
 func _paper(sketch: TreeSketch, readings: Array) -> Image:
 	var paper: SubViewport = SubViewport.new()
 	paper.size = _SIZE * _SUPERSAMPLING
-	paper.msaa_2d = Viewport.MSAA_4X
 	paper.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	var sheet: ColorRect = ColorRect.new()
 	sheet.color = Color(0.98, 0.97, 0.93)
