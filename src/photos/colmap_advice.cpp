@@ -44,6 +44,10 @@ std::string more_matches(size_t by_sift, const ColmapRun& run) {
     return "COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.";
 }
 
+std::string no_more_matches(const std::string& why) {
+    return "Photos are missing, or doubtfully placed, and corners could not be tracked as well. " + why;
+}
+
 std::vector<std::string> advice_on(const ColmapRun& run, const std::vector<size_t>& models, bool further) {
     std::vector<std::string> advice;
     const bool two_scenes = models.size() > 1 && models[1] >= kAScene;

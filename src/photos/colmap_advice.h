@@ -17,6 +17,8 @@ Error none_registered(size_t photos, size_t features);
 
 // That corners were tracked, too, since SIFT's matches alone had placed `by_sift` photos, or doubtfully.
 std::string more_matches(size_t by_sift, const ColmapRun& run);
+// That this could not be done. why: a sentence.
+std::string no_more_matches(const std::string& why);
 
 // On what a model lacks: photos, a part of the circle, what holds it together. models: the sizes of COLMAP's
 // models, the largest first, each but the first one without the photos that are in those before. further:

@@ -205,10 +205,19 @@ Placed place_cameras(ColmapWork& work, const std::string& before, bool tracked) 
     if (automatic && tracked && !(whole && taken.joints.weak.empty())) {
         work.job.note("-- SIFT's matches alone place " + std::to_string(taken.placed()) +
                       " photos, or some of them doubtfully: corners are tracked, too");
-        placed.by_sift = taken.placed();
         work.sift_end = first_end;
-        track_photos(work, before);
-        weigh(map_cameras(work, call, kTracksDatabase, "models.more", kMatchingEnd, 1.0));
+        try {
+            track_photos(work, before);
+            const size_t by_sift = taken.placed();
+            weigh(map_cameras(work, call, kTracksDatabase, "models.more", kMatchingEnd, 1.0));
+            placed.by_sift = by_sift;
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& error) {
+            if (taken.models.empty()) throw;
+            // What was only to be made better is there all the same.
+            work.warnings.push_back(no_more_matches(error.what()));
+        }
     } else if (both && placed.database == kTracksDatabase && !whole) {
         // More matches may also mislead: what SIFT's alone place is not given away.
         work.job.note("-- once more, with SIFT's matches alone");

@@ -13,9 +13,10 @@ namespace treerec {
 
 namespace {
 
-constexpr double kSteepest = 0.7;      // rise over run of the ground, 35 degrees
-constexpr double kLowPart = 0.3;       // of the height: where ground may lie
-constexpr double kLeastFilled = 0.4;   // share of the squares around that hold ground
+constexpr double kBelow = 0.05;       // of a layer that lies below a surface along its lowest points, at most
+constexpr double kSteepest = 0.7;     // rise over run of the ground, 35 degrees
+constexpr double kLowPart = 0.3;      // of the height: where ground may lie
+constexpr double kLeastFilled = 0.4;  // share of the squares around that hold ground
 constexpr size_t kFewestColumns = 30;  // with ground
 constexpr double kPlant = 0.1;         // of the tree's height: what ends lower is none of it
 constexpr double kGrass = 0.04;        // likewise: as high as it may be
@@ -295,8 +296,9 @@ bool is_walkable(const Ground& ground, int column) {
     return glm::length(slope) <= kSteepest;
 }
 
-// How far the ground's surface lies above the lowest points that it was found by, which those of photos
-// scatter below it.
+// How far the ground's surface lies above the lowest points that it was found by. Those of photos scatter to
+// both sides, and nearly all lie above the lowest; a scanner's, with grass or without, lie on both sides of
+// what was found, which is the surface then.
 double surface_above(const std::vector<Vec3>& points, const Columns& columns, const Ground& ground,
                      const std::vector<uint8_t>& open) {
     std::vector<double> heights;
@@ -306,7 +308,7 @@ double surface_above(const std::vector<Vec3>& points, const Columns& columns, co
         if (const double above = ground.above(p); std::abs(above) <= ground.tolerance)
             heights.push_back(above);
     }
-    return heights.empty() ? 0.0 : std::max(0.0, quantile(heights, 0.5));
+    return heights.empty() || quantile(heights, kBelow) <= 0.0 ? 0.0 : quantile(heights, 0.5);
 }
 
 // Marks what grows out of the ground and ends low, and the tips of blades.

@@ -143,7 +143,10 @@ struct Filler {
         const double radius = value_along(limb.points, limb.radii, along);
         const auto chosen =
             choose_twig(species, printed() ? room : std::min(room, longest), radius, growth, !printed());
-        if (chosen) filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
+        if (chosen)
+            filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
+        else
+            filling.bare++;
     }
 };
 
@@ -239,16 +242,17 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     const double wood = subtree_lengths(usual)[static_cast<size_t>(usual.root())];
     const double wanted = options.density * wanted_wood(crown, leaf_preset(species.name), height);
     const double count = std::max(kEven * wanted / (growth * wood), 1.0);
-    Filler filler{
-        crown,
-        species,
-        options,
-        progress,
-        growth,
-        printed ? 0.0 : leaf_margin(crown, species, height),
-        metres_per_pixel,
-        std::max(kSpacing * growth * middle, kShareSpacing * portable::cbrt(crown.volume() / count)),
-        {}};
+    Filler filler{crown,
+                  species,
+                  options,
+                  progress,
+                  growth,
+                  printed ? 0.0 : leaf_margin(crown, species, height),
+                  metres_per_pixel,
+                  printed ? kSpacing * middle
+                          : std::max(kSpacing * growth * middle,
+                                     kShareSpacing * portable::cbrt(crown.volume() / count)),
+                  {}};
     filler.filling.limbs.push_back({limbs.trunk, -1});
     filler.cell_of.push_back(0);
     const double begin = leader_begin(limbs, crown);

@@ -32,6 +32,7 @@ struct TwigPlace {
 struct Filling {
     std::vector<FilledLimb> limbs;
     std::vector<TwigPlace> twigs;
+    size_t bare = 0;  // places in the crown that no twig is short enough for
 };
 
 // How the species' twigs are scaled for a tree of that height, metres: a young tree has shorter shoots.

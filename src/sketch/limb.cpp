@@ -6,6 +6,7 @@
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "sketch/flat_line.h"
 #include "sketch/limb_depth.h"
 #include "sketch/limb_plane.h"
 #include "sketch/limb_statistics.h"
@@ -179,7 +180,7 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
     const LimbStatistics statistics(tree);
     HungStroke hung = hang_stroke(tree, statistics, stroke, options.jitter, &progress);
     const PinholeView& view = stroke.view;
-    const double pixels = length_of(hung.points);
+    const double pixels = line_length(hung.points);
     const double step = std::clamp(pixels / kSamples, kLeastStep, kMostStep);
     const std::vector<DVec2> line = even_stroke(hung.points, step, kSmooth);
 
@@ -188,7 +189,7 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
     const int32_t order = statistics.list().branches[static_cast<size_t>(bearing)].order + 1;
     const RadiusLaw law = statistics.radius_law(order);
     const double thick =
-        view.focal / likeliest.depth * law.base_radius(length_of(line) * likeliest.depth / view.focal);
+        view.focal / likeliest.depth * law.base_radius(line_length(line) * likeliest.depth / view.focal);
     std::vector<Vec3> points;
     if (cloud && cloud->size() > 0) {
         progress.update(0.2, "Limb");

@@ -8,13 +8,13 @@
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "geometry/segment.h"
+#include "sketch/clean.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kClosest = 3.0;  // pixels: k of papers/003, 2.1
-constexpr double kReach = 0.15;   // of the stroke's length, to the nearest wood (papers/003, 2.2)
+constexpr double kReach = 0.15;  // of the stroke's length, to the nearest wood (papers/003, 2.2)
 constexpr double kTailShare = 0.25;
 constexpr double kBears = 0.75;  // of the base radius that a limb of its length has: a host's least
 constexpr double kAlike = 0.5;   // of the thickest wood's radius: may hide it
@@ -196,14 +196,8 @@ void cut_tail(std::vector<DVec2>& points, const Cut& cut) {
 }  // namespace
 
 std::vector<DVec2> clean_stroke(const std::vector<DVec2>& points) {
-    std::vector<DVec2> kept;
-    for (const DVec2& p : points)
-        if (kept.empty() || glm::length(p - kept.back()) >= kClosest) kept.push_back(p);
-    if (kept.size() > 1 && points.size() > 1) kept.back() = points.back();
-    std::vector<DVec2> smooth = kept;
-    for (size_t i = 2; i + 2 < kept.size(); i++)
-        smooth[i] = 0.07 * (kept[i - 2] + kept[i + 2]) + 0.13 * (kept[i - 1] + kept[i + 1]) + 0.60 * kept[i];
-    return smooth;
+    const FlatLine kept = thin_line(points, kLeastSpacing);
+    return smooth_line(kept, std::vector<bool>(kept.size(), false));
 }
 
 std::vector<DVec2> even_stroke(const std::vector<DVec2>& points, double step, double smooth) {
@@ -240,22 +234,15 @@ std::vector<DVec2> even_stroke(const std::vector<DVec2>& points, double step, do
     return even;
 }
 
-double length_of(const std::vector<DVec2>& points) {
-    double length = 0.0;
-    for (size_t i = 1; i < points.size(); i++)
-        length += glm::length(points[i] - points[i - 1]);
-    return length;
-}
-
 HungStroke hang_stroke(const Tree& tree, const LimbStatistics& statistics, const LimbStroke& stroke,
                        double jitter, const Progress* progress) {
     HungStroke hung;
     hung.points = clean_stroke(stroke.points);
-    if (hung.points.size() < 2 || length_of(hung.points) < 2.0 * kClosest)
+    if (hung.points.size() < 2 || line_length(hung.points) < 2.0 * kLeastSpacing)
         throw Error("The stroke is too short to be a limb: draw it along the whole limb.");
     const Picture picture(tree, statistics, stroke.view, progress);
     if (picture.empty()) throw Error("The tree lies behind the camera: turn the camera towards it.");
-    const double length = length_of(hung.points);
+    const double length = line_length(hung.points);
     const RadiusLaw law = statistics.radius_law(1);
 
     EndWood tail = wood_at(picture, law, hung.points.front(), length, jitter);
@@ -280,7 +267,7 @@ HungStroke hang_stroke(const Tree& tree, const LimbStatistics& statistics, const
         if (cut || far) {
             if (use_far) hung.points = back;
             cut_tail(hung.points, use_far ? *far : *cut);
-            tail = wood_at(picture, law, hung.points.front(), length_of(hung.points), jitter);
+            tail = wood_at(picture, law, hung.points.front(), line_length(hung.points), jitter);
             hung.remarks.emplace_back("The stroke runs through the wood: its shorter part was left out.");
         }
     }

@@ -17,8 +17,6 @@ std::vector<DVec2> clean_stroke(const std::vector<DVec2>& points);
 // out: at each place the line that fits best around it (local linear regression, Gaussian weights).
 std::vector<DVec2> even_stroke(const std::vector<DVec2>& points, double step, double smooth);
 
-double length_of(const std::vector<DVec2>& points);
-
 // Where a limb may hang.
 struct LimbHost {
     NodeId child = kNoNode;  // the upper end of the segment

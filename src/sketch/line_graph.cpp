@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "error.h"
+#include "sketch/flat_line.h"
 
 namespace treerec {
 
@@ -15,13 +16,6 @@ namespace {
 
 constexpr size_t kMostEdges = 20000;    // before spurs go
 constexpr double kNearJunctions = 2.0;  // pixels beyond the ink of both
-
-double length_of(const std::vector<DVec2>& points) {
-    double length = 0.0;
-    for (size_t i = 1; i < points.size(); i++)
-        length += glm::length(points[i] - points[i - 1]);
-    return length;
-}
 
 class Builder {
   public:
@@ -125,7 +119,7 @@ class Builder {
         }
         edge.points.push_back(middle(at));
         edge.nodes[1] = node_of_[at] == kNoNode ? LineEdge::kNone : node_of_[at];
-        edge.length = length_of(edge.points);
+        edge.length = line_length(edge.points);
         if (graph_.edges.size() == kMostEdges)
             throw Error(
                 who_ +
@@ -231,7 +225,7 @@ class Pruner {
         LineEdge whole;
         whole.points = std::move(first.points);
         whole.points.insert(whole.points.end(), second.points.begin(), second.points.end());
-        whole.length = length_of(whole.points);
+        whole.length = line_length(whole.points);
         first.alive = second.alive = false;
         const size_t made = graph_.edges.size();
         const std::array<size_t, 2> old_ends = {1 - ends[0], 1 - ends[1]};

@@ -72,6 +72,13 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     if (progress) progress->check();
     const Filling filling =
         fill_crown(limbs, crown, species, height, place.scale, sketch.seed, options, progress);
+    // As printed, twigs keep their lengths, which are those of grown trees.
+    if (printed && filling.bare > filling.twigs.size())
+        out.remarks.push_back(
+            "At " + std::to_string(filling.bare) + " of " +
+            std::to_string(filling.bare + filling.twigs.size()) +
+            " places the species' twigs are too long for the crown: make the tree taller, or "
+            "take the true depth.");
     AssembledTree assembled =
         assemble_tree(filling, species, crown, !printed, leaf_margin(crown, species, height), progress);
     out.tree = std::move(assembled.tree);

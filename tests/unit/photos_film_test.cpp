@@ -263,7 +263,7 @@ TEST_F(PhotosFilmFile, TheProgramTakesAFilm) {
     names.resize(12);
     fs::remove_all(folder_ / "models");
     test::write_tiny_model(folder_ / "models" / "0", {names});
-    const test::Outcome outcome = run("photos walk.mp4 -o out --sparse --matcher sift");
+    const test::Outcome outcome = run("photos walk.mp4 -o out --sparse");
     EXPECT_EQ(outcome.code, 0) << outcome.error;
     EXPECT_NE(outcome.error.find("Film"), std::string::npos) << outcome.error;
     EXPECT_TRUE(fs::exists(folder_ / "out" / "tree.glb"));

@@ -10,6 +10,7 @@
 #include "limb_trials.h"
 #include "scan/read_cloud.h"
 #include "skeleton_shapes.h"
+#include "sketch/flat_line.h"
 #include "sketch/limb_stroke.h"
 #include "sketch/read_limb.h"
 
@@ -339,7 +340,7 @@ TEST(SketchLimbStroke, SlowStrokesDoNotVanish) {
     EXPECT_GT(cleaned.size(), 30u);
     EXPECT_EQ(cleaned.front(), slow.front());
     EXPECT_EQ(cleaned.back(), slow.back());
-    EXPECT_NEAR(length_of(cleaned), 100.0, 1e-9);
+    EXPECT_NEAR(line_length(cleaned), 100.0, 1e-9);
     // Equation 1.
     const std::vector<DVec2> bump =
         clean_stroke({{0, 0}, {10, 0}, {20, 0}, {30, 10}, {40, 0}, {50, 0}, {60, 0}});

@@ -241,13 +241,27 @@ TEST(SketchTree, AlphaShapesBoundTheCrownToo) {
     for (uint64_t seed = 1; seed <= 4; seed++) {
         SketchOptions options;
         options.crown = SketchCrown::kAlpha;
+        Sketch sketch = drawn_sketch(seed);
+        sketch.height = 12.0;  // as tall as the twigs are for
         for (const SketchDepth depth : {SketchDepth::kTrue, SketchDepth::kPaper}) {
             options.depth = depth;
-            const SketchedTree made = sketch_tree(drawn_sketch(seed), options);
-            EXPECT_GT(made.tree.size(), 100u) << seed;
+            const SketchedTree made = sketch_tree(sketch, options);
+            EXPECT_GT(made.tree.size(), 300u) << seed;
             ASSERT_FALSE(made.tree.check());
         }
     }
+}
+
+// Twigs keep their lengths as printed: on a small tree most find no room, and it is said.
+TEST(SketchTree, AsPrintedASmallTreeIsNearlyBare) {
+    SketchOptions options;
+    options.depth = SketchDepth::kPaper;
+    Sketch sketch = drawn_sketch(2);
+    sketch.height = 3.0;
+    ASSERT_EQ(sketch_tree(sketch, options).remarks.size(), 1u);
+    EXPECT_NE(sketch_tree(sketch, options).remarks[0].find("make the tree taller"), std::string::npos);
+    sketch.height = 14.0;
+    EXPECT_TRUE(sketch_tree(sketch, options).remarks.empty());
 }
 
 TEST(ChooseTwig, EquationFourBeforeScaling) {

@@ -8,6 +8,7 @@ extends RefCounted
 ## to undo.
 
 const Session: GDScript = preload("../session.gd")
+const FileChooser: GDScript = preload("../file_chooser.gd")
 const PhotoCamera: GDScript = preload("photo_camera.gd")
 const Source: GDScript = preload("photo_source.gd")
 const Stage: GDScript = preload("photo_stage.gd")
@@ -28,7 +29,7 @@ var _node: TreeInstance3D
 var _focused: WeakRef = weakref(null)
 # From where the user looked.
 var _from: Vector3
-var _chooser: EditorFileDialog
+var _chooser: FileChooser = FileChooser.new()
 # As it was set last.
 var _mode: Stage.Mode = Stage.Mode.BEHIND
 var _opacity: float = 1.0
@@ -39,6 +40,7 @@ var _shown: Texture2D
 
 func _init(session: Session) -> void:
 	set_translation_domain(session.get_translation_domain())
+	_chooser.set_translation_domain(session.get_translation_domain())
 	_session = session
 	source = Source.new(session)
 	source.changed.connect(_on_source_changed)
@@ -60,7 +62,7 @@ func toggle(camera: Camera3D) -> void:
 func leave() -> void:
 	if not is_open():
 		return
-	_close_chooser()
+	_chooser.close()
 	source.close()
 	var focused: Control = _focused.get_ref() as Control
 	if stage.has_focus() and focused != null and focused.is_visible_in_tree():
@@ -219,23 +221,12 @@ func _on_stage_input(event: InputEvent) -> void:
 
 
 func _choose_folder() -> void:
-	_close_chooser()
-	_chooser = EditorFileDialog.new()
-	_chooser.set_translation_domain(get_translation_domain())
 	var for_model: bool = source.lack == Source.Lack.MODEL
-	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	# Which sets a title of its own.
-	_chooser.file_mode = EditorFileDialog.FILE_MODE_OPEN_DIR
-	_chooser.title = tr("Choose Cameras") if for_model else tr("Choose Photos")
-	var near: String = source.get_folder_to_begin()
-	if not near.is_empty():
-		_chooser.current_dir = near
-	_chooser.dir_selected.connect(source.take_folder)
-	cover.add_child(_chooser)
-	_chooser.popup_centered_clamped(Vector2i(900, 600))
-
-
-func _close_chooser() -> void:
-	if is_instance_valid(_chooser):
-		_chooser.queue_free()
-	_chooser = null
+	_chooser.open(
+		cover,
+		EditorFileDialog.FILE_MODE_OPEN_DIR,
+		tr("Choose Cameras") if for_model else tr("Choose Photos"),
+		source.take_folder,
+		[],
+		source.get_folder_to_begin()
+	)

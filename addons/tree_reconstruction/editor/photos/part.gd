@@ -4,6 +4,7 @@ extends RefCounted
 ## into the scene.
 
 const Session := preload("../session.gd")
+const FileChooser := preload("../file_chooser.gd")
 const PhotosPanel := preload("photos_panel.gd")
 const Menu := preload("folder_menu.gd")
 const PhotoFolder := preload("photo_folder.gd")
@@ -13,7 +14,6 @@ const FreePlace := preload("../import/free_place.gd")
 
 ## Where COLMAP is, in the editor's settings.
 const SETTING: String = "tree_reconstruction/photos/colmap"
-const _CHOOSER_SIZE: Vector2i = Vector2i(900, 600)
 
 var panel: PhotosPanel
 var window: AcceptDialog
@@ -23,7 +23,7 @@ var _session: Session
 var _menu: Menu
 var _adder: SceneAdder
 var _title: String
-var _chooser: EditorFileDialog
+var _chooser: FileChooser = FileChooser.new()
 # The scene that was edited when the work began.
 var _scene: WeakRef = weakref(null)
 
@@ -31,6 +31,7 @@ var _scene: WeakRef = weakref(null)
 func enter(plugin: EditorPlugin, session: Session) -> void:
 	_plugin = plugin
 	_session = session
+	_chooser.set_translation_domain(get_translation_domain())
 	_add_setting(EditorInterface.get_editor_settings())
 	_adder = SceneAdder.new(plugin.get_undo_redo())
 	_adder.set_translation_domain(get_translation_domain())
@@ -71,7 +72,7 @@ func exit() -> void:
 	window.queue_free()
 	window = null
 	panel = null
-	_close_chooser()
+	_chooser.close()
 	_adder = null
 	_session = null
 	_plugin = null
@@ -136,41 +137,24 @@ func _on_made(tree: TreeReconstruction) -> void:
 
 
 func _choose_folder() -> void:
-	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_ANY, tr("Choose Photos"), panel.show_folder)
-	_chooser.filters = PackedStringArray(
+	_chooser.open(
+		window,
+		EditorFileDialog.FILE_MODE_OPEN_ANY,
+		tr("Choose Photos"),
+		panel.show_folder,
 		["*." + ", *.".join(PhotoFolder.FILMS) + ";" + tr("Films")]
 	)
-	_chooser.dir_selected.connect(panel.show_folder)
-	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
 
 
 func _choose_marker() -> void:
-	_open_chooser(
-		EditorFileDialog.FILE_MODE_SAVE_FILE, tr("Save Marker to Print"), panel.save_marker
+	_chooser.open(
+		window,
+		EditorFileDialog.FILE_MODE_SAVE_FILE,
+		tr("Save Marker to Print"),
+		panel.save_marker,
+		["*.svg;" + tr("Drawing in millimetres"), "*.png;" + tr("Picture at 300 dpi")],
+		"marker.svg"
 	)
-	_chooser.filters = PackedStringArray(
-		["*.svg;" + tr("Drawing in millimetres"), "*.png;" + tr("Picture at 300 dpi")]
-	)
-	_chooser.current_file = "marker.svg"
-	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
-
-
-# Anywhere on the disk: photos come from a phone, and markers go to a printer.
-func _open_chooser(mode: EditorFileDialog.FileMode, title: String, chosen: Callable) -> void:
-	_close_chooser()
-	_chooser = EditorFileDialog.new()
-	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	_chooser.file_mode = mode
-	# After the mode, which sets a title of its own.
-	_chooser.title = title
-	_chooser.file_selected.connect(chosen)
-	window.add_child(_chooser)
-
-
-func _close_chooser() -> void:
-	if is_instance_valid(_chooser):
-		_chooser.queue_free()
-	_chooser = null
 
 
 # A folder, a film, or photos out of one folder.

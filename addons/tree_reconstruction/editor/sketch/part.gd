@@ -4,11 +4,11 @@ extends RefCounted
 ## comes into the scene.
 
 const Session := preload("../session.gd")
+const FileChooser := preload("../file_chooser.gd")
 const SketchPanel := preload("sketch_panel.gd")
 const SceneAdder := preload("../import/scene_adder.gd")
 const FreePlace := preload("../import/free_place.gd")
 
-const _CHOOSER_SIZE: Vector2i = Vector2i(900, 600)
 # At the editor's scale of 1.
 const _SIZE: Vector2 = Vector2(620, 580)
 const _MARGIN: float = 8.0
@@ -20,7 +20,7 @@ var _plugin: EditorPlugin
 var _session: Session
 var _adder: SceneAdder
 var _title: String
-var _chooser: EditorFileDialog
+var _chooser: FileChooser = FileChooser.new()
 # Whether the skeleton was hidden for the window.
 var _skeleton_hidden: bool = false
 
@@ -28,6 +28,7 @@ var _skeleton_hidden: bool = false
 func enter(plugin: EditorPlugin, session: Session) -> void:
 	_plugin = plugin
 	_session = session
+	_chooser.set_translation_domain(get_translation_domain())
 	_adder = SceneAdder.new(plugin.get_undo_redo())
 	_adder.set_translation_domain(get_translation_domain())
 	_adder.added.connect(session.view.show_whole.unbind(1))
@@ -66,7 +67,7 @@ func exit() -> void:
 	window.queue_free()
 	window = null
 	panel = null
-	_close_chooser()
+	_chooser.close()
 	_adder = null
 	_session = null
 	_plugin = null
@@ -145,39 +146,29 @@ func _on_history_wanted(redo: bool) -> void:
 
 
 func _choose_to_load() -> void:
-	_open_chooser(EditorFileDialog.FILE_MODE_OPEN_FILE, tr("Load Sketch"), panel.files.read)
 	var endings: String = "*.json, *.svg, *.png, *.jpg, *.jpeg;"
-	_chooser.filters = PackedStringArray([endings + tr("Strokes and drawings")])
-	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
+	_chooser.open(
+		window,
+		EditorFileDialog.FILE_MODE_OPEN_FILE,
+		tr("Load Sketch"),
+		panel.files.read,
+		[endings + tr("Strokes and drawings")]
+	)
 
 
 func _choose_to_save() -> void:
-	_open_chooser(EditorFileDialog.FILE_MODE_SAVE_FILE, tr("Save Sketch"), _save)
-	_chooser.filters = PackedStringArray(["*.json;" + tr("Strokes")])
-	_chooser.current_file = "sketch.json"
-	_chooser.popup_centered_clamped(_CHOOSER_SIZE)
+	_chooser.open(
+		window,
+		EditorFileDialog.FILE_MODE_SAVE_FILE,
+		tr("Save Sketch"),
+		_save,
+		["*.json;" + tr("Strokes")],
+		"sketch.json"
+	)
 
 
 func _save(path: String) -> void:
 	panel.files.write(panel.get_sketch(), path)
-
-
-# Anywhere on the disk: a drawing may come from another program.
-func _open_chooser(mode: EditorFileDialog.FileMode, title: String, chosen: Callable) -> void:
-	_close_chooser()
-	_chooser = EditorFileDialog.new()
-	_chooser.access = EditorFileDialog.ACCESS_FILESYSTEM
-	_chooser.file_mode = mode
-	# After the mode, which sets a title of its own.
-	_chooser.title = title
-	_chooser.file_selected.connect(chosen)
-	window.add_child(_chooser)
-
-
-func _close_chooser() -> void:
-	if is_instance_valid(_chooser):
-		_chooser.queue_free()
-	_chooser = null
 
 
 func _on_dropped(files: PackedStringArray) -> void:

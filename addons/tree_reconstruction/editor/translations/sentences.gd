@@ -256,6 +256,7 @@ const PATTERNS: PackedStringArray = [
 	"COLMAP's features alone placed %s of %s photos; corners were tracked as well, and placed %s.",
 	"Some photos' names have blanks in them: rename them for corners to be tracked.",
 	"COLMAP's features alone placed some photos doubtfully, so corners were tracked as well.",
+	"Photos are missing, or doubtfully placed, and corners could not be tracked as well." + " %s",
 	(
 		"The photos look at one side: they go %s of the 360 degrees around what they show, and from"
 		+ " there a tree looks no different from a wall. Walk around the tree, or a third of the way"

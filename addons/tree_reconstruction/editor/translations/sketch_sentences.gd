@@ -3,6 +3,10 @@ extends RefCounted
 ## What the library says of sketches and of their files: patterns as those of sentences.gd.
 
 const PATTERNS: PackedStringArray = [
+	(
+		"At %s of %s places the species' twigs are too long for the crown: make the tree taller, or take the"
+		+ " true depth."
+	),
 	# Of strokes.
 	"This is only a dot; draw a line.",
 	"A trunk has one line, or two for its sides; this is a further one.",
