@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sketch/close_gaps.h"
+#include "sketch/twig_place.h"
 
 namespace treerec {
 
@@ -52,7 +52,7 @@ NodeId node_at(const std::vector<Stop>& stops, double along) {
 }  // namespace
 
 AssembledTree assemble_tree(const Filling& filling, const SketchSpecies& species, const CrownSections& crown,
-                            bool cut, double margin, const Progress* progress) {
+                            std::optional<double> margin, const Progress* progress) {
     AssembledTree out;
     std::vector<std::vector<Stop>> stops = stops_of(filling);
     const auto remember = [&](int32_t stroke) { out.stroke_of_node.push_back(stroke); };
@@ -74,31 +74,28 @@ AssembledTree assemble_tree(const Filling& filling, const SketchSpecies& species
             remember(own.limb.stroke);
         }
     }
-    std::vector<std::vector<NodeId>> orders;
-    for (const SpeciesTwig& twig : species.twigs)
-        orders.push_back(twig.scion.depth_first());
     std::vector<NodeId> moved;
     for (const TwigPlace& place : filling.twigs) {
         if (progress) progress->check();
         const Tree& scion = species.twigs[place.twig].scion;
         const NodeId joint = node_at(stops[place.limb], place.along);
-        const DVec3 foot = out.tree.node(joint).position;
-        const DMat3 axes = twig_axes(scion, place);
+        const std::vector<std::optional<DVec3>> kept =
+            kept_places(scion, place, out.tree.node(joint).position, crown, margin);
         const double own = scion.node(scion.root()).radius * place.scale;
         const double thin = std::min(1.0, kJoint * out.tree.node(joint).radius / own);
-        moved.assign(static_cast<size_t>(scion.id_end()), kNoNode);
-        moved[static_cast<size_t>(scion.root())] = joint;
-        for (const NodeId id : orders[place.twig]) {
+        moved.assign(kept.size(), kNoNode);
+        for (const NodeId id : scion.depth_first()) {
+            const auto index = static_cast<size_t>(id);
             const Node& node = scion.node(id);
-            if (node.parent == kNoNode) continue;
-            const NodeId parent = moved[static_cast<size_t>(node.parent)];
-            if (parent == kNoNode) continue;
-            const DVec3 at = foot + axes * (place.scale * node.position);
-            if (cut && !crown.contains(at, margin)) continue;
-            const double radius =
-                std::min(std::max(node.radius * place.scale * thin, kFinest), out.tree.node(parent).radius);
-            moved[static_cast<size_t>(id)] = out.tree.add_child(parent, at, radius);
-            remember(-1);
+            if (node.parent == kNoNode) {
+                moved[index] = joint;
+            } else if (kept[index]) {
+                const NodeId parent = moved[static_cast<size_t>(node.parent)];
+                const double radius = std::min(std::max(node.radius * place.scale * thin, kFinest),
+                                               out.tree.node(parent).radius);
+                moved[index] = out.tree.add_child(parent, *kept[index], radius);
+                remember(-1);
+            }
         }
     }
     return out;

@@ -1,6 +1,7 @@
 // Limbs and twigs into one tree.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "progress.h"
@@ -16,9 +17,9 @@ struct AssembledTree {
     std::vector<int32_t> stroke_of_node;  // by node id; -1: of no stroke
 };
 
-// Twigs lose what leaves the crown (by `margin`, CrownSections::contains()), where `cut`; none is thicker
-// than the wood that it stands on. Throws Cancelled.
+// Twigs lose what leaves the crown by `margin` (kept_places()), without one nothing; none is thicker than the
+// wood that it stands on. Throws Cancelled.
 AssembledTree assemble_tree(const Filling& filling, const SketchSpecies& species, const CrownSections& crown,
-                            bool cut, double margin, const Progress* progress = nullptr);
+                            std::optional<double> margin, const Progress* progress = nullptr);
 
 }  // namespace treerec

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
-#include "edit/scion.h"
-#include "foliage/leaf_rules.h"
 #include "geometry/random.h"
 #include "geometry/segment.h"
+#include "sketch/crown_leaves.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -84,73 +84,32 @@ class Cover {
     std::vector<bool> open_;
 };
 
-struct LeafyScion {
-    std::vector<DVec3> places;  // of its nodes that bear leaves, and not
-    std::vector<bool> leafy;
-};
-
-LeafyScion leafy_parts(const Tree& scion, double twig_length) {
-    LeafyScion parts;
-    const std::vector<double> to_tip = longest_paths(scion);
-    for (const NodeId id : scion.depth_first()) {
-        parts.places.push_back(scion.node(id).position);
-        parts.leafy.push_back(to_tip[static_cast<size_t>(id)] <= twig_length);
-    }
-    return parts;
-}
-
 }  // namespace
 
-DMat3 twig_axes(const Tree& scion, const TwigPlace& place) {
-    const DVec3 own = scion_direction(scion);
-    return turn_about(place.way, place.spin) * turn_between(own, place.way);
-}
-
-double kept_wood(const Tree& scion, const TwigPlace& place, const DVec3& joint, const CrownSections& crown,
-                 double margin) {
-    const DMat3 axes = twig_axes(scion, place);
-    std::vector<bool> kept(static_cast<size_t>(scion.id_end()), false);
-    double wood = 0.0;
-    for (const NodeId id : scion.depth_first()) {
-        const Node& node = scion.node(id);
-        const auto own = static_cast<size_t>(id);
-        if (node.parent == kNoNode) {
-            kept[own] = true;
-        } else if (kept[static_cast<size_t>(node.parent)] &&
-                   crown.contains(joint + axes * (place.scale * node.position), margin)) {
-            kept[own] = true;
-            wood += place.scale * glm::length(node.position - scion.node(node.parent).position);
-        }
-    }
-    return wood;
-}
-
-void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecies& species, double growth,
-                double height, double most_wood, uint64_t seed, const Progress* progress) {
-    const LeafRules rules = leaf_preset(species.name);
-    const double small = std::sqrt(std::min(height / 12.0, 1.0));
-    const double leaf = rules.leaf_size * small;
-    const double margin = leaf_margin(crown, species, height);
+void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecies& species,
+                const LeafRules& rules, double height, double most_wood, uint64_t seed,
+                const Progress* progress) {
+    const double growth = twig_growth(species, height);
+    const double leaf = leaf_length(rules, height);
+    const double margin = leaf_margin(crown, rules, height);
     const double side = std::max(crown.top() - crown.bottom(), 2.0 * crown.reach());
     const double cell = std::max(kCell * leaf, side / kMostCells);
-    std::vector<LeafyScion> scions;
+    std::vector<std::vector<double>> to_tip;
     for (const SpeciesTwig& twig : species.twigs)
-        scions.push_back(leafy_parts(twig.scion, rules.twig_length * small / growth));
+        to_tip.push_back(longest_paths(twig.scion));
+    const double bearing = rules.twig_length * shrunk(height) / growth;
 
-    const auto mark = [&](Cover& cover, const TwigPlace& place) {
-        const LeafyScion& parts = scions[place.twig];
-        const DMat3 axes = twig_axes(species.twigs[place.twig].scion, place);
-        const DVec3 joint = place_along(filling.limbs[place.limb].limb.points, place.along);
-        for (size_t i = 0; i < parts.places.size(); i++) {
-            if (!parts.leafy[i]) continue;
-            const DVec3 p = joint + axes * (place.scale * parts.places[i]);
-            if (crown.contains(p, margin)) cover.mark(p);
-        }
+    const auto joint_of = [&](const TwigPlace& place) {
+        return place_along(filling.limbs[place.limb].limb.points, place.along);
     };
-
+    const auto mark = [&](Cover& cover, const TwigPlace& place) {
+        const std::vector<std::optional<DVec3>> kept =
+            kept_places(species.twigs[place.twig].scion, place, joint_of(place), crown, margin);
+        for (size_t id = 0; id < kept.size(); id++)
+            if (kept[id] && to_tip[place.twig][id] <= bearing) cover.mark(*kept[id]);
+    };
     const auto wood_of = [&](const TwigPlace& place) {
-        return kept_wood(species.twigs[place.twig].scion, place,
-                         place_along(filling.limbs[place.limb].limb.points, place.along), crown, margin);
+        return kept_wood(species.twigs[place.twig].scion, place, joint_of(place), crown, margin);
     };
     double all = 0.0;
     for (const TwigPlace& place : filling.twigs)

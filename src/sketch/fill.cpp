@@ -10,6 +10,7 @@
 #include "geometry/random.h"
 #include "sketch/alpha_crown.h"
 #include "sketch/close_gaps.h"
+#include "sketch/crown_leaves.h"
 #include "sketch/lift.h"
 #include "sketch/limb_cells.h"
 #include "tree/branches.h"
@@ -23,12 +24,7 @@ constexpr double kGolden = 137.508 * kPi / 180.0;
 // Between places of one twig each, in the middle twig's lengths, at least; and over the edge of the cube that
 // each would have if the leaves that a tree may bear were shared out in its crown.
 constexpr double kSpacing = 0.2, kShareSpacing = 0.7;
-// Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
-// many times what the rules allow, since beyond that fewer and larger ones stand.
-constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
-// The share of a twig's wood that is near enough to a tip to bear leaves.
-constexpr double kBearing = 0.6;
-// Of these, those that stand evenly; the rest is for gaps.
+// Of the twigs that bear the leaves, those that stand evenly; the rest is for gaps.
 constexpr double kEven = 0.5;
 constexpr double kBare = 0.12;  // of a branch, at its base
 constexpr double kMostScale = 1.3;
@@ -39,10 +35,6 @@ constexpr double kUpwards = 0.35;         // how much of its way turns up along 
 constexpr double kBranchThickness = 0.6;  // of its parent's, at most
 constexpr int kDeepest = 4;               // branches on branches
 constexpr size_t kMostTwigs = 4000;
-
-// Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
-constexpr double kStandsOut = 0.42;
-constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 struct Filler {
     const CrownSections& crown;
@@ -175,33 +167,7 @@ std::vector<DVec3> line_from(const std::vector<DVec3>& points, double begin) {
 
 }  // namespace
 
-double twig_growth(const SketchSpecies& species, double height) {
-    return std::clamp(std::sqrt(height / species.height), kLeastGrowth, kMostGrowth);
-}
-
 namespace {
-
-// By how much leaf_rules.h shrinks lengths on small trees; single leaves keep their size.
-double shrunk(double height) {
-    return std::sqrt(std::min(height / 12.0, 1.0));
-}
-
-double leaf_length(const LeafRules& rules, double height) {
-    return rules.leaf_size * (rules.form == LeafForm::kSpray ? shrunk(height) : 1.0);
-}
-
-// Leaves that would cover the crown's outline often enough.
-double covering_leaves(const CrownSections& crown, const LeafRules& rules, double height) {
-    const double length = leaf_length(rules, height);
-    return kCovers * crown.area() / (length * length * std::min(rules.blade_width, 1.0));
-}
-
-// Of leafy wood, metres: what bears as many leaves as are to stand in the crown.
-double wanted_wood(const CrownSections& crown, const LeafRules& rules, double height) {
-    const double count =
-        std::min(covering_leaves(crown, rules, height), kOfMostLeaves * rules.maximum_leaves);
-    return count * rules.internode * shrunk(height) / kBearing;
-}
 
 // Twigs are evenly left out until the rest have no more wood in the crown than that.
 void thin_out(Filling& filling, const SketchSpecies& species, const CrownSections& crown, double margin,
@@ -224,30 +190,23 @@ void thin_out(Filling& filling, const SketchSpecies& species, const CrownSection
 
 }  // namespace
 
-double leaf_margin(const CrownSections& crown, const SketchSpecies& species, double height) {
-    const LeafRules rules = leaf_preset(species.name);
-    // Where they would be more than the rules allow, fewer and larger ones stand.
-    const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
-    return kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
-           rules.petiole;
-}
-
 Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
                    double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
                    const Progress* progress) {
     const bool printed = options.depth == SketchDepth::kPaper;
+    const LeafRules rules = leaf_preset(species.name);
     const double growth = printed ? 1.0 : twig_growth(species, height);
     const double middle = species.twigs[species.twigs.size() / 2].length;
     const Tree& usual = species.twigs[species.twigs.size() / 2].scion;
     const double wood = subtree_lengths(usual)[static_cast<size_t>(usual.root())];
-    const double wanted = options.density * wanted_wood(crown, leaf_preset(species.name), height);
+    const double wanted = options.density * wanted_wood(crown, rules, height);
     const double count = std::max(kEven * wanted / (growth * wood), 1.0);
     Filler filler{crown,
                   species,
                   options,
                   progress,
                   growth,
-                  printed ? 0.0 : leaf_margin(crown, species, height),
+                  printed ? 0.0 : leaf_margin(crown, rules, height),
                   metres_per_pixel,
                   printed ? kSpacing * middle
                           : std::max(kSpacing * growth * middle,
@@ -274,7 +233,7 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
         filler.fill(*bound, i, 0.0, 0);
     if (!printed) thin_out(filler.filling, species, crown, filler.margin, kEven * wanted);
     if (!printed && options.density > 0.0)
-        close_gaps(filler.filling, crown, species, growth, height, wanted, hash_seed(seed, 5), progress);
+        close_gaps(filler.filling, crown, species, rules, height, wanted, hash_seed(seed, 5), progress);
     return filler.filling;
 }
 

@@ -10,6 +10,7 @@
 #include "sketch/limbs.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
+#include "sketch/twig_place.h"
 
 namespace treerec {
 
@@ -19,26 +20,11 @@ struct FilledLimb {
     int32_t parent = -1;  // place in the list; -1: the trunk
 };
 
-// A twig of the species at a place on a limb.
-struct TwigPlace {
-    size_t limb = 0;     // place among the filled limbs
-    double along = 0.0;  // metres from the limb's tail
-    DVec3 way{0.0};      // unit: where the twig goes
-    size_t twig = 0;     // place in SketchSpecies::twigs
-    double scale = 1.0;
-    double spin = 0.0;  // radians about its own direction
-};
-
 struct Filling {
     std::vector<FilledLimb> limbs;
     std::vector<TwigPlace> twigs;
     size_t bare = 0;  // places in the crown that no twig is short enough for
 };
-
-// How the species' twigs are scaled for a tree of that height, metres: a young tree has shorter shoots.
-double twig_growth(const SketchSpecies& species, double height);
-// Metres by which leaves stand out from wood: so far twigs stay from the crown's surface.
-double leaf_margin(const CrownSections& crown, const SketchSpecies& species, double height);
 
 // kSections (default): twigs stand evenly around each limb, by the species' arrangement, 30 to 70 degrees off
 //     its direction; a place whose room is longer than any twig gets a branch with twigs of its own. Then

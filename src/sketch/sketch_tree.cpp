@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "error.h"
 #include "sketch/assemble.h"
+#include "sketch/crown_leaves.h"
 #include "sketch/fill.h"
 #include "sketch/lift.h"
 #include "sketch/sketch.h"
@@ -79,8 +81,9 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
             std::to_string(filling.bare + filling.twigs.size()) +
             " places the species' twigs are too long for the crown: make the tree taller, or "
             "take the true depth.");
-    AssembledTree assembled =
-        assemble_tree(filling, species, crown, !printed, leaf_margin(crown, species, height), progress);
+    std::optional<double> margin;
+    if (!printed) margin = leaf_margin(crown, leaf_preset(species.name), height);
+    AssembledTree assembled = assemble_tree(filling, species, crown, margin, progress);
     out.tree = std::move(assembled.tree);
     out.stroke_of_node = std::move(assembled.stroke_of_node);
     return out;

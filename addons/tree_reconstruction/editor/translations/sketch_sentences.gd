@@ -4,8 +4,8 @@ extends RefCounted
 
 const PATTERNS: PackedStringArray = [
 	(
-		"At %s of %s places the species' twigs are too long for the crown: make the tree taller, or take the"
-		+ " true depth."
+		"At %s of %s places the species' twigs are too long for the crown: make the tree taller,"
+		+ " or take the true depth."
 	),
 	# Of strokes.
 	"This is only a dot; draw a line.",

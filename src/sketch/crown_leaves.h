@@ -1,0 +1,23 @@
+// How large leaves are in a crown, how many are to stand in it, and on how much wood.
+#pragma once
+
+#include "foliage/leaf_rules.h"
+#include "sketch/crown_sections.h"
+#include "sketch/species.h"
+
+namespace treerec {
+
+// All heights are the tree's, metres.
+
+// How the species' twigs are scaled for a tree of that height: a young tree has shorter shoots.
+double twig_growth(const SketchSpecies& species, double height);
+// By how much leaf_rules.h shrinks lengths on small trees, 0..1.
+double shrunk(double height);
+// Of a card, metres; single leaves keep their size.
+double leaf_length(const LeafRules& rules, double height);
+// Metres by which leaves stand out from wood: so far twigs stay from the crown's surface.
+double leaf_margin(const CrownSections& crown, const LeafRules& rules, double height);
+// Metres of twigs that bear as many leaves as are to stand in the crown.
+double wanted_wood(const CrownSections& crown, const LeafRules& rules, double height);
+
+}  // namespace treerec
