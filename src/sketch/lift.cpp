@@ -5,7 +5,6 @@
 
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
-#include "geometry/segment.h"
 #include "sketch/simplify_line.h"
 
 namespace treerec {
@@ -25,60 +24,17 @@ constexpr double kMostDepth = 1.2;
 // A branch's share of the trunk's thickness there, whatever its length.
 constexpr double kThinnestBranch = 0.25, kThickestBranch = 0.75;
 
-// The trunk's line with a point wherever a branch grows, in pixels; attach: gets those points' places in it.
-std::vector<DVec2> with_joints(const DrawnTree& drawn, std::vector<double>& radii,
-                               std::vector<size_t>& attach) {
-    struct Joint {
-        size_t segment;
-        double where;
-        size_t branch;
-    };
+// Where each branch grows: the place of a point of the trunk's line.
+std::vector<size_t> joints_of(const DrawnTree& drawn) {
+    std::vector<size_t> joints;
     const std::vector<DVec2>& line = drawn.trunk.points;
-    std::vector<Joint> joints;
-    for (size_t b = 0; b < drawn.branches.size(); b++) {
-        const DVec3 base(drawn.branches[b].points[0], 0.0);
-        Joint nearest{0, 0.0, b};
-        double least = 0.0;
-        for (size_t i = 0; i + 1 < line.size(); i++) {
-            double where;
-            const double square =
-                square_to_segment(base, DVec3(line[i], 0.0), DVec3(line[i + 1], 0.0), where);
-            if (i > 0 && square >= least) continue;
-            least = square;
-            nearest.segment = i;
-            nearest.where = where;
-        }
-        joints.push_back(nearest);
+    for (const DrawnLine& branch : drawn.branches) {
+        const auto off = [&](const DVec2& p) { return glm::length(p - branch.points[0]); };
+        const auto nearest = std::min_element(
+            line.begin(), line.end(), [&](const DVec2& p, const DVec2& q) { return off(p) < off(q); });
+        joints.push_back(static_cast<size_t>(nearest - line.begin()));
     }
-    std::sort(joints.begin(), joints.end(), [](const Joint& a, const Joint& b) {
-        return a.segment != b.segment ? a.segment < b.segment
-               : a.where != b.where   ? a.where < b.where
-                                      : a.branch < b.branch;
-    });
-    std::vector<DVec2> joined;
-    radii.clear();
-    attach.assign(drawn.branches.size(), 0);
-    size_t next = 0;
-    for (size_t i = 0; i < line.size(); i++) {
-        const bool drawn_radii = !drawn.trunk.radii.empty();
-        joined.push_back(line[i]);
-        if (drawn_radii) radii.push_back(drawn.trunk.radii[i]);
-        for (; next < joints.size() && joints[next].segment == i; next++) {
-            const double t = joints[next].where;
-            const DVec2 at = line[i] + (line[i + 1] - line[i]) * t;
-            if (glm::length(at - joined.back()) > 1e-6 && glm::length(at - line[i + 1]) > 1e-6) {
-                joined.push_back(at);
-                if (drawn_radii) {
-                    const std::vector<double>& r = drawn.trunk.radii;
-                    radii.push_back(r[i] + (r[i + 1] - r[i]) * t);
-                }
-            }
-            // The next segment's first point is yet to come.
-            const bool at_end = glm::length(at - line[i + 1]) <= 1e-6;
-            attach[joints[next].branch] = joined.size() - (at_end ? 0 : 1);
-        }
-    }
-    return joined;
+    return joints;
 }
 
 // Gives each point of the branch its depth: its base's, and more in proportion to the way along it, `tip` at
@@ -174,13 +130,13 @@ std::vector<double> radii_of(const Limb& branch, const Limbs& limbs) {
 Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
            const SketchOptions& options, std::vector<std::string>& remarks) {
     Limbs limbs;
-    std::vector<double> radii;
-    std::vector<size_t> attach;
-    const std::vector<DVec2> joined = with_joints(drawn, radii, attach);
-    std::vector<size_t> kept = simplify_line(joined, attach, kTrueness);
-    kept = split_long_steps(joined, kept, kLongestStep);
+    const std::vector<DVec2>& line = drawn.trunk.points;
+    const std::vector<double>& radii = drawn.trunk.radii;
+    const std::vector<size_t> joints = joints_of(drawn);
+    const std::vector<size_t> kept =
+        split_long_steps(line, simplify_line(line, joints, kTrueness), kLongestStep);
     for (const size_t i : kept)
-        limbs.trunk.points.emplace_back(place.metres(joined[i]), 0.0);
+        limbs.trunk.points.emplace_back(place.metres(line[i]), 0.0);
     limbs.trunk.stroke = static_cast<int32_t>(drawn.trunk.stroke);
     limbs.trunk.seed = hash_seed(sketch.seed, 0);
     const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
@@ -199,8 +155,8 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
 
     for (size_t b = 0; b < drawn.branches.size(); b++) {
         Limb branch = flat_limb(drawn.branches[b], sketch, place);
-        branch.points[0] = DVec3(place.metres(joined[attach[b]]), 0.0);
-        for (size_t i = 0; i + 1 < kept.size() && kept[i] < attach[b]; i++)
+        branch.points[0] = DVec3(place.metres(line[joints[b]]), 0.0);
+        for (size_t i = 0; i + 1 < kept.size() && kept[i] < joints[b]; i++)
             branch.along += glm::length(limbs.trunk.points[i + 1] - limbs.trunk.points[i]);
         limbs.branches.push_back(std::move(branch));
     }
@@ -208,10 +164,10 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
     // leaves the shares of its length as they are.
     const size_t first_order = limbs.branches.size();
     std::vector<double> shares;
-    for (const DrawnLine& line : drawn.side_branches) {
-        Limb branch = flat_limb(line, sketch, place);
-        branch.parent = static_cast<int32_t>(*line.parent);
-        const std::vector<DVec3>& on = limbs.branches[*line.parent].points;
+    for (const DrawnLine& side : drawn.side_branches) {
+        Limb branch = flat_limb(side, sketch, place);
+        branch.parent = static_cast<int32_t>(*side.parent);
+        const std::vector<DVec3>& on = limbs.branches[*side.parent].points;
         branch.along = nearest_along(on, branch.points[0]);
         shares.push_back(branch.along / length_of(on));
         branch.points[0] = place_along(on, branch.along);
