@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
@@ -175,8 +176,8 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
         branch.along = lowest + (highest - lowest) * share;
         branch.seed = hash_seed(own, 1);
         const DVec3 base = place_along(limbs.trunk.points, branch.along);
-        // Where there is most room.
-        double azimuth = 0.0, most = -1.0;
+        // To where there is most room and the crown is: beside a leaning trunk it is not all around.
+        std::vector<std::pair<double, double>> directions;  // room, azimuth
         const double begin = random.uniform(0.0, 2.0 * kPi / kDirections);
         for (size_t d = 0; d < kDirections; d++) {
             const double angle = begin + 2.0 * kPi * static_cast<double>(d) / kDirections - kPi;
@@ -186,10 +187,10 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
                 const double up = kHeightWeight * (base.y - stand.height) / height;
                 room = std::min(room, off * off + up * up);
             }
-            if (room <= most) continue;
-            most = room;
-            azimuth = angle;
+            directions.emplace_back(room, angle);
         }
+        std::stable_sort(directions.begin(), directions.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
         const Limb* like = nullptr;
         for (size_t b = 0; b < drawn; b++)
             if (!like ||
@@ -200,13 +201,17 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
         for (DVec2& p : profile.points)
             p *= DVec2(wider, higher);
         const double sideways = kSideways * random.uniform(-1.0, 1.0);
-        double scale = kLongest;
-        while (scale >= kShortest && !fits(standing(profile, base, azimuth, scale, sideways), crown, middle))
-            scale *= kFitStep;
-        if (scale < kShortest) continue;
-        branch.points = standing(profile, base, azimuth, scale, sideways);
+        for (size_t d = 0; d < directions.size() && branch.points.empty(); d++) {
+            const double azimuth = directions[d].second;
+            for (double scale = kLongest; scale >= kShortest && branch.points.empty(); scale *= kFitStep) {
+                std::vector<DVec3> points = standing(profile, base, azimuth, scale, sideways);
+                if (!fits(points, crown, middle)) continue;
+                branch.points = std::move(points);
+                stands.push_back({azimuth, base.y});
+            }
+        }
+        if (branch.points.empty()) continue;
         branch.radii = radii_of(branch, limbs);
-        stands.push_back({azimuth, base.y});
         limbs.branches.push_back(std::move(branch));
     }
 }
