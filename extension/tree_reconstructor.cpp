@@ -318,7 +318,10 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::save_html_report, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("save_marker", "path", "id", "side"), &TreeReconstructor::save_marker,
                          DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
-    ClassDB::bind_method(D_METHOD("sketch_tree", "sketch"), &TreeReconstructor::sketch_tree);
+    ClassDB::bind_method(D_METHOD("sketch_tree", "sketch", "twigs_of"), &TreeReconstructor::sketch_tree,
+                         DEFVAL(Variant()));
+    ClassDB::bind_method(D_METHOD("sketch_with_twigs", "sketch", "from", "title"),
+                         &TreeReconstructor::sketch_with_twigs, DEFVAL(""));
     ClassDB::bind_method(D_METHOD("load_sketch", "path"), &TreeReconstructor::load_sketch);
     ClassDB::bind_method(D_METHOD("save_sketch", "sketch", "path"), &TreeReconstructor::save_sketch);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_sketch_species"),

@@ -167,6 +167,16 @@ void TreeSketch::set_seed(int64_t p_seed) {
     emit_changed();
 }
 
+void TreeSketch::set_twigs(const String& p_twigs) {
+    twigs_ = p_twigs;
+    emit_changed();
+}
+
+void TreeSketch::set_leaf_rule(const Ref<LeafRule>& p_rule) {
+    leaf_rule_ = p_rule;
+    emit_changed();
+}
+
 void TreeSketch::_bind_methods() {
     ClassDB::bind_method(D_METHOD("set_strokes", "strokes"), &TreeSketch::set_strokes);
     ClassDB::bind_method(D_METHOD("get_strokes"), &TreeSketch::get_strokes);
@@ -186,6 +196,10 @@ void TreeSketch::_bind_methods() {
     ClassDB::bind_method(D_METHOD("get_crown"), &TreeSketch::get_crown);
     ClassDB::bind_method(D_METHOD("set_seed", "seed"), &TreeSketch::set_seed);
     ClassDB::bind_method(D_METHOD("get_seed"), &TreeSketch::get_seed);
+    ClassDB::bind_method(D_METHOD("set_twigs", "twigs"), &TreeSketch::set_twigs);
+    ClassDB::bind_method(D_METHOD("get_twigs"), &TreeSketch::get_twigs);
+    ClassDB::bind_method(D_METHOD("set_leaf_rule", "rule"), &TreeSketch::set_leaf_rule);
+    ClassDB::bind_method(D_METHOD("get_leaf_rule"), &TreeSketch::get_leaf_rule);
     ClassDB::bind_method(D_METHOD("add_stroke", "points", "pressure", "role"), &TreeSketch::add_stroke,
                          DEFVAL(PackedFloat32Array()), DEFVAL(int(ROLE_AUTO)));
     ClassDB::bind_method(D_METHOD("remove_stroke", "id"), &TreeSketch::remove_stroke);
@@ -209,6 +223,10 @@ void TreeSketch::_bind_methods() {
     ADD_PROPERTY(PropertyInfo(Variant::INT, "crown", PROPERTY_HINT_ENUM, "Sections,Alpha Shapes"),
                  "set_crown", "get_crown");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "seed"), "set_seed", "get_seed");
+    ADD_PROPERTY(PropertyInfo(Variant::STRING, "twigs", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
+                 "set_twigs", "get_twigs");
+    ADD_PROPERTY(PropertyInfo(Variant::OBJECT, "leaf_rule", PROPERTY_HINT_RESOURCE_TYPE, "LeafRule"),
+                 "set_leaf_rule", "get_leaf_rule");
     BIND_ENUM_CONSTANT(ROLE_AUTO);
     BIND_ENUM_CONSTANT(ROLE_OUTLINE);
     BIND_ENUM_CONSTANT(ROLE_TRUNK);

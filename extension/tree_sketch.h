@@ -6,6 +6,8 @@
 #include <godot_cpp/variant/packed_vector2_array.hpp>
 #include <godot_cpp/variant/typed_array.hpp>
 
+#include "leaf_rule.h"
+
 // Strokes that a tree is made of, with what else decides it. Data alone: TreeReconstructor makes the tree, in
 // the editor; a game that loads such a tree loads these along.
 class TreeSketch : public godot::Resource {
@@ -35,6 +37,11 @@ class TreeSketch : public godot::Resource {
     Crown get_crown() const { return crown_; }
     void set_seed(int64_t p_seed);
     int64_t get_seed() const { return seed_; }
+    // Twigs of one's own as JSON (src/sketch/twig_stock.h); empty: the species'.
+    void set_twigs(const godot::String& p_twigs);
+    godot::String get_twigs() const { return twigs_; }
+    void set_leaf_rule(const godot::Ref<LeafRule>& p_rule);
+    godot::Ref<LeafRule> get_leaf_rule() const { return leaf_rule_; }
 
     // The id of the new stroke, or 0 where it has no points.
     int64_t add_stroke(const godot::PackedVector2Array& p_points,
@@ -62,6 +69,8 @@ class TreeSketch : public godot::Resource {
     Depth depth_ = DEPTH_TRUE;
     Crown crown_ = CROWN_SECTIONS;
     int64_t seed_ = 1;
+    godot::String twigs_;
+    godot::Ref<LeafRule> leaf_rule_;
 };
 
 VARIANT_ENUM_CAST(TreeSketch::Role);

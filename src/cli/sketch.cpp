@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 #include "cli/commands.h"
@@ -8,8 +10,10 @@
 #include "pipeline/sketch_report.h"
 #include "sketch/read_limb.h"
 #include "sketch/read_sketch.h"
+#include "sketch/read_twigs.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
+#include "sketch/twig_stock.h"
 #include "tree/measure.h"
 
 namespace treerec {
@@ -23,6 +27,11 @@ std::string species_list() {
     return names;
 }
 
+std::string file_stem(const std::string& path) {
+    const std::u8string stem = path_of(path).stem().u8string();
+    return {stem.begin(), stem.end()};
+}
+
 std::string one_of(const Arguments& arguments, const std::string& option,
                    const std::vector<std::string>& words) {
     const std::string word = arguments.text(option, words[0]);
@@ -32,6 +41,18 @@ std::string one_of(const Arguments& arguments, const std::string& option,
         list += (list.empty() ? "" : ", ") + known;
     }
     throw UsageError(option + " is one of " + list + ", not '" + word + "'.");
+}
+
+TwigStock twigs_from(const Arguments& arguments) {
+    if (arguments.has("--twigs-of")) {
+        const std::string path = arguments.text("--twigs-of", "");
+        return stock_of_tree(skeleton_from(arguments, path), file_stem(path));
+    }
+    std::vector<std::string> strings;
+    for (const std::string& path : arguments.all("--twigs"))
+        for (std::string& string : read_twig_strings(path))
+            strings.push_back(std::move(string));
+    return stock_of_twigs(strings, file_stem(arguments.all("--twigs")[0]));
 }
 
 bool wants_sketch(const std::string& path) {
@@ -54,6 +75,11 @@ const Command& sketch_command() {
          {"--species", "NAME",
           "whose twigs, leaves and bark it gets: " + species_list() +
               "\n(default: as the sketch says, or maple)"},
+         {"--twigs-of", "TREE",
+          "a tree, as one of 'treerec reconstruct', whose own twigs it gets, at their angles and as thick as "
+          "there;\n--species is then any kind of leaves (see 'treerec info')"},
+         {"--twigs", "FILE",
+          "a library of twigs (.tres of Godot, saved as text) or one as an L-string; again for more", true},
          {"--height", "M", "metres (default: as the sketch says, or what is usual for the species)"},
          {"--trunk-radius", "M", "metres at the foot (default: as drawn with two lines, or height / 40)"},
          {"--seed", "N", "what is drawn by chance (default: the sketch's, or 1)"},
@@ -69,8 +95,10 @@ const Command& sketch_command() {
          {"--scan", "SCAN",
           "its point cloud, with --onto: tells how far away a limb is, and how true the tree"},
          {"--log", "FILE", "with --onto: writes the limbs as edits, to be replayed ('treerec edit')"},
-         {"--up", "AXIS", "with --onto: the axis to the sky of a skeleton that does not say (default z)"},
-         {"--tree", "N", "with --onto: which tree of a file with several (default: the largest)"},
+         {"--up", "AXIS",
+          "with --onto or --twigs-of: the axis to the sky of a skeleton that does not say (default z)"},
+         {"--tree", "N",
+          "with --onto or --twigs-of: which tree of a file with several (default: the largest)"},
          {"--quiet", "", "print errors only"}},
         "STROKES: our own .json, an .svg of paths, or a .png of a drawing: a crown's outline, a trunk, and "
         "its branches, in any order.\n"
@@ -87,7 +115,7 @@ void run_sketch(const std::vector<std::string>& words) {
         throw UsageError("'" + positional[1] + "' is too much; name files to write with -o.");
     if (!arguments.has("--onto"))
         for (const char* name : {"--scan", "--log", "--up", "--tree"})
-            if (arguments.has(name))
+            if (arguments.has(name) && !(arguments.has("--twigs-of") && name[2] != 's' && name[2] != 'l'))
                 throw UsageError(std::string(name) +
                                  " is for limbs: name the tree that gets them with --onto.");
     const std::vector<std::string>& outs = arguments.all("-o");
@@ -95,18 +123,25 @@ void run_sketch(const std::vector<std::string>& words) {
     if (outs.empty() && !report)
         throw UsageError("Where to? Name at least one file to write with -o, or ask for --report.");
     if (arguments.has("--onto")) return run_sketch_onto(arguments);
-    SketchOptions options;
-    options.depth =
-        one_of(arguments, "--depth", {"true", "paper"}) == "paper" ? SketchDepth::kPaper : SketchDepth::kTrue;
-    options.crown = one_of(arguments, "--crown", {"sections", "alpha"}) == "alpha" ? SketchCrown::kAlpha
-                                                                                   : SketchCrown::kSections;
-    options.trunk_radius = arguments.number("--trunk-radius", 0.0, 0.001, 20.0);
-    options.density = arguments.number("--density", 1.0, 0.0, 4.0);
+    const bool own_twigs = arguments.has("--twigs-of") || arguments.has("--twigs");
+    if (arguments.has("--twigs-of") && arguments.has("--twigs"))
+        throw UsageError("--twigs-of and --twigs both tell whose twigs it gets; name one of them.");
+    // What is wrong with these is told before anything is read.
+    const bool paper = one_of(arguments, "--depth", {"true", "paper"}) == "paper";
+    const bool alpha = one_of(arguments, "--crown", {"sections", "alpha"}) == "alpha";
+    const double radius = arguments.number("--trunk-radius", 0.0, 0.001, 20.0);
+    const double density = arguments.number("--density", 1.0, 0.0, 4.0);
     ExportOptions exports;
     exports.levels = levels_from(arguments);
     exports.pictures_beside = arguments.has("--pictures-beside");
     try {
-        if (arguments.has("--species")) sketch_species(arguments.text("--species", ""));
+        // With twigs of one's own, which the sketch may bring along, any kind of leaves will do.
+        const std::vector<std::string> presets = leaf_preset_names();
+        const std::string named = arguments.text("--species", "maple");
+        if (own_twigs)
+            leaf_preset(named);
+        else if (std::find(presets.begin(), presets.end(), named) == presets.end())
+            sketch_species(named);
         for (const std::string& out : outs)
             if (wants_sketch(out))
                 require_writable(out);
@@ -121,8 +156,19 @@ void run_sketch(const std::vector<std::string>& words) {
     progress.update(0.0, "Reading");
     if (wants_sketch(positional[0]) && is_limb_file(positional[0]))
         throw Error("'" + positional[0] + "' has limbs to be drawn onto a tree: name the tree with --onto.");
-    Sketch sketch = read_sketch(positional[0]);
-    if (arguments.has("--species")) sketch.species = arguments.text("--species", "");
+    SketchOptions options;
+    Sketch sketch = read_sketch(positional[0], &options);
+    if (arguments.has("--depth")) options.depth = paper ? SketchDepth::kPaper : SketchDepth::kTrue;
+    if (arguments.has("--crown")) options.crown = alpha ? SketchCrown::kAlpha : SketchCrown::kSections;
+    if (arguments.has("--trunk-radius")) options.trunk_radius = radius;
+    if (arguments.has("--density")) options.density = density;
+    if (arguments.has("--species")) {
+        sketch.species = arguments.text("--species", "");
+        // A species of ours has its own.
+        const std::vector<std::string> known = sketch_species_names();
+        if (std::find(known.begin(), known.end(), sketch.species) != known.end()) sketch.twigs = nullptr;
+    }
+    if (own_twigs) sketch.twigs = std::make_shared<const TwigStock>(twigs_from(arguments));
     sketch.height = arguments.number("--height", sketch.height, 0.05, 200.0);
     sketch.seed = arguments.whole("--seed", sketch.seed, 0, UINT64_MAX);
     progress.update(0.1, "Sketch");
@@ -135,7 +181,7 @@ void run_sketch(const std::vector<std::string>& words) {
         progress.check();
         progress.update(0.3 + 0.6 * static_cast<double>(i) / static_cast<double>(outs.size()), "Writing");
         if (wants_sketch(outs[i]))
-            write_file(outs[i], sketch_json(sketch));
+            write_file(outs[i], sketch_json(sketch, options));
         else
             exporter.write(outs[i]);
     }

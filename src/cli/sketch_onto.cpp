@@ -71,7 +71,8 @@ void run_sketch_onto(const Arguments& arguments) {
     const std::vector<std::string> none;
     const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
     const bool report = arguments.has("--report");
-    for (const char* name : {"--height", "--trunk-radius", "--depth", "--crown", "--density"})
+    for (const char* name :
+         {"--height", "--trunk-radius", "--depth", "--crown", "--density", "--twigs-of", "--twigs"})
         if (arguments.has(name))
             throw UsageError(std::string(name) + " is for a sketch of a whole tree, not for --onto.");
     ExportOptions exports;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "geometry/portable_math.h"
 #include "sketch/fill.h"
@@ -16,14 +17,22 @@ constexpr double kCutShare = 0.5;  // of a twig that may be cut away
 }  // namespace
 
 std::optional<ChosenTwig> choose_twig(const SketchSpecies& species, double length, double radius,
-                                      double growth, bool fewer) {
-    // Equation 4, of those that fit the longest.
-    for (size_t i = species.twigs.size(); i-- > 0;) {
+                                      double growth, bool fewer, uint64_t pick) {
+    const auto suits = [&](size_t i) {  // equation 4
         const double off = 100.0 * (growth * species.twigs[i].length - length);
         const double thicker = 100.0 * (growth * species.twigs[i].radius - radius);
-        if (off < 0.0 && thicker < 0.0 && off * off < kLengthBound && thicker * thicker < kRadiusBound)
-            return ChosenTwig{i, growth};
-    }
+        return off < 0.0 && thicker < 0.0 && off * off < kLengthBound && thicker * thicker < kRadiusBound;
+    };
+    const auto one_of = [&](size_t like, auto&& fits) {
+        std::vector<size_t> alike;
+        for (size_t i = 0; i < species.twigs.size(); i++)
+            if (i == like || (species.twigs[i].size == species.twigs[like].size && fits(i)))
+                alike.push_back(i);
+        return alike[pick % alike.size()];
+    };
+    // Of those that fit the longest.
+    for (size_t i = species.twigs.size(); i-- > 0;)
+        if (suits(i)) return ChosenTwig{one_of(i, suits), growth};
     std::optional<ChosenTwig> best;
     double nearest = 0.0;
     for (size_t i = 0; i < species.twigs.size(); i++) {
@@ -32,8 +41,12 @@ std::optional<ChosenTwig> choose_twig(const SketchSpecies& species, double lengt
         const double off = std::abs(portable::log(fits));
         if (best && off >= nearest) continue;
         nearest = off;
-        best = ChosenTwig{i, growth * std::clamp(fits, kLeastScale, kMostScale)};
+        best = ChosenTwig{i, 0.0};
     }
+    if (!best) return best;
+    const auto fit = [&](size_t i) { return length / (growth * species.twigs[i].length); };
+    best->twig = one_of(best->twig, [&](size_t i) { return fit(i) >= kLeastScale && fit(i) <= kMostScale; });
+    best->scale = growth * std::clamp(fit(best->twig), kLeastScale, kMostScale);
     return best;
 }
 

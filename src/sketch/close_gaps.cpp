@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "geometry/segment.h"
 #include "sketch/crown_leaves.h"
@@ -26,6 +27,7 @@ constexpr int kMostAtAPlace = 3;
 constexpr double kPlace = 0.3;
 // Of the host, at the crown's foot, as foliage/snags.cpp has it.
 constexpr double kLowSnagRadii = 12.0, kLowShare = 0.1;
+constexpr double kSnagRadii = 6.0;  // the same anywhere; ours are slender enough
 
 enum class View { kFront, kSide };
 
@@ -123,7 +125,8 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     const auto bears_no_leaves = [&](const Limb& limb, double along, double length) {
         const double radius = value_along(limb.points, limb.radii, along);
         const bool is_low = place_along(limb.points, along).y < low;
-        return is_low && radius > 2.0 * rules.maximum_radius && length < kLowSnagRadii * radius;
+        const double least = is_low ? kLowSnagRadii : species.own ? kSnagRadii : 0.0;
+        return radius > 2.0 * rules.maximum_radius && length < least * radius;
     };
     for (const View view : {View::kFront, View::kSide}) {
         Cover cover(crown, view, cell, kLeafCover * leaf, margin);
@@ -166,7 +169,18 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             }
             if (least >= 1e300) continue;
             const Limb& limb = filling.limbs[place.limb].limb;
-            const DVec3 from = place_along(limb.points, place.along);
+            DVec3 from = place_along(limb.points, place.along);
+            if (species.own) {
+                // Lower on the limb, so that it leaves it at an angle of its kind and still gets there.
+                const double off = species.angle_at(random.uniform()) * kPi / 180.0;
+                const double back = std::sqrt(least) * portable::cos(off) / portable::sin(off);
+                const double along = std::clamp(place.along - back, 0.0, length_of(limb.points));
+                const DVec3 lower = place_along(limb.points, along);
+                if (crown.contains(lower) && !bears_no_leaves(limb, along, std::sqrt(least))) {
+                    place.along = along;
+                    from = lower;
+                }
+            }
             // To where it is seen, in the depth of the wood that it grows from.
             DVec3 to =
                 view == View::kFront ? DVec3(target.x, target.y, from.z) : DVec3(from.x, target.y, target.x);
@@ -181,7 +195,8 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             const double shortest = 0.36 * growth * species.twigs.front().length;
             const double longest = 1.3 * growth * species.twigs.back().length;
             const auto chosen =
-                choose_twig(species, std::clamp(room, shortest, longest), radius, growth, true);
+                choose_twig(species, std::clamp(room, shortest, longest), radius, growth, true,
+                            hash_seed(limb.seed, 50000 + filling.twigs.size()));
             if (!chosen) continue;
             place.twig = chosen->twig;
             place.scale = chosen->scale;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "tree/branches.h"
 
 namespace treerec {
 
@@ -10,8 +13,8 @@ namespace {
 // Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
 // many times what the rules allow, since beyond that fewer and larger ones stand.
 constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
-// The share of a twig's wood that is near enough to a tip to bear leaves.
-constexpr double kBearing = 0.6;
+// The share of a twig's wood that is near enough to a tip to bear leaves, of our species and at least.
+constexpr double kBearing = 0.6, kLeastBearing = 0.25;
 // Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
 constexpr double kStandsOut = 0.42;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
@@ -43,10 +46,28 @@ double leaf_margin(const CrownSections& crown, const LeafRules& rules, double he
            rules.petiole;
 }
 
-double wanted_wood(const CrownSections& crown, const LeafRules& rules, double height) {
+double bearing_share(const SketchSpecies& species, double height) {
+    if (!species.own) return kBearing;
+    const double reach = species.leaves.twig_length * shrunk(height) / twig_growth(species, height);
+    double all = 0.0, bearing = 0.0;
+    for (const SpeciesTwig& twig : species.twigs) {
+        const std::vector<double> to_tip = longest_paths(twig.scion);
+        for (const NodeId id : twig.scion.depth_first()) {
+            const Node& node = twig.scion.node(id);
+            if (node.parent == kNoNode) continue;
+            const double length = glm::distance(node.position, twig.scion.node(node.parent).position);
+            all += length;
+            bearing += std::clamp(reach - to_tip[static_cast<size_t>(id)], 0.0, length);
+        }
+    }
+    return all > 0.0 ? std::max(bearing / all, kLeastBearing) : kBearing;
+}
+
+double wanted_wood(const CrownSections& crown, const SketchSpecies& species, double height) {
+    const LeafRules& rules = species.leaves;
     const double count =
         std::min(covering_leaves(crown, rules, height), kOfMostLeaves * rules.maximum_leaves);
-    return count * rules.internode * shrunk(height) / kBearing;
+    return count * rules.internode * shrunk(height) / bearing_share(species, height);
 }
 
 }  // namespace treerec

@@ -17,7 +17,9 @@ double shrunk(double height);
 double leaf_length(const LeafRules& rules, double height);
 // Metres by which leaves stand out from wood: so far twigs stay from the crown's surface.
 double leaf_margin(const CrownSections& crown, const LeafRules& rules, double height);
-// Metres of twigs that bear as many leaves as are to stand in the crown.
-double wanted_wood(const CrownSections& crown, const LeafRules& rules, double height);
+// The share of the species' twigs that is near enough to a tip to bear leaves, 0..1.
+double bearing_share(const SketchSpecies& species, double height);
+// Metres of the species' twigs that bear as many leaves as are to stand in the crown.
+double wanted_wood(const CrownSections& crown, const SketchSpecies& species, double height);
 
 }  // namespace treerec

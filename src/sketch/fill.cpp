@@ -19,7 +19,6 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLeastAngle = 30.0, kMostAngle = 70.0;  // degrees off the limb (papers/003, 4.2, step 2)
 constexpr double kGolden = 137.508 * kPi / 180.0;
 // Between places of one twig each, in the middle twig's lengths, at least; and over the edge of the cube that
 // each would have if the leaves that a tree may bear were shared out in its crown.
@@ -39,6 +38,7 @@ constexpr size_t kMostTwigs = 4000;
 struct Filler {
     const CrownSections& crown;
     const SketchSpecies& species;
+    const std::optional<WoodTaper>& taper;  // of this tree's height
     const SketchOptions& options;
     const Progress* progress;
     double growth;
@@ -80,7 +80,9 @@ struct Filler {
         }
         if (branch.limb.points.size() < 3) return;
         const double radius = kBranchThickness * value_along(host.points, host.radii, along);
-        branch.limb.radii = tapered(branch.limb.points, radius, kLeastRadius);
+        branch.limb.radii = taper ? taper->branches.radii_along(branch.limb.points, 1.0,
+                                                                std::max(radius, kLeastRadius))
+                                  : tapered(branch.limb.points, radius, kLeastRadius);
         const size_t cell = cell_of[parent];
         filling.limbs.push_back(std::move(branch));
         cell_of.push_back(cell);
@@ -104,14 +106,15 @@ struct Filler {
         for (size_t i = 0; i < places && options.density > 0.0; i++) {
             const double group = (length - bare) / static_cast<double>(places);
             const double along = bare + group * (static_cast<double>(i) + random.uniform(0.15, 0.85));
+            const DMat3 here = species.own ? frame_about(direction_along(limb.points, along)) : frame;
             for (int k = 0; k < several; k++) {
-                const double off = random.uniform(kLeastAngle, kMostAngle) * kPi / 180.0;
+                const double off = species.angle_at(random.uniform()) * kPi / 180.0;
                 const double roll = printed() ? random.uniform(0.0, 2.0 * kPi)
                                               : first + kGolden * static_cast<double>(i) +
                                                     2.0 * kPi * k / several + random.uniform(-0.3, 0.3);
                 const DVec3 way =
-                    frame[1] * portable::cos(off) +
-                    (frame[0] * portable::cos(roll) + frame[2] * portable::sin(roll)) * portable::sin(off);
+                    here[1] * portable::cos(off) +
+                    (here[0] * portable::cos(roll) + here[2] * portable::sin(roll)) * portable::sin(off);
                 add(bound, index, along, way, random.uniform(0.0, 2.0 * kPi), depth);
             }
         }
@@ -134,7 +137,8 @@ struct Filler {
         }
         const double radius = value_along(limb.points, limb.radii, along);
         const auto chosen =
-            choose_twig(species, printed() ? room : std::min(room, longest), radius, growth, !printed());
+            choose_twig(species, printed() ? room : std::min(room, longest), radius, growth, !printed(),
+                        hash_seed(limb.seed, 40000 + filling.twigs.size()));
         if (chosen)
             filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
         else
@@ -194,23 +198,26 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
                    double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
                    const Progress* progress) {
     const bool printed = options.depth == SketchDepth::kPaper;
-    const LeafRules rules = leaf_preset(species.name);
+    const LeafRules& rules = species.leaves;
     const double growth = printed ? 1.0 : twig_growth(species, height);
     const double middle = species.twigs[species.twigs.size() / 2].length;
     const Tree& usual = species.twigs[species.twigs.size() / 2].scion;
     const double wood = subtree_lengths(usual)[static_cast<size_t>(usual.root())];
-    const double wanted = options.density * wanted_wood(crown, rules, height);
+    const double wanted = options.density * wanted_wood(crown, species, height);
     const double count = std::max(kEven * wanted / (growth * wood), 1.0);
+    // As near as on the tree that its twigs are from, but no farther than a twig reaches.
+    const double own_step = growth * std::min(species.internode, middle);
     Filler filler{crown,
                   species,
+                  limbs.taper,
                   options,
                   progress,
                   growth,
                   printed ? 0.0 : leaf_margin(crown, rules, height),
                   metres_per_pixel,
                   printed ? kSpacing * middle
-                          : std::max(kSpacing * growth * middle,
-                                     kShareSpacing * portable::cbrt(crown.volume() / count)),
+                          : std::max({kSpacing * growth * middle, own_step,
+                                      kShareSpacing * portable::cbrt(crown.volume() / count)}),
                   {}};
     filler.filling.limbs.push_back({limbs.trunk, -1});
     filler.cell_of.push_back(0);

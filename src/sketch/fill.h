@@ -26,7 +26,7 @@ struct Filling {
     size_t bare = 0;  // places in the crown that no twig is short enough for
 };
 
-// kSections (default): twigs stand evenly around each limb, by the species' arrangement, 30 to 70 degrees off
+// kSections (default): twigs stand evenly around each limb, by the species' arrangement and angles off
 //     its direction; a place whose room is longer than any twig gets a branch with twigs of its own. Then
 //     what the front view would still see through gets a twig from the limb nearest to it.
 // As printed (options.depth is kPaper): one twig at a random node of each group of nodes, in a random
@@ -37,12 +37,13 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
 
 // The twig for a place with so much room, in metres: its place in the species' twigs and its scale; nothing
 // where none fits. growth: of all twigs (twig_growth()). fewer: whether one that is too long even at .7 may
-// be taken if it is no more than twice too long, since what leaves the crown is cut.
+// be taken if it is no more than twice too long, since what leaves the crown is cut. pick: of those of one
+// size that fit alike (SpeciesTwig::size), one is taken by this number, any.
 struct ChosenTwig {
     size_t twig;
     double scale;
 };
 std::optional<ChosenTwig> choose_twig(const SketchSpecies& species, double length, double radius,
-                                      double growth, bool fewer);
+                                      double growth, bool fewer, uint64_t pick = 0);
 
 }  // namespace treerec

@@ -122,14 +122,19 @@ Limb flat_limb(const DrawnLine& line, const Sketch& sketch, const CanvasPlace& p
 std::vector<double> radii_of(const Limb& branch, const Limbs& limbs) {
     const Limb& host = branch.parent < 0 ? limbs.trunk : limbs.branches[static_cast<size_t>(branch.parent)];
     const double there = value_along(host.points, host.radii, branch.along);
+    if (limbs.taper)
+        return limbs.taper->branches.radii_along(branch.points, 1.0,
+                                                 std::max(kThickestBranch * there, kLeastRadius));
     const double fair = limbs.trunk.radii[0] * length_of(branch.points) / length_of(limbs.trunk.points);
     return tapered(branch.points, std::clamp(fair, kThinnestBranch * there, kThickestBranch * there),
                    kLeastRadius);
 }
 
 Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
-           const SketchOptions& options, std::vector<std::string>& remarks) {
+           const SketchOptions& options, const std::optional<WoodTaper>& taper,
+           std::vector<std::string>& remarks) {
     Limbs limbs;
+    limbs.taper = taper;
     const std::vector<DVec2>& line = drawn.trunk.points;
     const std::vector<double>& radii = drawn.trunk.radii;
     const std::vector<size_t> joints = joints_of(drawn);
@@ -141,9 +146,11 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
     limbs.trunk.seed = hash_seed(sketch.seed, 0);
     const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
                         : !radii.empty()           ? radii[0] * place.scale
+                        : taper                    ? taper->foot
                                                    : (crown.top() - limbs.trunk.points[0].y) / 40.0;
     const double least = std::max(foot / 10.0, kLeastRadius);
-    limbs.trunk.radii = tapered(limbs.trunk.points, foot, least);
+    limbs.trunk.radii = taper ? taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
+                              : tapered(limbs.trunk.points, foot, least);
     if (!radii.empty()) {
         // As drawn, in proportion to the foot's, and no thicker above.
         double before = foot;

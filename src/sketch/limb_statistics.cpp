@@ -6,6 +6,7 @@
 #include "edit/scion.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
+#include "sketch/limbs.h"
 
 namespace treerec {
 
@@ -44,6 +45,24 @@ double RadiusLaw::base_radius(double length) const {
 }
 
 double RadiusLaw::share_at(double share) const {
+    return profile_at(profile, share);
+}
+
+std::vector<double> RadiusLaw::radii_along(const std::vector<DVec3>& points, double stouter,
+                                           double most) const {
+    const double length = length_of(points);
+    const double base = std::min(stouter * base_radius(length), most);
+    std::vector<double> radii;
+    double along = 0.0;
+    for (size_t i = 0; i < points.size(); i++) {
+        if (i > 0) along += glm::distance(points[i], points[i - 1]);
+        const double share = length > 0.0 ? along / length : 1.0;
+        radii.push_back(std::min(std::max(base * share_at(share), least), most));
+    }
+    return radii;
+}
+
+double profile_at(const std::array<double, 11>& profile, double share) {
     const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(profile.size() - 1);
     const size_t i = std::min(static_cast<size_t>(at), profile.size() - 2);
     return profile[i] + (profile[i + 1] - profile[i]) * (at - static_cast<double>(i));
@@ -125,6 +144,32 @@ double LimbStatistics::base_radius(int32_t branch) const {
     return tree_.node(list_.nodes_of(list_.branches[static_cast<size_t>(branch)])[0]).radius;
 }
 
+std::array<double, 11> LimbStatistics::profile(int32_t index) const {
+    const Branch& branch = list_.branches[static_cast<size_t>(index)];
+    const std::span<const NodeId> nodes = list_.nodes_of(branch);
+    const double base = base_radius(index);
+    std::array<double, 11> shares{};
+    double along = 0.0, radius = base;
+    size_t next = 0;
+    // The trunk's chain begins at its first own node.
+    NodeId before = branch.attach == kNoNode ? nodes[0] : branch.attach;
+    for (const NodeId id : nodes) {
+        const double step = glm::distance(tree_.node(id).position, tree_.node(before).position);
+        const double until = tree_.node(id).radius;
+        while (next < 11 && 0.1 * static_cast<double>(next) * branch.length <= along + step) {
+            const double part =
+                step > 0.0 ? (0.1 * static_cast<double>(next) * branch.length - along) / step : 1.0;
+            shares[next++] = (radius + (until - radius) * part) / base;
+        }
+        along += step;
+        radius = until;
+        before = id;
+    }
+    for (; next < 11; next++)
+        shares[next] = radius / base;
+    return shares;
+}
+
 RadiusLaw LimbStatistics::radius_law(int32_t order) const {
     RadiusLaw law;
     std::vector<double> tips;
@@ -158,23 +203,9 @@ RadiusLaw LimbStatistics::radius_law(int32_t order) const {
         const double base = base_radius(i);
         places.emplace_back(portable::log(branch.length), portable::log(base));
         if (own_profile && branch.order != order) continue;
-        double along = 0.0, radius = base;
-        size_t next = 0;
-        NodeId before = branch.attach;
-        for (const NodeId id : list_.nodes_of(branch)) {
-            const double step = glm::distance(tree_.node(id).position, tree_.node(before).position);
-            const double until = tree_.node(id).radius;
-            while (next < 11 && 0.1 * static_cast<double>(next) * branch.length <= along + step) {
-                const double part =
-                    step > 0.0 ? (0.1 * static_cast<double>(next) * branch.length - along) / step : 1.0;
-                shares[next++].push_back((radius + (until - radius) * part) / base);
-            }
-            along += step;
-            radius = until;
-            before = id;
-        }
-        for (; next < 11; next++)
-            shares[next].push_back(radius / base);
+        const std::array<double, 11> own = profile(i);
+        for (size_t k = 0; k < own.size(); k++)
+            shares[k].push_back(own[k]);
     }
     std::vector<double> slopes;
     for (size_t a = 0; a < places.size(); a++)

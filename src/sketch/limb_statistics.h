@@ -39,7 +39,13 @@ struct RadiusLaw {
 
     double base_radius(double length) const;
     double share_at(double share) const;
+    // At each point of a limb's line, metres: `stouter` times what the law says of its length, tapering by the
+    // profile, but from `least` to `most`.
+    std::vector<double> radii_along(const std::vector<DVec3>& points, double stouter, double most) const;
 };
+
+// The value at `share` (0..1) of a limb, between those at its tenths.
+double profile_at(const std::array<double, 11>& profile, double share);
 
 class LimbStatistics {
   public:
@@ -60,6 +66,8 @@ class LimbStatistics {
     // two. Where these have too few side branches, those of that order; then all but the trunk.
     std::vector<int32_t> kindred(int32_t order, double base_radius) const;
     double base_radius(int32_t branch) const;
+    // Radius over the base radius at 0, 0.1 .. 1 of the branch's length, as it was measured.
+    std::array<double, 11> profile(int32_t branch) const;
 
   private:
     std::vector<SideBranch> measure_sides(int32_t branch, const std::vector<int32_t>& children) const;

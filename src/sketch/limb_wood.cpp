@@ -69,17 +69,12 @@ std::vector<double> internodes(std::vector<double> known, double room, Random& r
 }  // namespace
 
 void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double stouter, double host_radius) {
-    double length = 0.0;
-    for (size_t i = 1; i < axis.size(); i++)
-        length += glm::distance(axis[i].position, axis[i - 1].position);
-    const double most = kJointRatio * host_radius;
-    const double base = std::min(stouter * law.base_radius(length), most);
-    double along = 0.0;
-    for (size_t i = 0; i < axis.size(); i++) {
-        if (i > 0) along += glm::distance(axis[i].position, axis[i - 1].position);
-        const double share = length > 0.0 ? along / length : 1.0;
-        axis[i].radius = std::min(std::max(base * law.share_at(share), law.least), most);
-    }
+    std::vector<DVec3> line;
+    for (const LimbPlace& place : axis)
+        line.push_back(place.position);
+    const std::vector<double> radii = law.radii_along(line, stouter, kJointRatio * host_radius);
+    for (size_t i = 0; i < axis.size(); i++)
+        axis[i].radius = radii[i];
 }
 
 std::vector<TwigOnLimb> draw_twigs(const LimbStatistics& statistics, int32_t order,

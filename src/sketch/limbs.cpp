@@ -33,6 +33,11 @@ DVec3 place_along(const std::vector<DVec3>& points, double along) {
     return points[i] + (points[i + 1] - points[i]) * part;
 }
 
+DVec3 direction_along(const std::vector<DVec3>& points, double along) {
+    const size_t i = find_along(points, along).first;
+    return normalized_or(points[i + 1] - points[i], DVec3(0.0, 1.0, 0.0));
+}
+
 double value_along(const std::vector<DVec3>& points, const std::vector<double>& values, double along) {
     const auto [i, part] = find_along(points, along);
     return values[i] + (values[i + 1] - values[i]) * part;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geometry/vec.h"
+#include "sketch/species.h"
 
 namespace treerec {
 
@@ -25,12 +27,15 @@ struct Limb {
 struct Limbs {
     Limb trunk;
     std::vector<Limb> branches;
+    std::optional<WoodTaper> taper;  // of this tree's height; nothing: equation 2
 };
 
 double length_of(const std::vector<DVec3>& points);
 // The place at so many metres along the line; its ends beyond them.
 DVec3 place_along(const std::vector<DVec3>& points, double along);
-// The same for the values at its points.
+// Of the line there, from its tail to its tip; unit.
+DVec3 direction_along(const std::vector<DVec3>& points, double along);
+// place_along() for the values at its points.
 double value_along(const std::vector<DVec3>& points, const std::vector<double>& values, double along);
 // The place on the line that is nearest to p: metres along it.
 double nearest_along(const std::vector<DVec3>& points, const DVec3& p);

@@ -39,7 +39,7 @@ SketchFile kind_of(std::string_view bytes, const std::string& who) {
 
 }  // namespace
 
-Sketch read_sketch(const std::string& path) {
+Sketch read_sketch(const std::string& path, SketchOptions* options) {
     const std::string who = "'" + path + "'";
     const FileBytes file = read_file(path);
     std::string_view bytes = file.view();
@@ -52,7 +52,7 @@ Sketch read_sketch(const std::string& path) {
         case SketchFile::kJson:
             break;
     }
-    return parse_sketch_json(bytes, who);
+    return parse_sketch_json(bytes, who, options);
 }
 
 }  // namespace treerec

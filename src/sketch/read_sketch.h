@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "sketch/strokes.h"
+#include "sketch/sketch.h"
 
 namespace treerec {
 
@@ -12,10 +12,12 @@ namespace treerec {
 // pixels, upright; its strokes are the drawing, in any colours on paper of another, thinned to lines (Guo and
 // Hall 1989), at a junction the straightest way on: points at even distances, 0.004 of its height or less.
 // Throws Error, naming the file and what is wrong.
-Sketch read_sketch(const std::string& path);
+// options: gets what a JSON tells of them; the rest stays.
+Sketch read_sketch(const std::string& path, SketchOptions* options = nullptr);
 
 // Strokes are numbered in all that these give. who: begins a sentence about it, "'strokes.json'".
-Sketch parse_sketch_json(std::string_view text, const std::string& who = "The sketch");
+Sketch parse_sketch_json(std::string_view text, const std::string& who = "The sketch",
+                         SketchOptions* options = nullptr);
 // SVG 1.1: path, polyline, polygon, line, circle and ellipse with all transforms; what is hidden, or in defs
 // and the like, is not there. Curves become lines within 0.25 pixels of a canvas that is kCanvasHeight high,
 // their points where they need them and not at even distances; what is closed ends with its first point. The
@@ -27,7 +29,9 @@ Sketch parse_sketch_svg(std::string_view text, const std::string& who = "The dra
 // are numbered. Throws Error where check_sketch() does.
 //   {"format": "treerec sketch", "version": 1, "canvas": [w, h], "height": 8, "species": "maple", "seed": 1,
 //    "strokes": [{"id": 1, "role": "auto", "points": [[x, y], ...], "pressure": [p, ...]}, ...]}
-// All but format, version and strokes may be missing, of a stroke all but its points.
-std::string sketch_json(const Sketch& sketch);
+// All but format, version and strokes may be missing, of a stroke all but its points. Options that are not as
+// usual are written as "depth": "paper", "crown": "alpha", "trunk_radius": 0.2 (metres) and "density": 1.5;
+// SketchOptions::leaves is not. Twigs of one's own are "twigs": {...} (twig_stock_json()).
+std::string sketch_json(const Sketch& sketch, const SketchOptions& options = {});
 
 }  // namespace treerec

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "foliage/leaf_rules.h"
 #include "progress.h"
 #include "sketch/strokes.h"
 #include "tree/tree.h"
@@ -31,6 +33,8 @@ struct SketchOptions {
     SketchCrown crown = SketchCrown::kSections;
     double trunk_radius = 0.0;  // metres at the foot; 0: as drawn with two lines, else height / 40
     double density = 1.0;       // of twigs, 0..4
+    // Of the leaves that are to fill the crown; nothing: those of the preset of the sketch's species.
+    std::optional<LeafRules> leaves;
 };
 
 struct SketchedTree {
@@ -43,12 +47,12 @@ struct SketchedTree {
     // A point of the sketch's canvas (x, y) lies at ((x - foot.x) * scale, (foot.y - y) * scale) in x and y.
     DVec2 foot{0.0};
     double scale = 0.01;      // metres a pixel of the sketch's canvas
-    std::string species;      // whose twigs it has: also the preset of its leaves and bark
+    std::string species;      // the preset of its leaves and bark; unless the twigs are own ones, theirs, too
     double crown_base = 0.0;  // metres above the foot: below there is only the trunk
 };
 
 // The same sketch and options give the same tree on every machine. Throws Error where understand_sketch()
-// does, for an unknown species or options out of range, and Cancelled.
+// does, for an unknown species (with twigs of one's own: leaf preset) or options out of range, and Cancelled.
 SketchedTree sketch_tree(const Sketch& sketch, const SketchOptions& options,
                          const Progress* progress = nullptr);
 

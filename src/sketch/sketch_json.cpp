@@ -10,6 +10,7 @@
 #include "error.h"
 #include "sketch/read_sketch.h"
 #include "sketch/sketch_fault.h"
+#include "sketch/twig_stock.h"
 
 namespace treerec {
 
@@ -21,6 +22,7 @@ constexpr const char* kFormat = "treerec sketch";
 constexpr int kVersion = 1;
 // All the points that a sketch may have, with their pressures, take less.
 constexpr size_t kLargest = size_t{16} << 20U;  // bytes
+constexpr double kMostRadius = 40.0, kMostDensity = 4.0;
 constexpr int kDeepest = 8;                     // of what is in what; ours has 4
 
 // Reads one sketch; who: the subject of what it throws.
@@ -28,7 +30,7 @@ class Reader {
   public:
     explicit Reader(const std::string& who) : who_(who) {}
 
-    Sketch read(std::string_view text) const {
+    Sketch read(std::string_view text, SketchOptions* options) const {
         const Json json = parse(text);
         require_ours(json);
         Sketch sketch;
@@ -46,6 +48,10 @@ class Reader {
             if (!seed->is_number_unsigned()) fail("has a 'seed' that is no whole number from 0 on");
             sketch.seed = seed->get<uint64_t>();
         }
+        if (const Json* twigs = member(json, "twigs"))
+            sketch.twigs =
+                std::make_shared<const TwigStock>(parse_twig_stock(twigs->dump(), who_ + ": its twigs"));
+        read_options(json, options);
         const Json* strokes = member(json, "strokes");
         if (!strokes || !strokes->is_array()) fail("has no list of 'strokes'");
         if (strokes->size() > kMostStrokes)
@@ -61,6 +67,30 @@ class Reader {
 
   private:
     [[noreturn]] void fail(const std::string& what) const { throw Error(who_ + " " + what + "."); }
+
+    // They are checked, too, where nobody asks for them.
+    void read_options(const Json& json, SketchOptions* options) const {
+        SketchOptions told = options ? *options : SketchOptions();
+        told.trunk_radius = number_of(json, "trunk_radius", told.trunk_radius);
+        if (!(told.trunk_radius >= 0.0 && told.trunk_radius <= kMostRadius))
+            fail("has a 'trunk_radius' that is not from 0 to 40 m");
+        told.density = number_of(json, "density", told.density);
+        if (!(told.density >= 0.0 && told.density <= kMostDensity))
+            fail("has a 'density' that is not from 0 to 4");
+        const auto word = [&](const char* name, const char* usual, const char* other, bool otherwise) {
+            const Json* value = member(json, name);
+            if (!value) return otherwise;
+            if (*value != usual && *value != other)
+                fail(std::string("has a '") + name + "' that is neither '" + usual + "' nor '" + other + "'");
+            return *value == other;
+        };
+        told.depth = word("depth", "true", "paper", told.depth == SketchDepth::kPaper) ? SketchDepth::kPaper
+                                                                                      : SketchDepth::kTrue;
+        told.crown = word("crown", "sections", "alpha", told.crown == SketchCrown::kAlpha)
+                         ? SketchCrown::kAlpha
+                         : SketchCrown::kSections;
+        if (options) *options = told;
+    }
 
     Json parse(std::string_view text) const {
         if (text.size() > kLargest) fail("is larger than 16 MiB, which no sketch is");
@@ -188,11 +218,11 @@ void append_list(std::string& out, const Values& values) {
 
 }  // namespace
 
-Sketch parse_sketch_json(std::string_view text, const std::string& who) {
-    return Reader(who).read(text);
+Sketch parse_sketch_json(std::string_view text, const std::string& who, SketchOptions* options) {
+    return Reader(who).read(text, options);
 }
 
-std::string sketch_json(const Sketch& sketch) {
+std::string sketch_json(const Sketch& sketch, const SketchOptions& options) {
     check_sketch(sketch);
     std::string out = std::string("{\"format\": \"") + kFormat + "\", \"version\": ";
     append(out, kVersion);
@@ -204,6 +234,18 @@ std::string sketch_json(const Sketch& sketch) {
     out += ", \"species\": " + Json(sketch.species).dump(-1, ' ', true, Json::error_handler_t::replace);
     out += ", \"seed\": ";
     append(out, sketch.seed);
+    if (options.depth == SketchDepth::kPaper) out += ", \"depth\": \"paper\"";
+    if (options.crown == SketchCrown::kAlpha) out += ", \"crown\": \"alpha\"";
+    const SketchOptions usual;
+    if (options.trunk_radius != usual.trunk_radius) {
+        out += ", \"trunk_radius\": ";
+        append(out, options.trunk_radius);
+    }
+    if (options.density != usual.density) {
+        out += ", \"density\": ";
+        append(out, options.density);
+    }
+    if (sketch.twigs) out += ",\n \"twigs\": " + twig_stock_json(*sketch.twigs);
     out += ",\n \"strokes\": [";
     for (size_t i = 0; i < sketch.strokes.size(); i++) {
         const Stroke& stroke = sketch.strokes[i];

@@ -9,6 +9,7 @@
 #include "sketch/lift.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
+#include "sketch/twig_stock.h"
 #include "sketch/unseen.h"
 
 namespace treerec {
@@ -42,7 +43,9 @@ double highest_of(const DrawnTree& drawn) {
 SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, const Progress* progress) {
     Sketch sketch = given;
     sketch.number_strokes();
-    const SketchSpecies& species = sketch_species(sketch.species.empty() ? "maple" : sketch.species);
+    const std::string named = sketch.species.empty() ? "maple" : sketch.species;
+    SketchSpecies species = sketch.twigs ? species_of(*sketch.twigs, named) : sketch_species(named);
+    if (options.leaves) species.leaves = *options.leaves;
     const double height = sketch.height > 0.0 ? sketch.height : species.height;
     check_options(options, height);
     SketchedTree out;
@@ -66,7 +69,9 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     const bool printed = options.depth == SketchDepth::kPaper;
     const CrownSections crown(outline, printed);
     out.crown_base = crown.bottom();
-    Limbs limbs = lift(drawn, sketch, place, crown, options, out.remarks);
+    std::optional<WoodTaper> taper;
+    if (species.taper) taper = species.taper->at_height(height);
+    Limbs limbs = lift(drawn, sketch, place, crown, options, taper, out.remarks);
     if (!printed) {
         extend_trunk(limbs, crown, sketch.seed);
         add_unseen_branches(limbs, crown, sketch.seed);
@@ -82,7 +87,7 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
             " places the species' twigs are too long for the crown: make the tree taller, or "
             "take the true depth.");
     std::optional<double> margin;
-    if (!printed) margin = leaf_margin(crown, leaf_preset(species.name), height);
+    if (!printed) margin = leaf_margin(crown, species.leaves, height);
     AssembledTree assembled = assemble_tree(filling, species, crown, margin, progress);
     out.tree = std::move(assembled.tree);
     out.stroke_of_node = std::move(assembled.stroke_of_node);

@@ -1,22 +1,33 @@
 #include "sketch/species.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "edit/scion.h"
 #include "edit/twig_library.h"
 #include "error.h"
+#include "geometry/portable_math.h"
 #include "lsystem/lstring.h"
+#include "sketch/limbs.h"
 
 namespace treerec {
 
 namespace {
 
 SketchSpecies make_species(const char* name, const char* title, double height, TwigArrangement arrangement) {
-    SketchSpecies species{name, title, height, arrangement, {}};
+    SketchSpecies species;
+    species.name = name;
+    species.title = title;
+    species.height = height;
+    species.arrangement = arrangement;
+    species.leaves = leaf_preset(name);
     for (const char* size : {"_short", "_medium", "_long"}) {
         SpeciesTwig twig;
         twig.name = species.name + size;
         twig.scion = read_lstring(find_library_twig(twig.name).string);
         twig.length = scion_length(twig.scion);
         twig.radius = twig.scion.node(twig.scion.root()).radius;
+        twig.size = static_cast<int>(species.twigs.size());
         species.twigs.push_back(std::move(twig));
     }
     return species;
@@ -36,6 +47,36 @@ const std::vector<SketchSpecies>& all_species() {
 }
 
 }  // namespace
+
+WoodTaper WoodTaper::at_height(double metres) const {
+    const double times = metres / height;
+    WoodTaper scaled = *this;
+    scaled.height = metres;
+    scaled.foot *= times;
+    // r(l) becomes times r(l / times).
+    scaled.branches.intercept += (1.0 - branches.slope) * portable::log(times);
+    scaled.branches.least *= times;
+    return scaled;
+}
+
+std::vector<double> WoodTaper::trunk_radii(const std::vector<DVec3>& points, double base,
+                                           double least) const {
+    const double length = length_of(points);
+    std::vector<double> radii;
+    double along = 0.0, before = base;
+    for (size_t i = 0; i < points.size(); i++) {
+        if (i > 0) along += glm::length(points[i] - points[i - 1]);
+        const double own = base * profile_at(trunk, length > 0.0 ? along / length : 1.0);
+        radii.push_back(before = std::max(std::min(own, before), least));
+    }
+    return radii;
+}
+
+double SketchSpecies::angle_at(double share) const {
+    const double at = share * static_cast<double>(angles.size() - 1);
+    const size_t i = std::min(static_cast<size_t>(at), angles.size() - 2);
+    return angles[i] + (angles[i + 1] - angles[i]) * (at - static_cast<double>(i));
+}
 
 std::vector<std::string> sketch_species_names() {
     std::vector<std::string> names;

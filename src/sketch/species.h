@@ -1,9 +1,13 @@
 // Kinds of trees that a sketch can become: each with its twigs (papers/003, 4.1 and table 1).
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "foliage/leaf_rules.h"
+#include "sketch/limb_statistics.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -13,6 +17,7 @@ struct SpeciesTwig {
     Tree scion;           // edit/scion.h, metres
     double length = 0.0;  // metres along its longest path
     double radius = 0.0;  // metres at its root
+    int size = 0;         // those of one size stand for one another
 };
 
 // How twigs follow one another along a branch (papers/003, 4.1).
@@ -22,12 +27,35 @@ enum class TwigArrangement : uint8_t {
     kClustered,  // several from one place, as the magnolia's
 };
 
+// How thick wood is, as it was measured on a tree.
+struct WoodTaper {
+    double height = 0.0;               // metres, of that tree
+    double foot = 0.0;                 // metres: the trunk's radius at its foot
+    std::array<double, 11> trunk{};    // over the foot's, at 0, 0.1 .. 1 of its length
+    RadiusLaw branches;
+
+    // The same of a tree of the same shape that is so high.
+    WoodTaper at_height(double metres) const;
+    // At each point of a trunk that is `foot` thick there; at least `least`. Metres.
+    std::vector<double> trunk_radii(const std::vector<DVec3>& points, double base, double least) const;
+};
+
 struct SketchSpecies {
     std::string name;      // also its leaf preset, and that of bark and leaf pictures: "maple"
     std::string title;     // "Maple"
     double height = 10.0;  // metres, of a grown tree
     TwigArrangement arrangement = TwigArrangement::kAlternate;
     std::vector<SpeciesTwig> twigs;  // the shortest first
+    LeafRules leaves;
+    // Degrees off the limb, ascending and in equal shares of the twigs; by papers/003, 4.2, step 2.
+    std::vector<double> angles{30.0, 70.0};
+    // Whether angles are those off the limb where the twig stands, and not off its whole course.
+    bool own = false;
+    double internode = 0.0;          // metres from twig to twig at least; 0: as the crown has room
+    std::optional<WoodTaper> taper;  // nothing: equation 2
+
+    // The angle that so large a share (0..1) of the twigs is below. Degrees.
+    double angle_at(double share) const;
 };
 
 // "ginkgo", "magnolia", "maple", "poplar".

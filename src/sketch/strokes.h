@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "geometry/vec.h"
 
 namespace treerec {
+
+struct TwigStock;
 
 inline constexpr double kCanvasHeight = 1000.0;  // pixels
 // What one drawing may have: bounds what a hostile file makes us do.
@@ -43,7 +46,9 @@ struct Sketch {
     DVec2 canvas{kCanvasHeight, kCanvasHeight};  // pixels, both above 0
     std::vector<Stroke> strokes;
     double height = 0.0;  // metres of the tree, from the trunk's foot to the top; 0: the species' usual
-    std::string species;  // twig_species(); empty: maple
+    std::string species;  // sketch_species(); empty: maple
+    // Twigs of one's own in place of the species', of which only leaves and bark are left, by any leaf preset.
+    std::shared_ptr<const TwigStock> twigs;
     uint64_t seed = 1;
 
     // Gives each stroke that has none an id that no other has; later of equal ones get a new one.

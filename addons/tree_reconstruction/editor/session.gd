@@ -347,13 +347,15 @@ func set_value(
 
 ## Gives the edited tree the wood, leaves and log of [param made], as what a reconstruction with
 ## other options made. It stays the same resource, for all nodes that show it; its leaf rules stay,
-## unless [param preset] names other leaves.
-func replace_tree(title: String, made: TreeReconstruction, preset: String = "") -> void:
+## unless [param preset] names other leaves, with [param rule] as their rule, if any.
+func replace_tree(
+	title: String, made: TreeReconstruction, preset: String = "", rule: LeafRule = null
+) -> void:
 	if tree == null or made == null or made == tree:
 		return
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made, preset))
+	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made, preset, rule))
 	if edited == null:
 		return
 	begin_step(title, edited, imported)
@@ -361,7 +363,7 @@ func replace_tree(title: String, made: TreeReconstruction, preset: String = "") 
 	add_replacement(edited, made)
 	if not preset.is_empty():
 		var before: Dictionary = _stored(edited)
-		edited.leaf_rule = null
+		edited.leaf_rule = rule
 		edited.leaf_preset = preset
 		history.add_properties(edited, _stored(edited), before)
 	history.commit()

@@ -249,13 +249,17 @@ func _on_remove_pressed() -> void:
 	_set_twigs(tr("Remove Twig"), twigs)
 
 
-func _restore_paths() -> void:
+## Where the user's libraries are that were opened in this project.
+static func get_kept_paths() -> PackedStringArray:
 	if not Engine.is_editor_hint():
-		return
-	var kept: PackedStringArray = EditorInterface.get_editor_settings().get_project_metadata(
+		return PackedStringArray()
+	return EditorInterface.get_editor_settings().get_project_metadata(
 		"tree_reconstruction", _KEY, PackedStringArray()
 	)
-	for path: String in kept:
+
+
+func _restore_paths() -> void:
+	for path: String in get_kept_paths():
 		if ResourceLoader.exists(path) and load(path) is TwigLibrary:
 			_know(path, load(path) as TwigLibrary)
 

@@ -49,7 +49,8 @@ func _on_read(
 	var told: PackedStringArray = ["canvas_size", "strokes"]
 	# A drawing tells no more than its lines.
 	if path.get_extension().to_lower() == "json":
-		told.append_array(["species", "height", "seed"])
+		told.append_array(["species", "height", "seed", "twigs", "leaf_rule"])
+		told.append_array(["depth", "crown", "trunk_radius", "density"])
 	loaded.emit(sketch, told)
 
 

@@ -10,6 +10,12 @@ signal value_chosen(title: String, property: StringName, value: Variant, merged:
 signal role_chosen(role: int)
 
 const Widgets := preload("../dock/widgets.gd")
+const Session := preload("../session.gd")
+const Twigs := preload("sketch_twigs.gd")
+const More := preload("sketch_more.gd")
+
+# What says that the twigs stay those that the sketch has.
+const _OWN: StringName = &"own"
 
 var species: OptionButton
 var height: SpinBox
@@ -17,13 +23,18 @@ var density: SpinBox
 var seed_field: SpinBox
 var dice: Button
 var role: OptionButton
+var more: More = More.new()
+## Whose twigs there are beside the species'.
+var twigs: Twigs
 
+var _shown: TreeSketch = TreeSketch.new()
 # Of each species, its usual height in metres.
 var _heights: Dictionary[String, float] = {}
 var _usual: Label
 
 
-func _init() -> void:
+func _init(session: Session) -> void:
+	twigs = Twigs.new(session)
 	_add_species()
 	height = Widgets.number(0.0, 40.0, 0.1, "m")
 	height.allow_greater = true
@@ -53,6 +64,8 @@ func _init() -> void:
 	)
 	line.add_child(dice)
 	add_child(line)
+	add_child(more)
+	more.value_chosen.connect(value_chosen.emit)
 	add_child(HSeparator.new())
 	role = (Widgets.choice(
 		["Auto", "Outline", "Trunk", "Branch"],
@@ -86,16 +99,18 @@ func _init() -> void:
 
 ## Shows the values of a sketch and the role of its selected stroke, by its id, or 0.
 func show_sketch(sketch: TreeSketch, selected: int) -> void:
-	Widgets.choose(species, sketch.species)
-	if species.selected < 0:
-		# None is a maple's; one that isn't known here stays unchosen.
-		Widgets.choose(species, "maple" if sketch.species.is_empty() else "")
+	_shown = sketch
+	_choose_species()
+	more.show_sketch(sketch)
 	height.set_value_no_signal(sketch.height)
 	density.set_value_no_signal(sketch.density)
 	seed_field.set_value_no_signal(sketch.seed)
 	var named: String = "maple" if sketch.species.is_empty() else sketch.species
-	_usual.visible = sketch.height <= 0.0 and _heights.has(named)
-	_usual.text = tr("usually %s m") % String.num(_heights.get(named, 0.0), 1)
+	var usual: float = twigs.get_height_of(sketch)
+	if usual <= 0.0:
+		usual = _heights.get(named, 0.0)
+	_usual.visible = sketch.height <= 0.0 and usual > 0.0
+	_usual.text = tr("usually %s m") % String.num(usual, 1)
 	var index: int = sketch.find_stroke(selected)
 	role.disabled = index < 0
 	Widgets.choose(role, TreeSketch.ROLE_AUTO if index < 0 else int(sketch.strokes[index]["role"]))
@@ -103,6 +118,8 @@ func show_sketch(sketch: TreeSketch, selected: int) -> void:
 
 ## What the species of a sketch is called.
 func get_title_of(sketch: TreeSketch) -> String:
+	if sketch.twigs != "":
+		return twigs.get_title_of(sketch)
 	for i: int in species.item_count:
 		if species.get_item_metadata(i) == (sketch.species if sketch.species != "" else "maple"):
 			return species.get_item_text(i)
@@ -117,17 +134,67 @@ func _add_species() -> void:
 		names.append(known["name"])
 		_heights[known["name"]] = known["height"]
 	species = Widgets.choice(titles, names)
+	species.get_popup().about_to_popup.connect(list_twigs)
 	add_child(
-		Widgets.line(
-			"Species", "Whose twigs, leaves and bark the tree gets. The strokes stay.", species
+		(
+			Widgets
+			. line(
+				"Species",
+				(
+					"Whose twigs, leaves and bark the tree gets: a species', those of another tree in"
+					+ " the scene, or twigs that you keep in a library. The strokes stay."
+				),
+				species
+			)
 		)
 	)
 
 
+## Shows whose twigs there are now.
+func list_twigs() -> void:
+	_drop_twigs()
+	if _shown.twigs != "":
+		_add_twigs(twigs.get_title_of(_shown), _OWN)
+	var sources: Dictionary[String, Variant] = twigs.get_sources(_shown)
+	for name: String in sources:
+		_add_twigs(tr("Twigs of %s") % name, [name, sources[name]])
+	_choose_species()
+
+
+# Below the species, which stay.
+func _add_twigs(words: String, of: Variant) -> void:
+	if species.item_count == _heights.size():
+		species.add_separator()
+	species.add_item(words)
+	species.set_item_metadata(species.item_count - 1, of)
+
+
+func _drop_twigs() -> void:
+	while species.item_count > _heights.size():
+		species.remove_item(species.item_count - 1)
+
+
+func _choose_species() -> void:
+	if _shown.twigs == "":
+		# One that isn't known here stays unchosen.
+		Widgets.choose(species, "maple" if _shown.species.is_empty() else _shown.species)
+		return
+	Widgets.choose(species, _OWN)
+	if species.selected < 0:
+		_drop_twigs()
+		_add_twigs(twigs.get_title_of(_shown), _OWN)
+		Widgets.choose(species, _OWN)
+	species.set_item_text(species.selected, twigs.get_title_of(_shown))
+
+
 func _on_species(_index: int) -> void:
-	value_chosen.emit(
-		tr("Change Sketch Species"), &"species", species.get_selected_metadata(), false
-	)
+	var chosen: Variant = species.get_selected_metadata()
+	if chosen is Array:
+		# It is chosen once they are there.
+		_choose_species()
+		twigs.take(_shown, chosen[0], chosen[1])
+	elif chosen is String:
+		twigs.take_species(chosen)
 
 
 func _on_number(value: float, title: String, property: StringName) -> void:

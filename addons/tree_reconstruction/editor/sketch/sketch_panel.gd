@@ -36,7 +36,7 @@ const Known := preload("sketch_known.gd")
 const _REST_MSEC: int = 250
 
 var canvas: Canvas = Canvas.new()
-var options: Options = Options.new()
+var options: Options
 var bar: Bar = Bar.new()
 var message: Label = Widgets.sentence()
 var maker: Maker
@@ -70,12 +70,13 @@ var _held: Array[bool] = []
 func _init(session: Session) -> void:
 	_session = session
 	set_translation_domain(session.get_translation_domain())
+	options = Options.new(session)
 	maker = Maker.new(session)
 	maker.finished.connect(_on_finished)
 	maker.followed.connect(_on_followed)
 	maker.understood.connect(_on_understood)
 	files = Files.new(session)
-	files.loaded.connect(_on_loaded)
+	files.loaded.connect(_on_told.bind(tr("Load Sketch")))
 	files.said.connect(_say)
 	add_child(bar)
 	var split: HBoxContainer = HBoxContainer.new()
@@ -190,6 +191,7 @@ func _connect_all() -> void:
 	canvas.chosen.connect(_on_chosen)
 	options.value_chosen.connect(_on_value)
 	options.role_chosen.connect(_on_role)
+	options.twigs.taken.connect(_on_told)
 	bar.tool_chosen.connect(_on_tool)
 	bar.begin.pressed.connect(set_node.bind(null))
 	bar.load_file.pressed.connect(load_wanted.emit)
@@ -321,8 +323,9 @@ func _replace(order: Maker.Order, node: TreeInstance3D, tree: TreeReconstruction
 	if _session.node != node:
 		_session.edit_node(node)
 		node_wanted.emit(node)
-	var other: bool = _base().species != order.sketch.species
-	_session.replace_tree(order.title, tree, tree.leaf_preset if other else "")
+	var is_same_rule: bool = _base().leaf_rule == order.sketch.leaf_rule
+	var other: bool = _base().species != order.sketch.species or not is_same_rule
+	_session.replace_tree(order.title, tree, tree.leaf_preset if other else "", tree.leaf_rule)
 	var left_out: int = (order.replayed.get("left_out", []) as Array).size()
 	if left_out != _left_out:
 		# Not with every stroke.
@@ -427,12 +430,12 @@ func _on_clear() -> void:
 	_change(tr("Clear Sketch"), sketch)
 
 
-func _on_loaded(sketch: TreeSketch, told: PackedStringArray) -> void:
+func _on_told(sketch: TreeSketch, told: PackedStringArray, title: String) -> void:
 	canvas.cancel()
 	var changed: TreeSketch = _current.duplicate() as TreeSketch
 	for property: String in told:
 		changed.set(property, sketch.get(property))
-	_change(tr("Load Sketch"), changed)
+	_change(title, changed)
 
 
 func _on_chosen(id: int) -> void:
