@@ -22,7 +22,8 @@
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
 // export_file(), save_html_report(), save_marker(), sketch_tree(), sketch_with_twigs(), load_sketch() and
-// save_sketch() may run on any thread, one at a time; the other methods may be called from any other thread meanwhile.
+// save_sketch() may run on any thread, one at a time; the other methods may be called from any other thread
+// meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 

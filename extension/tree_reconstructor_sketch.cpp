@@ -80,8 +80,8 @@ treerec::TwigStock library_stock(const Ref<Resource>& p_library, const std::stri
         }
         const std::string string = to_std(twig->get("lstring"));
         const Variant dialect = twig->get("dialect");
-        strings.push_back(treerec::with_dialect(
-            string, dialect.get_type() == Variant::INT ? int(int64_t(dialect)) : -1));
+        strings.push_back(
+            treerec::with_dialect(string, dialect.get_type() == Variant::INT ? int(int64_t(dialect)) : -1));
     }
     return treerec::stock_of_twigs(strings, p_title);
 }
@@ -159,8 +159,8 @@ Ref<TreeReconstruction> TreeReconstructor::sketch_tree(const Ref<TreeSketch>& p_
         }
         listener.check();
         // What is drawn on later is not what this tree was made of.
-        const Ref<TreeSketch> own =
-            p_twigs_of.is_valid() ? with_twigs(p_sketch, p_twigs_of, String()) : Ref<TreeSketch>(p_sketch->duplicate());
+        const Ref<TreeSketch> own = p_twigs_of.is_valid() ? with_twigs(p_sketch, p_twigs_of, String())
+                                                          : Ref<TreeSketch>(p_sketch->duplicate());
         const treerec::Sketch sketch = to_sketch(**own);
         treerec::SketchedTree sketched = treerec::sketch_tree(sketch, to_options(**own), &listener);
         const std::string report = treerec::sketch_report_json(sketch, sketched);
@@ -224,7 +224,8 @@ Error TreeReconstructor::save_sketch(const Ref<TreeSketch>& p_sketch, const Stri
     const Job job(this);
     ERR_FAIL_COND_V_MSG(!job.is_alone(), ERR_BUSY, BUSY);
     try {
-        treerec::write_file(file_path(p_path), treerec::sketch_json(to_sketch(**p_sketch), to_options(**p_sketch)));
+        treerec::write_file(file_path(p_path),
+                            treerec::sketch_json(to_sketch(**p_sketch), to_options(**p_sketch)));
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());

@@ -27,7 +27,6 @@ constexpr int kMostAtAPlace = 3;
 constexpr double kPlace = 0.3;
 // Of the host, at the crown's foot, as foliage/snags.cpp has it.
 constexpr double kLowSnagRadii = 12.0, kLowShare = 0.1;
-constexpr double kSnagRadii = 6.0;  // the same anywhere; ours are slender enough
 
 enum class View { kFront, kSide };
 
@@ -125,8 +124,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     const auto bears_no_leaves = [&](const Limb& limb, double along, double length) {
         const double radius = value_along(limb.points, limb.radii, along);
         const bool is_low = place_along(limb.points, along).y < low;
-        const double least = is_low ? kLowSnagRadii : species.own ? kSnagRadii : 0.0;
-        return radius > 2.0 * rules.maximum_radius && length < least * radius;
+        return is_low && radius > 2.0 * rules.maximum_radius && length < kLowSnagRadii * radius;
     };
     for (const View view : {View::kFront, View::kSide}) {
         Cover cover(crown, view, cell, kLeafCover * leaf, margin);
@@ -194,9 +192,8 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             const double radius = value_along(limb.points, limb.radii, place.along);
             const double shortest = 0.36 * growth * species.twigs.front().length;
             const double longest = 1.3 * growth * species.twigs.back().length;
-            const auto chosen =
-                choose_twig(species, std::clamp(room, shortest, longest), radius, growth, true,
-                            hash_seed(limb.seed, 50000 + filling.twigs.size()));
+            const auto chosen = choose_twig(species, std::clamp(room, shortest, longest), radius, growth,
+                                            true, hash_seed(limb.seed, 50000 + filling.twigs.size()));
             if (!chosen) continue;
             place.twig = chosen->twig;
             place.scale = chosen->scale;

@@ -25,6 +25,8 @@ constexpr double kGolden = 137.508 * kPi / 180.0;
 constexpr double kSpacing = 0.2, kShareSpacing = 0.7;
 // Of the twigs that bear the leaves, those that stand evenly; the rest is for gaps.
 constexpr double kEven = 0.5;
+// Twigs of one's own may be crowded ones, which leave more gaps: so many times the wood is for all.
+constexpr double kForGaps = 2.0;
 constexpr double kBare = 0.12;  // of a branch, at its base
 constexpr double kMostScale = 1.3;
 // A branch for a place that no twig is long enough for: of the room there, and its steps.
@@ -80,9 +82,9 @@ struct Filler {
         }
         if (branch.limb.points.size() < 3) return;
         const double radius = kBranchThickness * value_along(host.points, host.radii, along);
-        branch.limb.radii = taper ? taper->branches.radii_along(branch.limb.points, 1.0,
-                                                                std::max(radius, kLeastRadius))
-                                  : tapered(branch.limb.points, radius, kLeastRadius);
+        branch.limb.radii =
+            taper ? taper->branches.radii_along(branch.limb.points, 1.0, std::max(radius, kLeastRadius))
+                  : tapered(branch.limb.points, radius, kLeastRadius);
         const size_t cell = cell_of[parent];
         filling.limbs.push_back(std::move(branch));
         cell_of.push_back(cell);
@@ -136,9 +138,8 @@ struct Filler {
             return;
         }
         const double radius = value_along(limb.points, limb.radii, along);
-        const auto chosen =
-            choose_twig(species, printed() ? room : std::min(room, longest), radius, growth, !printed(),
-                        hash_seed(limb.seed, 40000 + filling.twigs.size()));
+        const auto chosen = choose_twig(species, printed() ? room : std::min(room, longest), radius, growth,
+                                        !printed(), hash_seed(limb.seed, 40000 + filling.twigs.size()));
         if (chosen)
             filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
         else
@@ -240,7 +241,8 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
         filler.fill(*bound, i, 0.0, 0);
     if (!printed) thin_out(filler.filling, species, crown, filler.margin, kEven * wanted);
     if (!printed && options.density > 0.0)
-        close_gaps(filler.filling, crown, species, rules, height, wanted, hash_seed(seed, 5), progress);
+        close_gaps(filler.filling, crown, species, rules, height, (species.own ? kForGaps : 1.0) * wanted,
+                   hash_seed(seed, 5), progress);
     return filler.filling;
 }
 

@@ -24,9 +24,8 @@ struct CanvasPlace {
 // kPaper: each is turned about the upright axis through its base by an angle of its own within 60 degrees to
 //     either side, 10 apart; where that is too much for so many, they are evenly closer, which is remarked.
 // Radii by equation 2, of the trunk from its foot's (SketchOptions, as drawn, or height / 40) to a tenth of
-// it; a branch starts thinner than the trunk is there, as its length is to the trunk's. With a taper, which is
-// of a tree as high as this one, they are as it has them.
-// remarks: what there is to say is added.
+// it; a branch starts thinner than the trunk is there, as its length is to the trunk's. With a taper, which
+// is of a tree as high as this one, they are as it has them. remarks: what there is to say is added.
 Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
            const SketchOptions& options, const std::optional<WoodTaper>& taper,
            std::vector<std::string>& remarks);

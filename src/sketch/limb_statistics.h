@@ -39,8 +39,8 @@ struct RadiusLaw {
 
     double base_radius(double length) const;
     double share_at(double share) const;
-    // At each point of a limb's line, metres: `stouter` times what the law says of its length, tapering by the
-    // profile, but from `least` to `most`.
+    // At each point of a limb's line, metres: `stouter` times what the law says of its length, tapering by
+    // the profile, but from `least` to `most`.
     std::vector<double> radii_along(const std::vector<DVec3>& points, double stouter, double most) const;
 };
 

@@ -36,7 +36,8 @@ std::optional<std::string> quoted(std::string_view text, size_t& at) {
 std::vector<std::string> read_twig_strings(const std::string& path) {
     const FileBytes file = read_file(path);
     const std::string_view text = file.view();
-    if (text.size() > kLargest) throw Error("'" + path + "' is larger than 64 MiB, which no library of twigs is.");
+    if (text.size() > kLargest)
+        throw Error("'" + path + "' is larger than 64 MiB, which no library of twigs is.");
     if (text.starts_with("RSRC") || text.starts_with("RSCC"))
         throw Error("'" + path + "' is a binary resource; save the library as text, with the ending .tres.");
     if (!text.starts_with("[gd_resource")) return {std::string(text)};

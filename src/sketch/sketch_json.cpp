@@ -23,7 +23,7 @@ constexpr int kVersion = 1;
 // All the points that a sketch may have, with their pressures, take less.
 constexpr size_t kLargest = size_t{16} << 20U;  // bytes
 constexpr double kMostRadius = 40.0, kMostDensity = 4.0;
-constexpr int kDeepest = 8;                     // of what is in what; ours has 4
+constexpr int kDeepest = 8;  // of what is in what; ours has 4
 
 // Reads one sketch; who: the subject of what it throws.
 class Reader {
@@ -85,7 +85,7 @@ class Reader {
             return *value == other;
         };
         told.depth = word("depth", "true", "paper", told.depth == SketchDepth::kPaper) ? SketchDepth::kPaper
-                                                                                      : SketchDepth::kTrue;
+                                                                                       : SketchDepth::kTrue;
         told.crown = word("crown", "sections", "alpha", told.crown == SketchCrown::kAlpha)
                          ? SketchCrown::kAlpha
                          : SketchCrown::kSections;

@@ -29,9 +29,9 @@ enum class TwigArrangement : uint8_t {
 
 // How thick wood is, as it was measured on a tree.
 struct WoodTaper {
-    double height = 0.0;               // metres, of that tree
-    double foot = 0.0;                 // metres: the trunk's radius at its foot
-    std::array<double, 11> trunk{};    // over the foot's, at 0, 0.1 .. 1 of its length
+    double height = 0.0;             // metres, of that tree
+    double foot = 0.0;               // metres: the trunk's radius at its foot
+    std::array<double, 11> trunk{};  // over the foot's, at 0, 0.1 .. 1 of its length
     RadiusLaw branches;
 
     // The same of a tree of the same shape that is so high.

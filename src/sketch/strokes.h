@@ -47,7 +47,8 @@ struct Sketch {
     std::vector<Stroke> strokes;
     double height = 0.0;  // metres of the tree, from the trunk's foot to the top; 0: the species' usual
     std::string species;  // sketch_species(); empty: maple
-    // Twigs of one's own in place of the species', of which only leaves and bark are left, by any leaf preset.
+    // Twigs of one's own in place of the species', of which only leaves and bark are left, by any leaf
+    // preset.
     std::shared_ptr<const TwigStock> twigs;
     uint64_t seed = 1;
 

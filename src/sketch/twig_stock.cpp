@@ -13,11 +13,11 @@ namespace treerec {
 namespace {
 
 constexpr size_t kMostTwigs = 200;
-constexpr size_t kMostNodes = 2000;                    // of one
-constexpr double kShortest = 0.01, kLongest = 20.0;    // metres
-constexpr double kStoutest = 0.25;                     // radius over length
-constexpr int kSizes = 3;                              // short, medium, long
-constexpr double kOneSize = 1.3;                       // the longest over the shortest, where all are of one size
+constexpr size_t kMostNodes = 2000;                  // of one
+constexpr double kShortest = 0.01, kLongest = 20.0;  // metres
+constexpr double kStoutest = 0.25;                   // radius over length
+constexpr int kSizes = 3;                            // short, medium, long
+constexpr double kOneSize = 1.3;  // the longest over the shortest, where all are of one size
 
 std::string number(double value) {
     std::string text = std::to_string(value);

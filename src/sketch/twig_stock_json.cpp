@@ -61,8 +61,7 @@ class StockReader {
             if (!angles->is_array() || angles->size() > kMostAngles) fail("have 'angles' that are no list");
             for (const Json& angle : *angles) {
                 const double value = angle.is_number() ? angle.get<double>() : -1.0;
-                if (!(value > 0.0 && value < 180.0) ||
-                    (!stock.angles.empty() && value < stock.angles.back()))
+                if (!(value > 0.0 && value < 180.0) || (!stock.angles.empty() && value < stock.angles.back()))
                     fail("have 'angles' that are not from 0 to 180 degrees, in ascending order");
                 stock.angles.push_back(value);
             }
@@ -133,9 +132,12 @@ std::string twig_stock_json(const TwigStock& stock) {
     json["internode"] = stock.internode;
     if (stock.taper) {
         const RadiusLaw& law = stock.taper->branches;
-        json["taper"] = {{"height", stock.taper->height}, {"foot", stock.taper->foot},
-                         {"trunk", stock.taper->trunk},   {"intercept", law.intercept},
-                         {"slope", law.slope},            {"profile", law.profile},
+        json["taper"] = {{"height", stock.taper->height},
+                         {"foot", stock.taper->foot},
+                         {"trunk", stock.taper->trunk},
+                         {"intercept", law.intercept},
+                         {"slope", law.slope},
+                         {"profile", law.profile},
                          {"least", law.least}};
     }
     json["twigs"] = Json::array();

@@ -25,9 +25,9 @@ constexpr double kLeastStraight = 0.6;  // from base to farthest tip, over the w
 
 constexpr size_t kLeastSides = 20;  // whose angles are told apart
 constexpr size_t kAngles = 11;
-constexpr double kFrom = 0.05, kTo = 0.95;              // quantiles: those beyond are faults of the skeleton
+constexpr double kFrom = 0.05, kTo = 0.95;               // quantiles: those beyond are faults of the skeleton
 constexpr double kLeastAngle = 8.0, kMostAngle = 130.0;  // degrees
-constexpr double kTogether = 0.1;  // of a usual internode: twigs at one place
+constexpr double kTogether = 0.1;                        // of a usual internode: twigs at one place
 constexpr double kMostlyClusters = 0.4, kMostlyPairs = 0.5;
 constexpr double kThickest = 0.2;  // of the height: the trunk's radius
 
@@ -224,7 +224,8 @@ TwigStock stock_of_tree(const Tree& tree, const std::string& title) {
         strings.push_back(write_lstring(scion, scion.root(), options));
     }
     if (strings.empty())
-        throw Error("None of the tree's side branches is a twig for a sketch: they are too crooked or too large.");
+        throw Error(
+            "None of the tree's side branches is a twig for a sketch: they are too crooked or too large.");
     TwigStock stock = stock_of_twigs(strings, title);
     stock.height = height;
 

@@ -133,9 +133,8 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
         limbs.trunk.points.emplace_back(from.x + (to_x - from.x) * part, from.y + (to_height - from.y) * part,
                                         bend * portable::sin(kPi * part));
     }
-    limbs.trunk.radii =
-        limbs.taper ? limbs.taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
-                    : tapered(limbs.trunk.points, foot, std::max(0.5 * least, kLeastRadius));
+    limbs.trunk.radii = limbs.taper ? limbs.taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
+                                    : tapered(limbs.trunk.points, foot, std::max(0.5 * least, kLeastRadius));
     for (Limb& branch : limbs.branches)
         branch.radii = radii_of(branch, limbs);
 }

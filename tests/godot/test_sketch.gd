@@ -146,3 +146,111 @@ func test_species() -> void:
 
 static func _ids(sketch: TreeSketch) -> Array:
 	return sketch.strokes.map(func(stroke: Dictionary) -> int: return stroke["id"])
+
+
+# --- twigs of one's own ---------------------------------------------------------------------------
+
+
+# A tree of the same strokes as a scanned one would be: with leaves of another kind.
+static func source_tree() -> TreeReconstruction:
+	var sketch: TreeSketch = small_sketch()
+	sketch.seed = 9
+	var made: TreeReconstruction = TreeReconstructor.new().sketch_tree(sketch)
+	made.resource_name = "Old Oak"
+	made.leaf_preset = "oak"
+	return made
+
+
+func test_twigs_of_a_tree() -> void:
+	var source: TreeReconstruction = source_tree()
+	var rule: LeafRule = LeafRule.from_preset("oak")
+	source.leaf_rule = rule
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var sketch: TreeSketch = small_sketch()
+	var plain: TreeReconstruction = worker.sketch_tree(sketch)
+	var made: TreeReconstruction = worker.sketch_tree(sketch, source)
+	check(made != null, worker.get_error_message())
+	if made == null:
+		return
+	check(made.skeleton != plain.skeleton, "It has a maple's twigs.")
+	check_equal(made.leaf_preset, "oak", "its leaves")
+	check(made.leaf_rule != null and made.leaf_rule != rule, "It has no rule of its own.")
+	check_equal(sketch.twigs, "", "twigs of the sketch that was given")
+	var kept: TreeSketch = made.provenance["sketch"]
+	var told: Dictionary = JSON.parse_string(kept.twigs)
+	check_equal(told["title"], "Old Oak", "whose twigs it keeps")
+	check((told["twigs"] as Array).size() >= 4, "It keeps %d twigs." % told["twigs"].size())
+	# Without the source, and with another seed.
+	source = null
+	check_equal(worker.sketch_tree(kept).skeleton, made.skeleton, "the same tree again")
+	var other: TreeSketch = kept.duplicate()
+	other.seed = 77
+	var again: TreeReconstruction = worker.sketch_tree(other)
+	check(again.skeleton != made.skeleton, "Another seed gives the same tree.")
+	check_equal((again.provenance["sketch"] as TreeSketch).twigs, kept.twigs, "its twigs")
+
+
+func test_twigs_of_a_library() -> void:
+	var library: TwigLibrary = TwigLibrary.new()
+	var source: TreeReconstruction = source_tree()
+	var wanted: Array[String] = ["oak", "maple_long", "birch"]
+	for name: String in wanted:
+		library.twigs.append(TwigLibrary.presets().find(name))
+	# A branch of a tree, as the dock keeps it; and a place that was left empty.
+	library.twigs.append(Twig.from_branch(source, source.get_node_children(source.get_root())[0]))
+	library.twigs.pop_back()
+	library.twigs.append(null)
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var sketch: TreeSketch = worker.sketch_with_twigs(small_sketch(), library, "Mine")
+	check(sketch != null, worker.get_error_message())
+	if sketch == null:
+		return
+	check_equal(sketch.species, "", "the species")
+	check_equal((JSON.parse_string(sketch.twigs)["twigs"] as Array).size(), 3, "twigs")
+	var made: TreeReconstruction = worker.sketch_tree(sketch)
+	check(made != null and made.get_node_count() > 300, worker.get_error_message())
+	library.twigs.clear()
+	check(worker.sketch_tree(small_sketch(), library) == null, "No twigs make a tree.")
+	check("no twigs" in worker.get_error_message(), worker.get_error_message())
+	check(worker.sketch_tree(small_sketch(), Resource.new()) == null, "Nothing makes a tree.")
+	check("give a TwigLibrary" in worker.get_error_message(), worker.get_error_message())
+	sketch.twigs = "nonsense"
+	check(worker.sketch_tree(sketch) == null, "Nonsense makes a tree.")
+	check("own twigs" in worker.get_error_message(), worker.get_error_message())
+
+
+func test_any_branch_is_a_twig_to_keep() -> void:
+	var source: TreeReconstruction = source_tree()
+	var ids: PackedInt32Array = source.get_node_ids()
+	for i: int in range(1, ids.size(), 97):
+		if ids[i] == source.get_root():
+			continue
+		var twig: Twig = Twig.from_branch(source, ids[i], "One")
+		check(twig.length > 0.0 and twig.base_radius > 0.0, "Node %d gives no twig." % ids[i])
+		check(twig.thumbnail != null, "The twig of node %d has no picture." % ids[i])
+
+
+func test_all_goes_through_a_file() -> void:
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var sketch: TreeSketch = worker.sketch_with_twigs(small_sketch(), source_tree())
+	sketch.depth = TreeSketch.DEPTH_PAPER
+	sketch.crown = TreeSketch.CROWN_ALPHA
+	sketch.trunk_radius = 0.25
+	sketch.density = 1.5
+	check_equal(worker.save_sketch(sketch, SKETCH_FILE), OK, "saving")
+	var read: TreeSketch = worker.load_sketch(SKETCH_FILE)
+	check(read != null, worker.get_error_message())
+	if read == null:
+		return
+	for property: String in ["twigs", "species", "depth", "crown", "trunk_radius", "density"]:
+		check_equal(read.get(property), sketch.get(property), property)
+	DirAccess.remove_absolute(SKETCH_FILE)
+	# And with the tree in its own.
+	var path: String = "user://own_twigs_test.res"
+	var made: TreeReconstruction = worker.sketch_tree(sketch)
+	check_equal(ResourceSaver.save(made, path), OK, "saving the tree")
+	var tree_read: TreeReconstruction = ResourceLoader.load(
+		path, "", ResourceLoader.CACHE_MODE_IGNORE
+	)
+	check_equal((tree_read.provenance["sketch"] as TreeSketch).twigs, sketch.twigs, "its twigs")
+	DirAccess.remove_absolute(path)

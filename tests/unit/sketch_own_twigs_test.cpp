@@ -33,8 +33,8 @@ std::string sentence_of(const std::function<void()>& call) {
     return {};
 }
 
-// Limbs all around a trunk, each with twigs that leave it at so many degrees, and these with shoots: its wood is
-// `stout` times as thick as usual.
+// Limbs all around a trunk, each with twigs that leave it at so many degrees, and these with shoots: its wood
+// is `stout` times as thick as usual.
 Tree tree_with_angle(double degrees, double stout) {
     Tree tree;
     NodeId trunk = tree.add_root(DVec3(0.0), 0.1 * stout, kTrunkFlag);
@@ -43,8 +43,8 @@ Tree tree_with_angle(double degrees, double stout) {
         const DVec3 base = tree.node(from).position;
         for (int i = 1; i <= steps; i++) {
             const double share = static_cast<double>(i) / steps;
-            made.push_back(tree.add_child(made.back(), base + way * (length * share),
-                                          radius * (1.0 - 0.8 * share)));
+            made.push_back(
+                tree.add_child(made.back(), base + way * (length * share), radius * (1.0 - 0.8 * share)));
         }
         return made;
     };
@@ -55,8 +55,8 @@ Tree tree_with_angle(double degrees, double stout) {
         if (i < 6 || i == 24) continue;
         const DVec3 out(std::cos(2.4 * i), 0.6, std::sin(2.4 * i));
         const double reach = 0.35 * (10.0 - y) + 0.5;
-        const std::vector<NodeId> limb =
-            line(trunk, glm::normalize(out), reach, std::min(0.012 * stout * reach, tree.node(trunk).radius), 8);
+        const std::vector<NodeId> limb = line(trunk, glm::normalize(out), reach,
+                                              std::min(0.012 * stout * reach, tree.node(trunk).radius), 8);
         for (size_t k = 3; k < limb.size(); k++) {
             const DMat3 frame = frame_about(glm::normalize(out));
             const double roll = 2.4 * static_cast<double>(k) + i;
@@ -134,7 +134,8 @@ TEST(OwnTwigs, ATreeGivesWellShapedOnesOfSeveralSizes) {
     for (const std::string& habit : habit_names()) {
         const Tree tree = grown(habit, 5);
         if (habit == "palm") {
-            EXPECT_NE(sentence_of([&] { stock_of_tree(tree, ""); }).find("no side branches"), std::string::npos);
+            EXPECT_NE(sentence_of([&] { stock_of_tree(tree, ""); }).find("no side branches"),
+                      std::string::npos);
             continue;
         }
         const TwigStock stock = stock_of_tree(tree, habit);
@@ -240,7 +241,8 @@ TEST(OwnTwigs, ThoseOfOneSizeAreAllUsed) {
 
 TEST(OwnTwigs, AreSavedWithTheSketch) {
     for (const bool of_tree : {false, true}) {
-        Sketch sketch = with_stock(2, of_tree ? stock_of_tree(grown("broadleaf", 2), "My oak") : some_library());
+        Sketch sketch =
+            with_stock(2, of_tree ? stock_of_tree(grown("broadleaf", 2), "My oak") : some_library());
         sketch.number_strokes();
         sketch.species = "oak";
         SketchOptions options;
@@ -304,26 +306,29 @@ TEST(OwnTwigs, NonsenseGetsASentence) {
     EXPECT_EQ(stock(R"j({"twigs": ["!(.01)F(1)"]})j"), "");
     for (const char* bad :
          {"", "[]", "{}", R"j({"twigs": 3})j", R"j({"twigs": []})j", R"j({"twigs": [3]})j",
-          R"j({"twigs": ["!(.01)F(1)"], "angles": [50, 40]})j", R"j({"twigs": ["!(.01)F(1)"], "angles": [500]})j",
-          R"j({"twigs": ["!(.01)F(1)"], "arrangement": "heap"})j", R"j({"twigs": ["!(.01)F(1)"], "height": -1})j",
-          R"j({"twigs": ["!(.01)F(1)"], "taper": {}})j", R"j({"twigs": ["!(.01)F(1)"], "title": 7})j"})
+          R"j({"twigs": ["!(.01)F(1)"], "angles": [50, 40]})j",
+          R"j({"twigs": ["!(.01)F(1)"], "angles": [500]})j",
+          R"j({"twigs": ["!(.01)F(1)"], "arrangement": "heap"})j",
+          R"j({"twigs": ["!(.01)F(1)"], "height": -1})j", R"j({"twigs": ["!(.01)F(1)"], "taper": {}})j",
+          R"j({"twigs": ["!(.01)F(1)"], "title": 7})j"})
         EXPECT_FALSE(stock(bad).empty()) << bad;
     const std::string head = R"j({"format": "treerec sketch", "version": 1, "strokes": [], )j";
-    for (const char* bad : {R"j("density": 9})j", R"j("density": "a"})j", R"j("trunk_radius": -1})j", R"j("depth": "deep"})j",
-                            R"j("crown": 3})j", R"j("twigs": []})j"})
+    for (const char* bad : {R"j("density": 9})j", R"j("density": "a"})j", R"j("trunk_radius": -1})j",
+                            R"j("depth": "deep"})j", R"j("crown": 3})j", R"j("twigs": []})j"})
         EXPECT_FALSE(sentence_of([&] { parse_sketch_json(head + bad); }).empty()) << bad;
 }
 
 TEST(OwnTwigs, ALibraryOfGodotIsRead) {
     const std::string path = (std::filesystem::temp_directory_path() / "own_twigs_test.tres").string();
-    write_file(path, "[gd_resource type=\"Resource\" script_class=\"TwigLibrary\" format=3]\n\n"
-                     "[sub_resource type=\"Resource\" id=\"a\"]\ntitle = \"One\nlstring = \\\"F(9)\\\"\n\"\n"
-                     "lstring = \"!(.01)F(1)[+(30)F(.5)]\nF(.5)\"\n\n"
-                     "[sub_resource type=\"Resource\" id=\"b\"]\nlstring = \"FF\"\ndialect = 1\n\n"
-                     "[resource]\ntwigs = [SubResource(\"a\"), SubResource(\"b\")]\n");
+    write_file(path,
+               "[gd_resource type=\"Resource\" script_class=\"TwigLibrary\" format=3]\n\n"
+               "[sub_resource type=\"Resource\" id=\"a\"]\ntitle = \"One\nlstring = \\\"F(9)\\\"\n\"\n"
+               "lstring = \"!(.01)F(1)[+(30)F(.5)]\nF(.5)\"\n\n"
+               "[sub_resource type=\"Resource\" id=\"b\"]\nlstring = \"FF\"\ndialect = 1\n\n"
+               "[resource]\ntwigs = [SubResource(\"a\"), SubResource(\"b\")]\n");
     const std::vector<std::string> strings = read_twig_strings(path);
-    EXPECT_EQ(strings, (std::vector<std::string>{"!(.01)F(1)[+(30)F(.5)]\nF(.5)",
-                                                 "# L-string; dialect paper\nFF"}));
+    EXPECT_EQ(strings,
+              (std::vector<std::string>{"!(.01)F(1)[+(30)F(.5)]\nF(.5)", "# L-string; dialect paper\nFF"}));
     write_file(path, "[gd_resource type=\"Resource\" format=3]\n\n[resource]\n");
     EXPECT_NE(sentence_of([&] { read_twig_strings(path); }).find("no twigs"), std::string::npos);
     write_file(path, "RSRC....");

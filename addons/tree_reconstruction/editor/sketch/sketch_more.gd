@@ -1,7 +1,7 @@
 @tool
 extends FoldableContainer
-## What few need to change of a sketched tree: how its strokes get their depth, what bounds its crown,
-## and how thick its trunk is.
+## What few need to change of a sketched tree: how its strokes get their depth, what bounds its
+## crown, and how thick its trunk is.
 
 ## A value was chosen, as of the other options.
 signal value_chosen(title: String, property: StringName, value: Variant, merged: bool)
@@ -21,50 +21,40 @@ func _init() -> void:
 		["True", "Paper"], [int(TreeSketch.DEPTH_TRUE), int(TreeSketch.DEPTH_PAPER)]
 	)
 	crown = Widgets.choice(
-		["Sections", "Alpha shapes"],
-		[int(TreeSketch.CROWN_SECTIONS), int(TreeSketch.CROWN_ALPHA)]
+		["Sections", "Alpha shapes"], [int(TreeSketch.CROWN_SECTIONS), int(TreeSketch.CROWN_ALPHA)]
 	)
 	trunk_radius = Widgets.number(0.0, 2.0, 0.005, "m")
 	trunk_radius.allow_greater = true
 	var body: VBoxContainer = VBoxContainer.new()
 	body.add_child(
-		(
-			Widgets
-			. line(
-				"Depth",
-				(
-					"True keeps the front as it was drawn, and adds branches in front and behind. Paper"
-					+ " turns the drawn branches about the trunk and adds none, as in the paper that"
-					+ " the method is from."
-				),
-				depth
-			)
+		Widgets.line(
+			"Depth",
+			(
+				"True keeps the front as it was drawn, and adds branches in front and behind. Paper"
+				+ " turns the drawn branches about the trunk and adds none, as in the paper that"
+				+ " the method is from."
+			),
+			depth
 		)
 	)
 	body.add_child(
-		(
-			Widgets
-			. line(
-				"Crown",
-				(
-					"What bounds the twigs: round sections of the outline, or alpha shapes of random"
-					+ " points, which take several times longer."
-				),
-				crown
-			)
+		Widgets.line(
+			"Crown",
+			(
+				"What bounds the twigs: round sections of the outline, or alpha shapes of random"
+				+ " points, which take several times longer."
+			),
+			crown
 		)
 	)
 	body.add_child(
-		(
-			Widgets
-			. line(
-				"Trunk radius",
-				(
-					"How thick the trunk is at its foot. 0 is as drawn with two lines, or else as the"
-					+ " twigs' tree has it, or a fortieth of the height."
-				),
-				trunk_radius
-			)
+		Widgets.line(
+			"Trunk radius",
+			(
+				"How thick the trunk is at its foot. 0 is as drawn with two lines, or else as the"
+				+ " twigs' tree has it, or a fortieth of the height."
+			),
+			trunk_radius
 		)
 	)
 	add_child(body)

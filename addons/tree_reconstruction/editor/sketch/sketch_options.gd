@@ -136,16 +136,13 @@ func _add_species() -> void:
 	species = Widgets.choice(titles, names)
 	species.get_popup().about_to_popup.connect(list_twigs)
 	add_child(
-		(
-			Widgets
-			. line(
-				"Species",
-				(
-					"Whose twigs, leaves and bark the tree gets: a species', those of another tree in"
-					+ " the scene, or twigs that you keep in a library. The strokes stay."
-				),
-				species
-			)
+		Widgets.line(
+			"Species",
+			(
+				"Whose twigs, leaves and bark the tree gets: a species', those of another tree in"
+				+ " the scene, or twigs that you keep in a library. The strokes stay."
+			),
+			species
 		)
 	)
 

@@ -47,12 +47,14 @@ func get_sources(sketch: TreeSketch) -> Dictionary[String, Variant]:
 
 ## Takes the twigs of a source, on a worker: a scanned tree is large.
 func take(sketch: TreeSketch, name: String, source: Variant) -> void:
-	var from: Resource = source as Resource
-	if source is String:
-		from = load(source as String) as TwigLibrary if ResourceLoader.exists(source) else null
-		if from == null:
-			_session.say(tr("%s is no library of twigs.") % source, Session.Kind.ERROR)
-			return
+	var from: Resource = null
+	if source is TreeReconstruction:
+		from = source
+	elif ResourceLoader.exists(source as String):
+		from = load(source as String) as TwigLibrary
+	if from == null:
+		_session.say(tr("%s is no library of twigs.") % source, Session.Kind.ERROR)
+		return
 	var worker: TreeReconstructor = TreeReconstructor.new()
 	_session.jobs.start(
 		tr("Taking the twigs of %s") % name,

@@ -49,6 +49,37 @@ const PATTERNS: PackedStringArray = [
 	"The density of twigs must be from 0 to 4.",
 	"The trunk's radius must be from 0 to a fifth of the tree's height.",
 	"There are no twigs of %s for a sketch; use one of: %s.",
+	# Of twigs of one's own.
+	"The library has no twigs: keep some branches in it first.",
+	"The library has %s twigs; a sketch takes at most %s.",
+	"Twig %s of the library is no branch for a sketch. %s",
+	"Twig %s of the library is %s m long; a sketch takes twigs from 0.01 to 20 m.",
+	(
+		"Twig %s of the library is too thick for its length: its radius is more than a quarter of"
+		+ " it."
+	),
+	"There is no tree to take twigs of.",
+	"The tree has no side branches to take twigs of.",
+	"None of the tree's side branches is a twig for a sketch: they are too crooked or too large.",
+	"This has no twigs: give a TwigLibrary or a TreeReconstruction.",
+	"The sketch's own twigs",
+	"%s: its twigs",
+	"%s are larger than 16 MiB, which none of a sketch are.",
+	"%s cannot be read as JSON.",
+	"%s have no list of 'twigs'.",
+	"%s have one that is no text.",
+	"%s have a 'title' that is no text.",
+	"%s have an 'arrangement' that is none of alternate, opposite and clustered.",
+	"%s have 'angles' that are no list.",
+	"%s have 'angles' that are not from 0 to 180 degrees, in ascending order.",
+	"%s have a 'taper' that is no {...}.",
+	"%s have a taper whose '%s' is not eleven numbers.",
+	"%s have a taper whose '%s' does not fall from 1 to 0.",
+	"%s have a '%s' that is no number.",
+	"%s have a '%s' that is out of range, or none.",
+	"%s has a 'trunk_radius' that is not from 0 to 40 m.",
+	"%s has a 'density' that is not from 0 to 4.",
+	"%s has a '%s' that is neither '%s' nor '%s'.",
 	(
 		"This build was made without CGAL and has no alpha shapes; let sections bound the crown"
 		+ " instead."

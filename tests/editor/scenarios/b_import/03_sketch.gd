@@ -11,6 +11,7 @@ func run() -> void:
 	await _draw()
 	await _undo()
 	await _bend()
+	await _take_twigs()
 	await _end()
 
 
@@ -184,6 +185,50 @@ func _bend() -> void:
 	await until(_is_calm, "it is built")
 	await user.frames(40)
 	await picture("sketch-species")
+
+
+# Of a second tree in the scene, and with what is folded away.
+func _take_twigs() -> void:
+	await step("a sketch takes the twigs of another tree in the scene, and gives them back")
+	if not check(_tree() != null, "There is no tree."):
+		return
+	var other: TreeInstance3D = TreeInstance3D.new()
+	other.name = "MyOak"
+	other.reconstruction = _tree().reconstruction.duplicate()
+	other.reconstruction.provenance = {}
+	other.reconstruction.leaf_preset = "oak"
+	other.position.x = -12.0
+	_root().add_child(other)
+	var before: PackedByteArray = bytes(_tree().reconstruction)
+	var species: OptionButton = find_control("OptionButton", "Whose twigs", _window())
+	await press(species)
+	await user.frames(10)
+	await picture("sketch-whose-twigs")
+	var last: int = species.item_count - 1
+	check("MyOak" in species.get_item_text(last), "It offers %s." % species.get_item_text(last))
+	# Upwards from the first one is the last.
+	species.get_popup().set_focused_item(last)
+	await user.key("Return")
+	await until(
+		func() -> bool: return _tree().reconstruction.leaf_preset == "oak",
+		"it has the oak's leaves"
+	)
+	await until(_is_calm, "it is built")
+	check_equal(_strokes(), 5, "strokes with other twigs")
+	check("MyOak" in species.text, "It shows %s." % species.text)
+	var twigs: String = _tree().reconstruction.provenance["sketch"].get(&"twigs")
+	check(twigs.length() > 100, "The sketch has no twigs of its own.")
+	for more: Node in _window().find_children("*", "FoldableContainer", true, false):
+		(more as FoldableContainer).folded = false
+	await user.frames(40)
+	check_fits()
+	await picture("sketch-own-twigs")
+	for more: Node in _window().find_children("*", "FoldableContainer", true, false):
+		(more as FoldableContainer).folded = true
+	await user.click(_place(30, 990))
+	await user.key("ctrl+z")
+	await until(func() -> bool: return bytes(_tree().reconstruction) == before, "it is undone")
+	other.free()
 
 
 func _end() -> void:
