@@ -49,7 +49,7 @@ func _init() -> void:
 	)
 	body.add_child(
 		Widgets.line(
-			"Trunk radius",
+			"Trunk",
 			(
 				"How thick the trunk is at its foot. 0 is as drawn with two lines, or else as the"
 				+ " twigs' tree has it, or a fortieth of the height."
