@@ -321,6 +321,8 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("sketch_tree", "sketch"), &TreeReconstructor::sketch_tree);
     ClassDB::bind_method(D_METHOD("load_sketch", "path"), &TreeReconstructor::load_sketch);
     ClassDB::bind_method(D_METHOD("save_sketch", "sketch", "path"), &TreeReconstructor::save_sketch);
+    ClassDB::bind_method(D_METHOD("draw_limb", "tree", "camera", "stroke", "points", "options"),
+                         &TreeReconstructor::draw_limb, DEFVAL(PackedVector3Array()), DEFVAL(Dictionary()));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_sketch_species"),
                                 &TreeReconstructor::get_sketch_species);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),
