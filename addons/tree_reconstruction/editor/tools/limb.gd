@@ -22,8 +22,6 @@ var _pressed: InputEventMouseButton
 var _positions: PackedVector2Array
 var _pinhole: Pinhole
 var _strokes: LimbStrokes
-var _figures: String = ""
-var _label: Label
 
 
 func get_id() -> StringName:
@@ -79,29 +77,15 @@ func make_settings() -> Control:
 		values[&"seed"],
 		_on_seed_changed
 	)
-	_label = (
-		strip
-		. add_text(
-			_figures,
-			tr(
-				(
-					"How true the tree is to its scan, before and after the limb: the share of the scan's points"
-					+ " that lie in the wood (R_s), and of those within 2 cm of the bark."
-				)
-			)
-		)
-	)
 	return strip
 
 
 func start() -> void:
 	super()
-	_figures = ""
 	if _strokes == null:
 		_strokes = LimbStrokes.new(session)
 		_strokes.changed.connect(_on_strokes_changed)
 		_strokes.grown.connect(_on_grown)
-		_strokes.told.connect(_on_told)
 	_strokes.start()
 
 
@@ -252,12 +236,6 @@ func _on_strokes_changed() -> void:
 
 func _on_grown(added: PackedInt32Array) -> void:
 	session.select(added)
-
-
-func _on_told(figures: String) -> void:
-	_figures = figures
-	if is_instance_valid(_label):
-		_label.text = figures
 
 
 static func _is_same(a: Pinhole, b: Pinhole) -> bool:

@@ -8,8 +8,6 @@ extends RefCounted
 signal changed
 ## A limb has grown; its nodes.
 signal grown(added: PackedInt32Array)
-## What is told of a limb's fidelity, in figures; empty while it is measured.
-signal told(figures: String)
 
 const Session := preload("../session.gd")
 const Pinhole := preload("pinhole.gd")
@@ -178,7 +176,6 @@ func _tell(limb: Dictionary, before: TreeReconstruction) -> void:
 	var sentence: String = " ".join(words)
 	var kind: Session.Kind = Session.Kind.INFO if measured > 0.0 else Session.Kind.WARNING
 	_session.say(sentence, kind)
-	told.emit("")
 	if _session.scan.wood.is_empty():
 		return
 	var after: TreeReconstruction = TreeReconstruction.new()
@@ -227,7 +224,6 @@ func _on_compared(
 		tr("Fidelity R_s %.3f → %.3f, explained %.1f %% → %.1f %%.")
 		% [was["skeleton"], now["skeleton"], 100.0 * was["explained"], 100.0 * now["explained"]]
 	)
-	told.emit(figures)
 	_session.say("%s %s" % [figures, sentence], kind)
 
 

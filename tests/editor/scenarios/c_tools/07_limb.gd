@@ -37,7 +37,10 @@ func run() -> void:
 	await _draw_over_scan()
 	await _draw_orthogonal()
 	await _draw_over_photo()
+	check(not session().get(&"view").leaves, "The leaves came back.")
 	session().get(&"view").leaves = true
+	session().get(&"view").point_size = 2.0
+	session().get(&"scan").call(&"stop_measuring")
 	check(await save_scene(), "The scene can't be saved.")
 
 
@@ -82,9 +85,21 @@ func _prune() -> bool:
 	await view_rests()
 	if not await take_tool(&"limb", "z"):
 		return false
-	return await until(
-		func() -> bool: return not session().get(&"scan").points.is_empty(), "the scan is read"
-	)
+	# Red are the points that nothing explains.
+	session().get(&"scan").call(&"measure")
+	if not await until(
+		func() -> bool: return session().get(&"scan").fidelity != null, "the tree is measured"
+	):
+		return false
+	session().get(&"view").point_colors = 2
+	session().get(&"view").point_size = 3.0
+	for i: int in 9:
+		await user.click(middle(view().get_parent() as Control), User.WHEEL_UP)
+	await view_rests()
+	var room: Rect2 = (view().get_parent() as Control).get_global_rect()
+	for at: Vector2 in _on_screen(_axis):
+		check(room.has_point(at), "%v of the limb is not seen." % at)
+	return true
 
 
 # The way along the child with most wood above it.
@@ -180,11 +195,7 @@ func _check_better(sentence: String) -> void:
 func _draw_orthogonal() -> void:
 	await step("the limb is drawn in an orthogonal view")
 	var camera: Camera3D = view().get_camera_3d()
-	await user.key("KP_5")
-	await until(
-		func() -> bool: return camera.projection == Camera3D.PROJECTION_ORTHOGONAL,
-		"the view is orthogonal"
-	)
+	await _look(camera, Camera3D.PROJECTION_ORTHOGONAL)
 	await view_rests()
 	await _drag(_on_screen(_axis), "limb-orthogonal")
 	await _let_go()
@@ -193,11 +204,16 @@ func _draw_orthogonal() -> void:
 	_check_better(_status())
 	await user.key("ctrl+z")
 	await until(func() -> bool: return bytes(_of) == _pruned, "the limb is undone")
-	await user.key("KP_5")
-	await until(
-		func() -> bool: return camera.projection == Camera3D.PROJECTION_PERSPECTIVE,
-		"the view has perspective again"
-	)
+	await _look(camera, Camera3D.PROJECTION_PERSPECTIVE)
+
+
+func _look(camera: Camera3D, projection: Camera3D.ProjectionType) -> void:
+	for attempt: int in 4:
+		await user.key("KP_5")
+		await user.frames(10)
+		if camera.projection == projection:
+			return
+	check(false, "The view's projection stays.")
 
 
 func _stage() -> Control:
