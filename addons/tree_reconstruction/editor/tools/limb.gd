@@ -122,6 +122,8 @@ func _press(button: InputEventMouseButton) -> bool:
 	_pressed = button
 	_positions = [button.position]
 	_pinhole = _look_through(_eye)
+	# Its ring and label would hide where one draws.
+	session.hovered = NO_NODE
 	_clear()
 	changed.emit()
 	return true
