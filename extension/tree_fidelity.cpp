@@ -1,7 +1,6 @@
 #include "tree_fidelity.h"
 
 #include <cmath>
-#include <cstring>
 #include <godot_cpp/classes/array_mesh.hpp>
 #include <godot_cpp/classes/project_settings.hpp>
 #include <godot_cpp/variant/packed_float32_array.hpp>
@@ -14,29 +13,13 @@
 #include "fidelity/picture.h"
 #include "fidelity/unexplained.h"
 #include "mesh/branch_tubes.h"
+#include "scan_points.h"
 #include "tree/branches.h"
 
 using namespace godot;
 
 static String file_path(const String& p_path) {
     return ProjectSettings::get_singleton()->globalize_path(p_path);
-}
-
-static treerec::PointCloud cloud_of(const treerec::Tree& p_tree, const PackedVector3Array& p_points) {
-    treerec::PointCloud cloud;
-    cloud.frame = p_tree.frame();
-    cloud.positions.resize(size_t(p_points.size()));
-    static_assert(sizeof(treerec::Vec3) == sizeof(Vector3));
-    if (!p_points.is_empty()) {
-        std::memcpy(static_cast<void*>(cloud.positions.data()), p_points.ptr(),
-                    cloud.positions.size() * sizeof(Vector3));
-    }
-    for (const treerec::Vec3& p : cloud.positions) {
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-            throw treerec::Error("The cloud has a point that is nowhere: a coordinate is no finite number.");
-        }
-    }
-    return cloud;
 }
 
 static Dictionary to_dictionary(const treerec::FidelityPart& p_part) {
@@ -75,7 +58,7 @@ Dictionary TreeReconstruction::measure_fidelity(const PackedVector3Array& p_poin
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         treerec::FidelityOptions options;
         options.tolerance = p_tolerance;
-        return to_dictionary(treerec::measure_fidelity(*tree, cloud_of(*tree, p_points), options));
+        return to_dictionary(treerec::measure_fidelity(*tree, to_cloud(tree->frame(), p_points), options));
     });
 }
 
@@ -85,7 +68,7 @@ bool TreeFidelity::set_cloud(const Ref<TreeReconstruction>& p_tree, const Packed
     return guarded(false, [&] {
         treerec::FidelityOptions options;
         options.tolerance = p_tolerance;
-        treerec::PointCloud cloud = cloud_of(*p_tree->get_tree(), p_points);
+        treerec::PointCloud cloud = to_cloud(p_tree->get_tree()->frame(), p_points);
         auto tracker = std::make_unique<treerec::FidelityTracker>(cloud, options);
         const std::lock_guard lock(mutex_);
         cloud_ = std::move(cloud);

@@ -11,6 +11,7 @@
 #include "photos/cameras_tell.h"
 #include "pipeline/html_report.h"
 #include "pipeline/show_fidelity.h"
+#include "scan_points.h"
 #include "tree_fidelity.h"
 #include "tree_reconstructor.h"
 #include "tree_reconstructor_job.h"
@@ -55,19 +56,6 @@ static treerec::OutlineFolders to_folders(const TreeReconstruction& p_tree, cons
             "the tree.");
     }
     return folders;
-}
-
-static treerec::PointCloud to_cloud(const treerec::ScanFrame& p_frame, const PackedVector3Array& p_points) {
-    treerec::PointCloud cloud;
-    cloud.frame = p_frame;
-    cloud.positions.reserve(size_t(p_points.size()));
-    for (const Vector3& point : p_points) {
-        if (!point.is_finite()) {
-            throw treerec::Error("The cloud has a point that is nowhere: a coordinate is no finite number.");
-        }
-        cloud.positions.emplace_back(point.x, point.y, point.z);
-    }
-    return cloud;
 }
 
 Dictionary TreeReconstructor::load_outlines(const Ref<TreeReconstruction>& p_tree,

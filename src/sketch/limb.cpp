@@ -229,9 +229,11 @@ DrawnLimb draw_limb(const Tree& tree, const PointCloud* cloud, const LimbStroke&
                    tree.node(limb.host).radius);
     if (limb.measured <= 0.0)
         limb.remarks.emplace_back(
-            "No points of the scan lie along the stroke that the tree lacks: how far the limb reaches "
-            "towards "
-            "the camera or away from it is guessed from the tree's other limbs.");
+            cloud && cloud->size() > 0
+                ? "No points of the scan lie along the stroke that the tree lacks: how far the limb reaches "
+                  "towards the camera or away from it is guessed from the tree's other limbs."
+                : "There is no scan: how far the limb reaches towards the camera or away from it is guessed "
+                  "from the tree's other limbs.");
     progress.update(0.8, "Twigs");
     std::vector<TwigOnLimb> twigs;
     if (options.twigs) twigs = draw_twigs(statistics, order, limb.axis, options.seed);

@@ -29,6 +29,8 @@ var _node: TreeInstance3D
 var _focused: WeakRef = weakref(null)
 # From where the user looked.
 var _from: Vector3
+# What a tool draws lies over the stage, whose own drawing is the photo.
+var _ink: Control
 var _chooser: FileChooser = FileChooser.new()
 # As it was set last.
 var _mode: Stage.Mode = Stage.Mode.BEHIND
@@ -71,6 +73,7 @@ func leave() -> void:
 	cover = null
 	stage = null
 	bar = null
+	_ink = null
 	_node = null
 	_shown = null
 
@@ -106,12 +109,15 @@ func update() -> void:
 		return
 	source.update()
 	stage.update(_node.global_transform)
+	_ink.queue_redraw()
 
 
 ## Takes a key, or returns whether it was for somebody else.
 func take_key(event: InputEventKey) -> bool:
 	if not event.pressed:
 		return false
+	if _is_drawn_over() and _session.tool.call(&"input", stage.camera, event):
+		return true
 	match event.get_keycode_with_modifiers():
 		KEY_ESCAPE:
 			leave()
@@ -140,6 +146,12 @@ func _open(camera: Camera3D) -> void:
 	stage.size_flags_vertical = Control.SIZE_EXPAND_FILL
 	stage.gui_input.connect(_on_stage_input)
 	rows.add_child(stage)
+	_ink = Control.new()
+	_ink.mouse_filter = Control.MOUSE_FILTER_IGNORE
+	_ink.clip_contents = true
+	_ink.draw.connect(_on_ink_draw)
+	stage.add_child(_ink)
+	_ink.set_anchors_and_offsets_preset(Control.PRESET_FULL_RECT)
 	cover.add_child(rows)
 	rows.set_anchors_and_offsets_preset(Control.PRESET_FULL_RECT)
 	bar.chosen.connect(source.choose)
@@ -212,12 +224,32 @@ func _on_opacity_chosen(opacity: float) -> void:
 
 
 func _on_stage_input(event: InputEvent) -> void:
+	if event is InputEventMouse:
+		if not _is_drawn_over() or _standing.is_empty():
+			return
+		if _session.tool.call(&"input", stage.camera, event):
+			if event is InputEventMouseButton:
+				stage.grab_focus()
+			stage.accept_event()
+		return
 	var key: InputEventKey = event as InputEventKey
 	if key == null:
 		return
 	var over: Stage = stage
 	if take_key(key) and over.is_inside_tree():
 		over.accept_event()
+
+
+# Whether the tool at hand draws over photos; any other one waits for its viewport.
+func _is_drawn_over() -> bool:
+	return (
+		_session.view.editing and _session.tool != null and _session.tool.call(&"draws_over_photos")
+	)
+
+
+func _on_ink_draw() -> void:
+	if is_open() and _is_drawn_over():
+		_session.tool.call(&"draw_strokes", _ink)
 
 
 func _choose_folder() -> void:

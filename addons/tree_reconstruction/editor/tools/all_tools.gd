@@ -20,6 +20,7 @@ const _TOOLS: Array[GDScript] = [
 	preload("leaf_rule.gd"),
 	preload("length.gd"),
 	preload("complete.gd"),
+	preload("limb.gd"),
 	preload("doubt.gd"),
 	preload("unfit.gd"),
 	preload("flood.gd"),

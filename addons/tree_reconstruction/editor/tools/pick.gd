@@ -42,6 +42,11 @@ func make_settings() -> Control:
 
 
 func _click(id: int) -> void:
+	if session.tree.get_node_count() < 2:
+		session.say(
+			"The tree is a single node: there is no branch on it to take.", session.Kind.WARNING
+		)
+		return
 	var lstring: String = session.tree.take_branch(id)
 	if lstring.is_empty():
 		return

@@ -57,6 +57,12 @@ func make_settings() -> Control:
 	return null
 
 
+## Whether the mouse is for it over a photo, too, while the tree is compared with its photos. Then
+## it has a [code]draw_strokes(on: CanvasItem)[/code].
+func draws_over_photos() -> bool:
+	return false
+
+
 ## Draws over the viewport.
 func draw(_overlay: Control) -> void:
 	pass

@@ -22,7 +22,11 @@ const Toolbar: GDScript = preload("toolbar.gd")
 const ViewMenu: GDScript = preload("view_menu.gd")
 const Strip: GDScript = preload("strip.gd")
 const AllTools: GDScript = preload("../tools/all_tools.gd")
-const SelectTool: GDScript = preload("../tools/select.gd")
+
+# Our keys over a photo.
+const _OVER_PHOTOS: Array[StringName] = [
+	&"compare_photos", &"show_mesh", &"show_leaves", &"screenshot", &"tool_limb", &"tool_select"
+]
 
 var _plugin: EditorPlugin
 var _session: Session
@@ -175,9 +179,9 @@ func _make_input() -> void:
 	_router.missed.connect(_give_back)
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.connect(_on_tool_wants)
-	var select: SelectTool = _session.tools.get(&"select") as SelectTool
-	if select != null:
-		select.give_back = _give_back
+	for id: StringName in [&"select", &"limb"]:
+		if _session.tools.has(id):
+			_session.tools[id].set(&"give_back", _give_back)
 	_picker.set(&"are_arrows_shown", _transform_tools.are_shown)
 	if _session.tool == null:
 		_session.choose(&"select")
@@ -334,11 +338,11 @@ func _on_asked(action: StringName) -> void:
 	_actions.run(action, _get_camera())
 
 
-# Of our keys, those that show and hide what the photos are compared with, keep a picture of it, or
-# end it.
+# Of our keys, those that show and hide what the photos are compared with, keep a picture of it,
+# draw over it, or end it.
 func _press_over_photos(event: InputEventKey) -> bool:
 	var action: StringName = _shortcuts.find(event)
-	if action not in [&"compare_photos", &"show_mesh", &"show_leaves", &"screenshot"]:
+	if action not in _OVER_PHOTOS:
 		return false
 	_on_asked(action)
 	return true

@@ -109,7 +109,8 @@ func _notification(what: int) -> void:
 			get_theme_font_size(&"font_size", &"Label")
 		)
 		var between: int = get_theme_constant(&"line_spacing", &"Label")
-		_status.custom_minimum_size.y = _LINES * (line + between)
+		var border: float = get_theme_stylebox(&"normal", &"Label").get_minimum_size().y
+		_status.custom_minimum_size.y = _LINES * (line + between) + border
 
 
 func _show_hint() -> void:
