@@ -366,6 +366,9 @@ func _look_home() -> void:
 	elif _surfaces.has(camera.get_viewport()):
 		_home_due = false
 		var added: bool = _session.view.take_wanted(_session.node)
+		if _session.view.drawing:
+			# It is seen where it was drawn.
+			return
 		if Actions.CameraViews.is_untouched(camera):
 			_actions.views.look(&"view_home", camera)
 		elif added and not _actions.views.is_framed(camera):

@@ -1,0 +1,257 @@
+@tool
+extends "../../test_plugin/garden.gd"
+## A tree that is drawn right in the 3D view: over nothing, and in a scan.
+
+# Of each stroke, the box on the screen that it was drawn in.
+var _drawn: Array[Rect2] = []
+
+
+func run() -> void:
+	await _open()
+	await _draw_over_nothing()
+	await _undo()
+	await _turn_on()
+	await _draw_in_a_scan()
+
+
+func _window() -> AcceptDialog:
+	return dialog("Sketch Tree")
+
+
+func _panel() -> Control:
+	return _window().find_child("*SketchPanel*", true, false) as Control if _window() else null
+
+
+func _root() -> Node:
+	return EditorInterface.get_edited_scene_root()
+
+
+# The tree that was drawn.
+func _tree() -> TreeInstance3D:
+	for child: Node in _root().get_children():
+		var node: TreeInstance3D = child as TreeInstance3D
+		if node != null and node.reconstruction.provenance.get("sketch") is TreeSketch:
+			return node
+	return null
+
+
+func _strokes() -> int:
+	if _tree() == null:
+		return 0
+	return (_tree().reconstruction.provenance["sketch"].get(&"strokes") as Array).size()
+
+
+func _is_calm() -> bool:
+	if not session().jobs.get_running().is_empty():
+		return false
+	return _tree() == null or not (_tree().is_rebuilding() or _tree().is_building_levels())
+
+
+# Where the view is on the screen, without what the window hides.
+func _free() -> Rect2:
+	var container: Control = view().get_parent() as Control
+	var box: Rect2 = container.get_global_rect()
+	var left: float = _window().position.x + _window().size.x + 12.0
+	return Rect2(left, box.position.y + 60.0, box.end.x - left - 20.0, box.size.y - 90.0)
+
+
+func _stroke(points: PackedVector2Array) -> void:
+	var box: Rect2 = Rect2(points[0], Vector2.ZERO)
+	for point: Vector2 in points:
+		box = box.expand(point)
+	_drawn.append(box)
+	await user.drag(points)
+	await until(func() -> bool: return session().jobs.get_running().is_empty(), "it is read")
+
+
+func _ring(around: Vector2, radii: Vector2) -> PackedVector2Array:
+	var line: PackedVector2Array = []
+	for i: int in 19:
+		var angle: float = TAU * i / 18.0
+		line.append(around + radii * Vector2(sin(angle), -cos(angle)))
+	return line
+
+
+# A trunk whose foot is at a place of the screen, two branches and an outline: so high.
+func _draw_tree(foot: Vector2, high: float) -> void:
+	await _stroke([foot, foot + Vector2(3.0, -0.4 * high), foot + Vector2(0.0, -0.85 * high)])
+	await _stroke(
+		[
+			foot + Vector2(2.0, -0.4 * high),
+			foot + Vector2(0.15, -0.55) * high,
+			foot + Vector2(0.25, -0.72) * high
+		]
+	)
+	await _stroke(
+		[
+			foot + Vector2(2.0, -0.5 * high),
+			foot + Vector2(-0.13, -0.6) * high,
+			foot + Vector2(-0.22, -0.75) * high
+		]
+	)
+	await _stroke(_ring(foot + Vector2(0.0, -0.66 * high), Vector2(0.3, 0.34) * high))
+
+
+# Where the wood of the tree is seen on the screen.
+func _seen() -> Rect2:
+	var box: Rect2 = Rect2(on_screen(_tree().global_position), Vector2.ZERO)
+	for place: Vector3 in _tree().reconstruction.get_positions():
+		box = box.expand(on_screen(_tree().global_transform * place))
+	return box
+
+
+# That the tree is seen where its strokes were drawn.
+func _check_place() -> void:
+	var wanted: Rect2 = _drawn[0]
+	for box: Rect2 in _drawn:
+		wanted = wanted.merge(box)
+	var seen: Rect2 = _seen()
+	var reach: float = 0.06 * wanted.size.y
+	for side: Array in [
+		[seen.position.x, wanted.position.x, "left"],
+		[seen.position.y, wanted.position.y, "top"],
+		[seen.end.x, wanted.end.x, "right"],
+		[seen.end.y, wanted.end.y, "foot"],
+	]:
+		check(
+			absf(side[0] - side[1]) < reach,
+			"Its %s is seen at %.0f, drawn at %.0f." % [side[2], side[0], side[1]]
+		)
+
+
+func _open() -> void:
+	await step("the button of the sketch's window leads into the 3D view")
+	EditorInterface.set_main_screen_editor("3D")
+	await user.key("ctrl+n")
+	if not await until(func() -> bool: return _root() == null, "a new scene"):
+		return
+	EditorInterface.add_root_node(Node3D.new())
+	EditorInterface.get_selection().clear()
+	session().sketch_wanted.emit()
+	if not await until(func() -> bool: return _window() != null, "the window opens"):
+		return
+	await user.frames(10)
+	check_fits()
+	await _press_in_view()
+	await picture("view-sketch-empty")
+
+
+func _press_in_view() -> void:
+	await press(find_control("Button", "Draw in the 3D View", _window()))
+	await until(func() -> bool: return session().view.get(&"drawing"), "strokes go to the view")
+
+
+func _draw_over_nothing() -> void:
+	await step("a trunk, two branches and an outline in the 3D view become a tree right there")
+	if not check(_window() != null, "There is no window."):
+		return
+	var camera: Transform3D = view().get_camera_3d().global_transform
+	_drawn = []
+	var free: Rect2 = _free()
+	var foot: Vector2 = Vector2(free.get_center().x, free.end.y - 40.0)
+	await _draw_tree(foot, free.size.y * 0.75)
+	if not await until(
+		func() -> bool: return _strokes() == 4, "a tree of all strokes stands there"
+	):
+		await picture("view-sketch-FAILED")
+		return
+	await until(_is_calm, "it is built")
+	check(view().get_camera_3d().global_transform == camera, "The view moved.")
+	check(absf(_tree().global_position.y) < 0.02, "It stands at %s." % _tree().global_position)
+	check_equal(str(_tree().name), "Maple", "its name")
+	_check_place()
+	await user.frames(30)
+	await picture("view-sketch-made")
+
+
+func _undo() -> void:
+	await step("Ctrl+Z in the view undoes a stroke, and the other buttons move the view")
+	if not check(_tree() != null, "There is no tree."):
+		return
+	var made: PackedByteArray = bytes(_tree().reconstruction)
+	var place: Transform3D = _tree().global_transform
+	var foot: Vector2 = on_screen(_tree().global_position)
+	await _stroke(
+		[foot + Vector2(0.0, -150.0), foot + Vector2(60.0, -210.0), foot + Vector2(80.0, -260.0)]
+	)
+	if not await until(func() -> bool: return _strokes() == 5, "it has one more branch"):
+		return
+	await user.move(foot + Vector2(150.0, -20.0))
+	await user.key("ctrl+z")
+	if not await until(func() -> bool: return _strokes() == 4, "the branch is undone"):
+		return
+	check(bytes(_tree().reconstruction) == made, "The tree is another one.")
+	check(_tree().global_transform.is_equal_approx(place), "It stands elsewhere.")
+	await user.key("ctrl+shift+z")
+	await until(func() -> bool: return _strokes() == 5, "the branch is there again")
+	await user.key("ctrl+z")
+	await until(func() -> bool: return _strokes() == 4, "the branch is undone again")
+
+
+func _turn_on() -> void:
+	await step("the middle button turns the view, and the strokes stay on their tree")
+	if not check(_tree() != null, "There is no tree."):
+		return
+	var camera: Camera3D = view().get_camera_3d()
+	var before: Transform3D = camera.global_transform
+	var middle: Vector2 = _free().get_center()
+	await user.drag(
+		[middle, middle + Vector2(60.0, 10.0), middle + Vector2(120.0, 20.0)], User.MIDDLE
+	)
+	await user.frames(30)
+	check(camera.global_transform != before, "The view did not turn.")
+	check_equal(_strokes(), 4, "strokes after the view was turned")
+	await picture("view-sketch-turned")
+	await user.key("ctrl+s")
+	await user.frames(10)
+	await user.key("Escape")
+
+
+func _draw_in_a_scan() -> void:
+	await step("over a scan the new tree stands in the scan, which stays in sight")
+	if _window() != null:
+		_window().hide()
+	await user.frames(10)
+	check(not session().view.get(&"drawing"), "Closing the window leaves the view drawn on.")
+	var made: TreeReconstruction = own_tree("res://view_sketch_tree.res")
+	if made == null:
+		return
+	made.provenance = {"source": sample}
+	ResourceSaver.save(made, "res://view_sketch_tree.res")
+	var node: TreeInstance3D = await open_garden("res://view_sketch.tscn", made)
+	if node == null:
+		return
+	session().view.set(&"points", true)
+	session().view.set(&"mesh", false)
+	session().view.set(&"leaves", false)
+	if not await until(
+		func() -> bool: return not session().scan.get(&"points").is_empty(), "the scan is there"
+	):
+		return
+	session().sketch_wanted.emit()
+	if not await until(func() -> bool: return _window() != null, "the window opens"):
+		return
+	await _press_in_view()
+	var state: PackedByteArray = bytes(made)
+	_drawn = []
+	var foot: Vector2 = on_screen(node.global_position)
+	var free: Rect2 = _free()
+	check(free.has_point(foot), "The window hides the scan's foot.")
+	await picture("view-sketch-scan-empty")
+	await _draw_tree(foot, (foot.y - free.position.y) * 0.8)
+	if not await until(func() -> bool: return _strokes() == 4, "a tree stands in the scan"):
+		await picture("view-sketch-FAILED")
+		return
+	await until(_is_calm, "it is built")
+	var off: Vector3 = _tree().global_position - node.global_position
+	check(off.length() < 0.1, "It stands %s off the scan's foot." % off)
+	check(bytes(made) == state, "The scan's own tree was changed.")
+	check(session().node == _tree(), "The new tree isn't selected.")
+	_check_place()
+	await user.frames(30)
+	await picture("view-sketch-scan")
+	_window().hide()
+	await user.frames(20)
+	await picture("view-sketch-scan-closed")
+	session().view.set(&"points", false)
+	await save_scene()
