@@ -57,7 +57,7 @@ func _init() -> void:
 				+ " through the tree's foot that faced you with the first stroke. Drag with the left button;"
 				+ " the others move the view as always. The tree becomes as large as it was drawn."
 			),
-			&"Node3D"
+			&"3D"
 		)
 	)
 	in_view.toggle_mode = true

@@ -5,11 +5,15 @@ extends RefCounted
 
 const Session := preload("../session.gd")
 const SketchPanel := preload("sketch_panel.gd")
+const Widgets := preload("../dock/widgets.gd")
 const ViewLook := preload("view_look.gd")
 const ViewScan := preload("view_scan.gd")
 const SceneAdder := preload("../import/scene_adder.gd")
 
 const _VIEWPORTS: int = 4
+# The paper's least size at the editor's scale of 1: beside a view that is drawn on it may be small.
+const _PAPER: float = 320.0
+const _SMALL_PAPER: float = 190.0
 # So near to a place of the view what was found there has to be seen, in its pixels.
 const _FOUND: float = 2.0
 
@@ -19,6 +23,8 @@ var _panel: SketchPanel
 var _scan: ViewScan
 # Whether the plugin hears of the viewports also where no tree is selected.
 var _hears: bool = false
+# Of the window, before it made room.
+var _size: Vector2i
 # By the camera's viewport: what the editor takes its events from, and where the camera was.
 var _surfaces: Dictionary[Viewport, Control] = {}
 var _seen_from: Dictionary[Viewport, Transform3D] = {}
@@ -93,6 +99,7 @@ func update() -> void:
 
 
 func _on_chosen(enabled: bool) -> void:
+	_make_room(enabled)
 	if not enabled:
 		return
 	if not _hears:
@@ -101,6 +108,18 @@ func _on_chosen(enabled: bool) -> void:
 		_plugin.set_force_draw_over_forwarding_enabled()
 	EditorInterface.set_main_screen_editor("3D")
 	_redraw()
+
+
+# The window is as small as it can be while the view behind it is drawn on.
+func _make_room(enabled: bool) -> void:
+	var window: Window = _panel.get_window()
+	var side: float = Widgets.px(_SMALL_PAPER if enabled else _PAPER)
+	_panel.canvas.custom_minimum_size = Vector2(side, side)
+	if enabled:
+		_size = window.size
+		window.reset_size()
+	elif _size != Vector2i.ZERO:
+		window.size = _size
 
 
 func _redraw() -> void:

@@ -32,7 +32,7 @@ static func draw(overlay: Control, camera: Camera3D, view: ViewStrokes) -> void:
 	elif view.sketch.strokes.is_empty() and not view.is_busy():
 		_draw_words(
 			overlay,
-			Vector2(overlay.size.x * 0.5, Widgets.px(_BUTTONS)),
+			Vector2(overlay.size.x * 0.6, Widgets.px(_BUTTONS)),
 			(
 				view
 				. tr(

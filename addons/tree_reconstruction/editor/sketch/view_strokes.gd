@@ -232,7 +232,7 @@ func _why_not(from: Camera3D) -> String:
 	var plane: ViewPlane = plane_of(sketch)
 	if ViewPlane.is_steep(from.global_transform):
 		return tr(
-			"The view looks down too steeply to draw an upright tree. Turn it until you see the tree from the side."
+			"The view looks up or down too steeply to draw an upright tree. Turn it until you see the tree from the side."
 		)
 	if plane != null and plane.is_slanted(from.global_transform):
 		return tr(

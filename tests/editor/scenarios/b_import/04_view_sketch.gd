@@ -1,6 +1,8 @@
 @tool
 extends "../../test_plugin/garden.gd"
-## A tree that is drawn right in the 3D view: over nothing, and in a scan.
+## A tree that is drawn right in the 3D view: over nothing, in a scan, and over a photo.
+
+const PhotoModel: GDScript = preload("../../test_plugin/photo_model.gd")
 
 # Of each stroke, the box on the screen that it was drawn in.
 var _drawn: Array[Rect2] = []
@@ -12,14 +14,12 @@ func run() -> void:
 	await _undo()
 	await _turn_on()
 	await _draw_in_a_scan()
+	await _draw_over_a_photo()
+	EditorInterface.distraction_free_mode = false
 
 
 func _window() -> AcceptDialog:
 	return dialog("Sketch Tree")
-
-
-func _panel() -> Control:
-	return _window().find_child("*SketchPanel*", true, false) as Control if _window() else null
 
 
 func _root() -> Node:
@@ -93,7 +93,7 @@ func _draw_tree(foot: Vector2, high: float) -> void:
 
 
 # Where the wood of the tree is seen on the screen.
-func _seen() -> Rect2:
+func _box_of_wood() -> Rect2:
 	var box: Rect2 = Rect2(on_screen(_tree().global_position), Vector2.ZERO)
 	for place: Vector3 in _tree().reconstruction.get_positions():
 		box = box.expand(on_screen(_tree().global_transform * place))
@@ -102,10 +102,13 @@ func _seen() -> Rect2:
 
 # That the tree is seen where its strokes were drawn.
 func _check_place() -> void:
+	_check_box(_box_of_wood())
+
+
+func _check_box(seen: Rect2) -> void:
 	var wanted: Rect2 = _drawn[0]
 	for box: Rect2 in _drawn:
 		wanted = wanted.merge(box)
-	var seen: Rect2 = _seen()
 	var reach: float = 0.06 * wanted.size.y
 	for side: Array in [
 		[seen.position.x, wanted.position.x, "left"],
@@ -127,18 +130,29 @@ func _open() -> void:
 		return
 	EditorInterface.add_root_node(Node3D.new())
 	EditorInterface.get_selection().clear()
-	session().sketch_wanted.emit()
-	if not await until(func() -> bool: return _window() != null, "the window opens"):
+	# So that the editor's own menus for what is selected do not make the view lower.
+	EditorInterface.distraction_free_mode = true
+	if not await _open_window():
 		return
-	await user.frames(10)
 	check_fits()
-	await _press_in_view()
+	var distance: float = view().get_camera_3d().global_position.length()
+	await user.click(_free().get_center(), User.WHEEL_DOWN, "", 8)
+	await user.frames(30)
+	var away: float = view().get_camera_3d().global_position.length()
+	check(away > 1.3 * distance, "The wheel goes no farther: %.1f m." % away)
 	await picture("view-sketch-empty")
 
 
-func _press_in_view() -> void:
+# With the button pressed.
+func _open_window() -> bool:
+	session().sketch_wanted.emit()
+	if not await until(func() -> bool: return _window() != null, "the window opens"):
+		return false
+	await user.frames(20)
 	await press(find_control("Button", "Draw in the 3D View", _window()))
-	await until(func() -> bool: return session().view.get(&"drawing"), "strokes go to the view")
+	return await until(
+		func() -> bool: return session().view.get(&"drawing"), "strokes go to the view"
+	)
 
 
 func _draw_over_nothing() -> void:
@@ -202,9 +216,6 @@ func _turn_on() -> void:
 	check(camera.global_transform != before, "The view did not turn.")
 	check_equal(_strokes(), 4, "strokes after the view was turned")
 	await picture("view-sketch-turned")
-	await user.key("ctrl+s")
-	await user.frames(10)
-	await user.key("Escape")
 
 
 func _draw_in_a_scan() -> void:
@@ -228,10 +239,9 @@ func _draw_in_a_scan() -> void:
 		func() -> bool: return not session().scan.get(&"points").is_empty(), "the scan is there"
 	):
 		return
-	session().sketch_wanted.emit()
-	if not await until(func() -> bool: return _window() != null, "the window opens"):
+	if not await _open_window():
 		return
-	await _press_in_view()
+	await user.frames(20)
 	var state: PackedByteArray = bytes(made)
 	_drawn = []
 	var foot: Vector2 = on_screen(node.global_position)
@@ -254,4 +264,64 @@ func _draw_in_a_scan() -> void:
 	await user.frames(20)
 	await picture("view-sketch-scan-closed")
 	session().view.set(&"points", false)
+	await save_scene()
+
+
+# --- over a photo ---------------------------------------------------------------------------------
+
+
+func _stage() -> Control:
+	return EditorInterface.get_base_control().find_child("PhotoStage", true, false) as Control
+
+
+# A place of the scene on the photo on the screen.
+func _on_stage(place: Vector3) -> Vector2:
+	var camera: Camera3D = _stage().get(&"camera")
+	return _stage().get_screen_transform() * camera.unproject_position(place)
+
+
+func _draw_over_a_photo() -> void:
+	await step("over a photo it is drawn through the photo's lens, near by, and the photo stays")
+	var made: TreeReconstruction = own_tree("res://view_sketch_photo.res")
+	if made == null:
+		return
+	PhotoModel.new(OS.get_environment("TREE_EDITOR_TEST").path_join("drawn"), made)
+	ResourceSaver.save(made, "res://view_sketch_photo.res")
+	var node: TreeInstance3D = await open_garden("res://view_sketch_photo.tscn", made)
+	if node == null:
+		return
+	node.transform = Transform3D(Basis(Vector3.UP, 0.7), Vector3(2.0, 0.5, -1.0))
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("F4")
+	if not await until(
+		func() -> bool: return _stage() != null and _stage().get(&"_picture") != null,
+		"the photo is seen"
+	):
+		return
+	await user.click(middle(_stage()), User.WHEEL_UP, "", 1)
+	if not await _open_window():
+		return
+	await user.frames(20)
+	_drawn = []
+	var shown: Rect2 = _stage().call(&"get_shown")
+	var foot: Vector2 = _on_stage(node.global_position)
+	var high: float = 0.8 * (foot.y - (_stage().get_global_rect().position.y + 10.0))
+	await _draw_tree(foot, high)
+	if not await until(func() -> bool: return _strokes() == 4, "a tree stands over the photo"):
+		await picture("view-sketch-FAILED")
+		return
+	await until(_is_calm, "it is built")
+	if not check(_stage() != null, "The photo is gone."):
+		return
+	check_equal(_stage().call(&"get_shown"), shown, "what is seen of the photo")
+	var off: Vector3 = _tree().global_transform.affine_inverse() * node.global_position
+	check(off.length() < 0.15, "It stands %s off the foot." % off)
+	var box: Rect2 = Rect2(_on_stage(_tree().global_position), Vector2.ZERO)
+	for place: Vector3 in _tree().reconstruction.get_positions():
+		box = box.expand(_on_stage(_tree().global_transform * place))
+	_check_box(box)
+	await user.frames(30)
+	await picture("view-sketch-photo")
+	_window().hide()
+	await until(func() -> bool: return _stage() == null, "the other tree's photos are gone")
 	await save_scene()
