@@ -5,6 +5,7 @@ extends "./session_suite.gd"
 const SketchPanel := preload("res://addons/tree_reconstruction/editor/sketch/sketch_panel.gd")
 const ViewPlane := preload("res://addons/tree_reconstruction/editor/sketch/view_plane.gd")
 const Canvas := preload("res://addons/tree_reconstruction/editor/sketch/sketch_canvas.gd")
+const TestSketch := preload("./test_sketch.gd")
 const SIZE: Vector2 = Vector2(1280.0, 800.0)
 
 var _session: Session
@@ -34,13 +35,20 @@ func _open(over: TreeReconstruction = null) -> void:
 		_session.edit_node(null)
 	_panel = SketchPanel.new(_session)
 	_panel.made.connect(_on_made)
-	_panel.history_wanted.connect(func(redo: bool) -> void: _undo.redo() if redo else _undo.undo())
+	_panel.history_wanted.connect(_on_history_wanted)
 	_panel.view.said.connect(func(sentence: String) -> void: _heard.append(sentence))
 	_panel.view.find_ground = _find_ground
 	tree.root.add_child(_panel)
 	_heard = []
 	_panel.bar.in_view.button_pressed = true
 	await tree.process_frame
+
+
+func _on_history_wanted(redo: bool) -> void:
+	if redo:
+		_undo.redo()
+	else:
+		_undo.undo()
 
 
 func _on_made(made: TreeReconstruction) -> void:
@@ -311,9 +319,7 @@ func test_a_crown_that_is_drawn_first_comes_to_the_ground_with_its_trunk() -> vo
 
 
 func test_over_a_scan_the_sheet_goes_through_its_foot() -> void:
-	var scanned: TreeReconstruction = TreeReconstructor.new().sketch_tree(
-		preload("./test_sketch.gd").small_sketch()
-	)
+	var scanned: TreeReconstruction = TreeReconstructor.new().sketch_tree(TestSketch.small_sketch())
 	scanned.provenance = {"source": "res://a_scan.ply"}
 	await _open(scanned)
 	_scene.global_transform = Transform3D(Basis(Vector3.UP, 1.0), Vector3(2.0, 0.7, -3.0))
@@ -394,6 +400,37 @@ func test_a_stroke_under_way_is_given_up() -> void:
 func _holds(condition: bool, message: String) -> bool:
 	check(condition, message)
 	return condition
+
+
+func test_a_file_keeps_what_it_tells_under_any_name() -> void:
+	await _open()
+	var sketch: TreeSketch = TestSketch.small_sketch()
+	sketch.species = "poplar"
+	sketch.height = 7.5
+	sketch.seed = 42
+	_panel.files.write(sketch, folder.path_join("strokes.json"))
+	var text: String = FileAccess.get_file_as_string(folder.path_join("strokes.json"))
+	_panel.bar.in_view.button_pressed = false
+	for name: String in ["strokes.txt", "strokes", "marked.svg"]:
+		var file: FileAccess = FileAccess.open(folder.path_join(name), FileAccess.WRITE)
+		if name == "marked.svg":
+			# As some editors write it.
+			file.store_buffer([0xEF, 0xBB, 0xBF])
+			file.store_string(" \n\t")
+		file.store_string(text)
+		file.close()
+		_panel.set_node(null)
+		_panel.view.place = null
+		_panel.files.read(folder.path_join(name))
+		for i: int in 200:
+			_session.update()
+			_panel.update()
+			await tree.process_frame
+			if _panel.get_sketch().species == "poplar":
+				break
+		var read: TreeSketch = _panel.get_sketch()
+		check_equal([read.species, read.height, read.seed], ["poplar", 7.5, 42], "of " + name)
+	_shut()
 
 
 static func _role_of(stroke: Dictionary) -> String:

@@ -33,10 +33,10 @@ static func draw(overlay: Control, camera: Camera3D, view: ViewStrokes) -> void:
 		_draw_words(
 			overlay,
 			Vector2(overlay.size.x * 0.6, Widgets.px(_BUTTONS)),
-			(
-				view
-				. tr(
-					"Drag to draw the trunk up from the ground, then branches and the crown's outline, in any order."
+			view.tr(
+				(
+					"Drag to draw the trunk up from the ground, then branches and the crown's"
+					+ " outline, in any order."
 				)
 			)
 		)

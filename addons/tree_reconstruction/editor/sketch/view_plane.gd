@@ -102,9 +102,9 @@ func to_canvas(camera: Camera3D, size: Vector2, position: Vector2) -> Vector2:
 	return Vector2(foot.x + u / pixel, foot.y - v / pixel)
 
 
-## How a drawing that takes [param box] of the canvas comes to lie well on it, as a scale and what is
-## added then; [constant Transform2D.IDENTITY] where it does already. What is drawn after it mostly
-## has room, so that it isn't moved by every stroke.
+## How a drawing that takes [param box] of the canvas comes to lie well on it, as a scale and what
+## is added then; [constant Transform2D.IDENTITY] where it does already. What is drawn after it
+## mostly has room, so that it isn't moved by every stroke.
 static func fit(box: Rect2) -> Transform2D:
 	var share: float = maxf(box.size.x / _ROOM.size.x, box.size.y / _ROOM.size.y)
 	if _EDGE.encloses(box) and share >= _LEAST_SHARE:

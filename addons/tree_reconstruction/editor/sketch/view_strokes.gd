@@ -28,7 +28,8 @@ const ViewPlane := preload("view_plane.gd")
 # has to be.
 const _SHORTEST: float = 6.0
 const _NEAR: float = 9.0
-# Where the foot is on a canvas that nothing is drawn on, and so far off is a sheet without a ground.
+# Where the foot is on a canvas that nothing is drawn on, and so far off is a sheet without a
+# ground.
 const _FOOT: Vector2 = Vector2(500.0, 960.0)
 const _AHEAD: float = 10.0
 # So many steps can be undone with the sheet of each known.
@@ -146,37 +147,45 @@ func get_over() -> TreeInstance3D:
 
 ## Takes an event over the picture of a camera, or returns whether it is for somebody else.
 func input(from: Camera3D, size: Vector2, event: InputEvent) -> bool:
+	var button: InputEventMouseButton = event as InputEventMouseButton
 	if not enabled:
 		return false
+	if is_busy():
+		return _go_on(event)
+	# With these the mouse moves the camera in some of the editor's schemes.
+	if (
+		button == null
+		or button.button_index != MOUSE_BUTTON_LEFT
+		or not button.pressed
+		or button.alt_pressed
+		or button.ctrl_pressed
+		or button.meta_pressed
+	):
+		return false
+	_press(from, size, button.position)
+	return true
+
+
+# With the stroke under way: the camera stays as long as it is drawn.
+func _go_on(event: InputEvent) -> bool:
 	var button: InputEventMouseButton = event as InputEventMouseButton
 	var motion: InputEventMouseMotion = event as InputEventMouseMotion
-	if button != null and button.button_index == MOUSE_BUTTON_LEFT:
-		# With these the mouse moves the camera in some of the editor's schemes.
-		if (
-			button.pressed
-			and not (button.alt_pressed or button.ctrl_pressed or button.meta_pressed)
-		):
-			_press(from, size, button.position)
-			return true
-		if not button.pressed and is_busy():
+	if button != null:
+		if button.button_index == MOUSE_BUTTON_LEFT and not button.pressed:
 			_release()
-			return true
-	elif button != null and is_busy():
-		if button.pressed and button.button_index == MOUSE_BUTTON_RIGHT:
+		elif button.button_index == MOUSE_BUTTON_RIGHT and button.pressed:
 			cancel()
-		# The camera stays while a stroke is drawn.
-		return true
-	elif motion != null and is_busy():
-		if not motion.button_mask & MOUSE_BUTTON_MASK_LEFT:
+	elif motion != null:
+		if motion.button_mask & MOUSE_BUTTON_MASK_LEFT:
+			_move(motion.position, motion.pressure)
+		else:
 			# It was let go elsewhere.
 			_release()
-		else:
-			_move(motion.position, motion.pressure)
-		return true
-	elif event.is_action_pressed(&"ui_cancel") and is_busy():
+	elif event.is_action_pressed(&"ui_cancel"):
 		cancel()
-		return true
-	return false
+	else:
+		return false
+	return true
 
 
 ## What the pen pressed so far, or nothing where no pen is at work: a mouse presses evenly.
@@ -232,7 +241,10 @@ func _why_not(from: Camera3D) -> String:
 	var plane: ViewPlane = plane_of(sketch)
 	if ViewPlane.is_steep(from.global_transform):
 		return tr(
-			"The view looks up or down too steeply to draw an upright tree. Turn it until you see the tree from the side."
+			(
+				"The view looks up or down too steeply to draw an upright tree. Turn it until you see the"
+				+ " tree from the side."
+			)
 		)
 	if plane != null and plane.is_slanted(from.global_transform):
 		return tr(

@@ -132,6 +132,11 @@ func _open() -> void:
 	EditorInterface.get_selection().clear()
 	# So that the editor's own menus for what is selected do not make the view lower.
 	EditorInterface.distraction_free_mode = true
+	await user.frames(20)
+	print("WHEEL 0 ", view().get_camera_3d().global_position)
+	await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN, "", 4)
+	await user.frames(30)
+	print("WHEEL 1 ", view().get_camera_3d().global_position)
 	if not await _open_window():
 		return
 	check_fits()
@@ -229,9 +234,12 @@ func _draw_in_a_scan() -> void:
 		return
 	made.provenance = {"source": sample}
 	ResourceSaver.save(made, "res://view_sketch_tree.res")
+	EditorInterface.distraction_free_mode = false
 	var node: TreeInstance3D = await open_garden("res://view_sketch.tscn", made)
 	if node == null:
 		return
+	EditorInterface.distraction_free_mode = true
+	await user.frames(20)
 	session().view.set(&"points", true)
 	session().view.set(&"mesh", false)
 	session().view.set(&"leaves", false)
@@ -287,9 +295,11 @@ func _draw_over_a_photo() -> void:
 		return
 	PhotoModel.new(OS.get_environment("TREE_EDITOR_TEST").path_join("drawn"), made)
 	ResourceSaver.save(made, "res://view_sketch_photo.res")
+	EditorInterface.distraction_free_mode = false
 	var node: TreeInstance3D = await open_garden("res://view_sketch_photo.tscn", made)
 	if node == null:
 		return
+	EditorInterface.distraction_free_mode = true
 	node.transform = Transform3D(Basis(Vector3.UP, 0.7), Vector3(2.0, 0.5, -1.0))
 	await user.move(middle(view().get_parent() as Control))
 	await user.key("F4")
