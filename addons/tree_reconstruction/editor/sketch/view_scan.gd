@@ -27,6 +27,9 @@ func update(over: TreeInstance3D) -> void:
 	if over != _node:
 		leave()
 		_node = over
+		# Once: a tree that is added is shown with all that it has, of whatever had been hidden.
+		_bark = _session.view.mesh
+		_leaves = _session.view.leaves
 	if over == null:
 		return
 	if _session.node == over:
@@ -45,14 +48,12 @@ func leave() -> void:
 	_points = null
 
 
-# Whether the points are seen though their tree isn't edited.
+## Whether the points are seen though their tree isn't edited.
 func is_shown() -> bool:
 	return _instance.is_valid()
 
 
 func _remember() -> void:
-	_bark = _session.view.mesh
-	_leaves = _session.view.leaves
 	if _points == null:
 		_points = PointView.new(_session)
 	if _points.layer.shown != (_session.view.points and not _session.scan.points.is_empty()):

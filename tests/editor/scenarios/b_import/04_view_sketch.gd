@@ -133,18 +133,12 @@ func _open() -> void:
 	# So that the editor's own menus for what is selected do not make the view lower.
 	EditorInterface.distraction_free_mode = true
 	await user.frames(20)
-	print("WHEEL 0 ", view().get_camera_3d().global_position)
-	await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN, "", 4)
-	await user.frames(30)
-	print("WHEEL 1 ", view().get_camera_3d().global_position)
+	# From so far off that what is drawn is a tree, and no bonsai.
+	await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN, "", 9)
+	await user.frames(40)
 	if not await _open_window():
 		return
 	check_fits()
-	var distance: float = view().get_camera_3d().global_position.length()
-	await user.click(_free().get_center(), User.WHEEL_DOWN, "", 8)
-	await user.frames(30)
-	var away: float = view().get_camera_3d().global_position.length()
-	check(away > 1.3 * distance, "The wheel goes no farther: %.1f m." % away)
 	await picture("view-sketch-empty")
 
 
@@ -208,7 +202,7 @@ func _undo() -> void:
 
 
 func _turn_on() -> void:
-	await step("the middle button turns the view, and the strokes stay on their tree")
+	await step("the middle button and the wheel move the view, and the strokes stay on their tree")
 	if not check(_tree() != null, "There is no tree."):
 		return
 	var camera: Camera3D = view().get_camera_3d()
@@ -218,7 +212,12 @@ func _turn_on() -> void:
 		[middle, middle + Vector2(60.0, 10.0), middle + Vector2(120.0, 20.0)], User.MIDDLE
 	)
 	await user.frames(30)
-	check(camera.global_transform != before, "The view did not turn.")
+	check(not camera.global_basis.is_equal_approx(before.basis), "The view did not turn.")
+	var distance: float = camera.global_position.length()
+	await user.click(middle, User.WHEEL_DOWN, "", 4)
+	await user.frames(30)
+	var away: float = camera.global_position.length()
+	check(away > 1.3 * distance, "The wheel goes no farther: %.1f m." % away)
 	check_equal(_strokes(), 4, "strokes after the view was turned")
 	await picture("view-sketch-turned")
 
@@ -264,6 +263,7 @@ func _draw_in_a_scan() -> void:
 	var off: Vector3 = _tree().global_position - node.global_position
 	check(off.length() < 0.1, "It stands %s off the scan's foot." % off)
 	check(bytes(made) == state, "The scan's own tree was changed.")
+	_check_scan_alone()
 	check(session().node == _tree(), "The new tree isn't selected.")
 	_check_place()
 	await user.frames(30)
@@ -273,6 +273,15 @@ func _draw_in_a_scan() -> void:
 	await picture("view-sketch-scan-closed")
 	session().view.set(&"points", false)
 	await save_scene()
+
+
+# That the scan stays in sight, and what was hidden of its own tree stays hidden.
+func _check_scan_alone() -> void:
+	for part: RefCounted in addon().get(&"_parts"):
+		if part.has_method(&"draw_always"):
+			var scan: RefCounted = part.get(&"_host").get(&"_scan")
+			check(scan.call(&"is_shown"), "The scan's points are gone.")
+			check(not scan.get(&"_leaves") and not scan.get(&"_bark"), "Its own tree came back.")
 
 
 # --- over a photo ---------------------------------------------------------------------------------
