@@ -340,7 +340,8 @@ func _draw_over_a_photo() -> void:
 		box = box.expand(_on_stage(_tree().global_transform * place))
 	_check_box(box)
 	await user.frames(30)
-	await picture("view-sketch-photo")
+	# For docs/sketch.md.
+	await picture("tour-sketch_view")
 	_window().hide()
 	await until(func() -> bool: return _stage() == null, "the other tree's photos are gone")
 	await save_scene()
