@@ -23,8 +23,11 @@ const _PARTS: PackedStringArray = [
 
 var _session: RefCounted
 var _parts: Array[RefCounted] = []
-# Those that take the viewport's events: they have input(camera, event) and draw_over(overlay).
+# Those that take the viewport's events: they have input(camera, event), and may have
+# draw_over(overlay).
 var _listeners: Array[RefCounted] = []
+# Those that draw over the viewport also where no tree is selected: they have draw_always(overlay).
+var _drawers: Array[RefCounted] = []
 var _game_export: EditorExportPlugin
 
 
@@ -57,6 +60,8 @@ func _enter_tree() -> void:
 		_parts.append(part)
 		if part.has_method(&"input"):
 			_listeners.append(part)
+		if part.has_method(&"draw_always"):
+			_drawers.append(part)
 	set_process(true)
 
 
@@ -76,6 +81,7 @@ func _exit_tree() -> void:
 		return
 	set_process(false)
 	_session.edit_node(null)
+	_drawers.clear()
 	_listeners.clear()
 	_parts.reverse()
 	for part: RefCounted in _parts:
@@ -121,7 +127,13 @@ func _forward_3d_gui_input(camera: Camera3D, event: InputEvent) -> int:
 
 func _forward_3d_draw_over_viewport(overlay: Control) -> void:
 	for listener: RefCounted in _listeners:
-		listener.call(&"draw_over", overlay)
+		if listener.has_method(&"draw_over"):
+			listener.call(&"draw_over", overlay)
+
+
+func _forward_3d_force_draw_over_viewport(overlay: Control) -> void:
+	for drawer: RefCounted in _drawers:
+		drawer.call(&"draw_always", overlay)
 
 
 # Before a scene is saved.

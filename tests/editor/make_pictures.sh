@@ -25,3 +25,4 @@ cut branch 855x700+358+145 900
 cut graft 855x700+358+145 900
 cut leaves 1600x900+0+0 900
 cut sketch 1600x900+0+0 900
+cut sketch_view 1600x900+0+0 900

@@ -347,15 +347,21 @@ func set_value(
 
 ## Gives the edited tree the wood, leaves and log of [param made], as what a reconstruction with
 ## other options made. It stays the same resource, for all nodes that show it; its leaf rules stay,
-## unless [param preset] names other leaves, with [param rule] as their rule, if any.
+## unless [param preset] names other leaves, with [param rule] as their rule, if any. The node gets
+## [param place] as its transform, if it is one.
 func replace_tree(
-	title: String, made: TreeReconstruction, preset: String = "", rule: LeafRule = null
+	title: String,
+	made: TreeReconstruction,
+	preset: String = "",
+	rule: LeafRule = null,
+	place: Variant = null
 ) -> void:
 	if tree == null or made == null or made == tree:
 		return
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable(replace_tree.bind(title, made, preset, rule))
+	var redo: Callable = replace_tree.bind(title, made, preset, rule, place)
+	var edited: TreeReconstruction = _editable(redo)
 	if edited == null:
 		return
 	begin_step(title, edited, imported)
@@ -366,6 +372,8 @@ func replace_tree(
 		edited.leaf_rule = rule
 		edited.leaf_preset = preset
 		history.add_properties(edited, _stored(edited), before)
+	if place is Transform3D:
+		history.add_property(node, &"transform", place, node.transform)
 	history.commit()
 
 

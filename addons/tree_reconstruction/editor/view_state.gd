@@ -82,6 +82,16 @@ var grid: bool = false:
 		grid = value
 		changed.emit()
 
+## Whether a sketch is drawn right in the 3D view: its camera, and photos that are compared, stay
+## where they are, whatever is selected. Not kept.
+var drawing: bool = false:
+	set(value):
+		drawing = value
+		changed.emit()
+## What shows the scene from where a photo was taken, while photos are compared (see
+## compare/photo_stage.gd); else [code]null[/code]. Not kept.
+var stage: Control
+
 var _wanted: WeakRef = weakref(null)
 
 

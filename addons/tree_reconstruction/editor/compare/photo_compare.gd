@@ -72,6 +72,7 @@ func leave() -> void:
 	cover.queue_free()
 	cover = null
 	stage = null
+	_session.view.stage = null
 	bar = null
 	_ink = null
 	_node = null
@@ -84,15 +85,15 @@ func get_picture() -> Image:
 	return window.get_region(Rect2i(stage.get_global_rect()))
 
 
-## Another node is edited, or none.
+## Another node is edited, or none. A tree that is drawn over the photos is another one.
 func note_node() -> void:
-	if is_open() and _session.node != _node:
+	if is_open() and _session.node != _node and not _session.view.drawing:
 		leave()
 
 
 ## The tree was edited.
 func note_edit() -> void:
-	if not is_open():
+	if not is_open() or _session.node != _node:
 		return
 	if _session.tree == null:
 		leave()
@@ -106,6 +107,9 @@ func update() -> void:
 		return
 	if not is_instance_valid(_node) or not _node.is_inside_tree():
 		leave()
+		return
+	note_node()
+	if not is_open():
 		return
 	source.update()
 	stage.update(_node.global_transform)
@@ -135,6 +139,7 @@ func _open(camera: Camera3D) -> void:
 	_from = camera.global_position
 	_session.hovered = TreeReconstruction.NO_NODE
 	stage = Stage.new(get_translation_domain())
+	_session.view.stage = stage
 	bar = Bar.new(_session)
 	cover = ColorRect.new()
 	cover.name = &"PhotoCompare"

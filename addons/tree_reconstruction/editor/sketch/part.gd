@@ -8,6 +8,7 @@ const FileChooser := preload("../file_chooser.gd")
 const SketchPanel := preload("sketch_panel.gd")
 const SceneAdder := preload("../import/scene_adder.gd")
 const FreePlace := preload("../import/free_place.gd")
+const ViewHost := preload("view_host.gd")
 
 # At the editor's scale of 1.
 const _SIZE: Vector2 = Vector2(620, 580)
@@ -21,6 +22,7 @@ var _session: Session
 var _adder: SceneAdder
 var _title: String
 var _chooser: FileChooser = FileChooser.new()
+var _host: ViewHost = ViewHost.new()
 # Whether the skeleton was hidden for the window.
 var _skeleton_hidden: bool = false
 
@@ -50,6 +52,7 @@ func enter(plugin: EditorPlugin, session: Session) -> void:
 	window.visible = false
 	window.visibility_changed.connect(_on_visibility_changed)
 	panel.close_wanted.connect(window.hide)
+	_host.enter(plugin, session, panel)
 	EditorInterface.get_base_control().add_child(window)
 	_title = tr("Sketch a Tree…")
 	plugin.add_tool_menu_item(_title, open)
@@ -64,6 +67,7 @@ func exit() -> void:
 	window.visibility_changed.disconnect(_on_visibility_changed)
 	_show_skeleton()
 	panel.close()
+	_host.exit()
 	window.queue_free()
 	window = null
 	panel = null
@@ -71,6 +75,15 @@ func exit() -> void:
 	_adder = null
 	_session = null
 	_plugin = null
+
+
+## Takes an event of the 3D viewport, or leaves it to the editor.
+func input(camera: Camera3D, event: InputEvent) -> int:
+	return _host.input(camera, event)
+
+
+func draw_always(overlay: Control) -> void:
+	_host.draw_always(overlay)
 
 
 ## Shows the window, on the edited tree where that is one of strokes.
@@ -97,6 +110,7 @@ func _pop_up() -> void:
 # What is drawn is judged by its leaves, and lines over all twigs would be in the way of the pen.
 func _on_visibility_changed() -> void:
 	if not window.visible:
+		panel.bar.in_view.button_pressed = false
 		_show_skeleton()
 	elif _session.view.skeleton:
 		_skeleton_hidden = true
@@ -113,6 +127,7 @@ func _show_skeleton() -> void:
 func _on_frame() -> void:
 	if window.visible or panel.is_busy():
 		panel.update()
+	_host.update()
 
 
 # The tree is the scene's own: its strokes are saved with it there.
@@ -121,7 +136,10 @@ func _on_made(tree: TreeReconstruction) -> void:
 	var nodes: Array[TreeInstance3D] = _adder.add(trees, FreePlace.in_view(trees))
 	if nodes.is_empty():
 		return
-	_session.view.want(nodes[0])
+	if panel.view.place is Transform3D:
+		nodes[0].global_transform = panel.view.place
+	else:
+		_session.view.want(nodes[0])
 	panel.set_node(nodes[0])
 
 

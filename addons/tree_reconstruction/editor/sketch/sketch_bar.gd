@@ -4,10 +4,13 @@ extends HFlowContainer
 
 ## A tool was chosen: a Tool of sketch_canvas.gd.
 signal tool_chosen(tool: int)
+## Strokes are to be drawn right in the 3D view, or no more.
+signal in_view_chosen(enabled: bool)
 
 const Widgets := preload("../dock/widgets.gd")
 const Canvas := preload("sketch_canvas.gd")
 
+var in_view: Button
 var begin: Button
 var load_file: Button
 var save_file: Button
@@ -45,6 +48,22 @@ func _init() -> void:
 		tool.pressed.connect(_on_tool.bind(i))
 		add_child(tool)
 	_tools[0].set_pressed_no_signal(true)
+	in_view = (
+		Widgets
+		. button(
+			"Draw in the 3D View",
+			(
+				"Draws strokes right in the 3D view, over nothing, a scan or a photo, on the upright plane"
+				+ " through the tree's foot that faced you with the first stroke. Drag with the left button;"
+				+ " the others move the view as always. The tree becomes as large as it was drawn."
+			),
+			&"3D"
+		)
+	)
+	in_view.toggle_mode = true
+	in_view.focus_mode = Control.FOCUS_NONE
+	in_view.toggled.connect(in_view_chosen.emit)
+	add_child(in_view)
 	add_child(VSeparator.new())
 	begin = Widgets.button(
 		"New", "Begins another tree on an empty sheet. The tree in the scene stays.", &"New"

@@ -48,10 +48,25 @@ func _on_read(
 		return
 	var told: PackedStringArray = ["canvas_size", "strokes"]
 	# A drawing tells no more than its lines.
-	if path.get_extension().to_lower() == "json":
+	if _is_json(path):
 		told.append_array(["species", "height", "seed", "twigs", "leaf_rule"])
 		told.append_array(["depth", "crown", "trunk_radius", "density"])
 	loaded.emit(sketch, told)
+
+
+# As the library tells it, by what the file begins with: its name may be any.
+static func _is_json(path: String) -> bool:
+	var file: FileAccess = FileAccess.open(path, FileAccess.READ)
+	if file == null:
+		return false
+	# After the mark of UTF-8, and blanks.
+	var first: int = file.get_8()
+	if first == 0xEF:
+		file.seek(3)
+		first = file.get_8()
+	while first in [0x20, 0x09, 0x0A, 0x0D] and not file.eof_reached():
+		first = file.get_8()
+	return first == 0x7B
 
 
 func _fail(worker: TreeReconstructor) -> void:

@@ -15,6 +15,10 @@ class Entry:
 	## By a stroke's id.
 	var strokes: Dictionary[int, Dictionary] = {}
 	var remarks: PackedStringArray = []
+	## The pixel of the canvas at the trunk's foot, and how long a pixel is, in metres; 0 where no tree
+	## came of it.
+	var foot: Vector2
+	var pixel: float = 0.0
 	## Why it is no tree.
 	var sentence: String = ""
 
@@ -27,7 +31,7 @@ func has(sketch: TreeSketch) -> bool:
 
 
 ## Remembers a report of [method TreeReconstructor.sketch_tree].
-func add(sketch: TreeSketch, report: Dictionary, session: Session) -> void:
+func add(sketch: TreeSketch, report: Dictionary, session: Session, sentence: String = "") -> void:
 	var entry: Entry = Entry.new()
 	entry.sketch = sketch
 	var domain: StringName = session.get_translation_domain()
@@ -37,16 +41,14 @@ func add(sketch: TreeSketch, report: Dictionary, session: Session) -> void:
 		var stroke: Dictionary = (known[i] as Dictionary).duplicate()
 		stroke["fault"] = Session.Sentences.translate(stroke.get("fault", ""), domain)
 		entry.strokes[ids[i]] = stroke
+	entry.sentence = Session.Sentences.translate(sentence, domain)
+	entry.foot = foot_of(report)
+	entry.pixel = report.get("metres_per_pixel", 0.0)
 	for remark: String in report.get("remarks", []):
 		entry.remarks.append(Session.Sentences.translate(remark, domain))
 	_entries.append(entry)
 	if _entries.size() > _MOST:
 		_entries.pop_front()
-
-
-## Remembers why no tree came of it.
-func set_sentence(sketch: TreeSketch, sentence: String) -> void:
-	_find(sketch).sentence = sentence
 
 
 ## What each stroke was taken for, by its id.
@@ -62,6 +64,24 @@ func get_faults(sketch: TreeSketch) -> PackedStringArray:
 		if stroke["fault"] != "" and not stroke["fault"] in faults:
 			faults.append(stroke["fault"])
 	return faults
+
+
+## The pixel of the canvas at the trunk's foot.
+func get_foot(sketch: TreeSketch) -> Vector2:
+	var entry: Entry = _find(sketch)
+	return entry.foot if entry != null else Vector2.ZERO
+
+
+## How long a pixel of the canvas is, in metres; 0 where that isn't known.
+func get_pixel(sketch: TreeSketch) -> float:
+	var entry: Entry = _find(sketch)
+	return entry.pixel if entry != null else 0.0
+
+
+## The pixel at the trunk's foot in a report.
+static func foot_of(report: Dictionary) -> Vector2:
+	var at: Array = report.get("foot", [0.0, 0.0])
+	return Vector2(at[0], at[1])
 
 
 func get_remarks(sketch: TreeSketch) -> PackedStringArray:

@@ -15,6 +15,11 @@ enum Kind { STEP, FOLLOW, READ }
 const Session := preload("../session.gd")
 const Jobs := preload("../jobs.gd")
 const Rerun := preload("../dock/rerun.gd")
+const ViewPlane := preload("view_plane.gd")
+# In metres, of a tree that is made to see how high it would be.
+const _TRIED_HEIGHT: float = 10.0
+# A tree whose foot is drawn by less off where it was, in pixels of the canvas, stays there.
+const _LEAST_MOVE: float = 0.05
 
 
 ## One sketch to be made.
@@ -27,12 +32,30 @@ class Order:
 	var sketch: TreeSketch
 	## The edits that the user did by hand, which are done again.
 	var log: String = ""
+	## The sheet that it was drawn on in the 3D view, whose scale decides the tree's height, or
+	## [code]null[/code].
+	var plane: ViewPlane
 	## What became of these.
 	var replayed: Dictionary = {}
 	## What was understood of the strokes.
 	var report: Dictionary = {}
 	## Why no tree came of them.
 	var sentence: String = ""
+
+	## Where the tree stands that was drawn on a sheet, in the world.
+	func get_place() -> Transform3D:
+		var at: Array = report.get("foot", [plane.foot.x, plane.foot.y])
+		return (plane.moved_to(Vector2(at[0], at[1])) as ViewPlane).frame
+
+	## The same as a transform of [param node]; [code]null[/code] where that stands there already.
+	func get_place_of(node: TreeInstance3D) -> Variant:
+		var parent: Node3D = node.get_parent_node_3d()
+		var wanted: Transform3D = get_place()
+		if parent != null:
+			wanted = parent.global_transform.affine_inverse() * wanted
+		var off: float = wanted.origin.distance_to(node.transform.origin)
+		var same: bool = off < _LEAST_MOVE * plane.pixel
+		return null if same and wanted.basis.is_equal_approx(node.transform.basis) else wanted
 
 
 var _session: Session
@@ -69,9 +92,11 @@ func is_following() -> bool:
 	return _follow != null or (_at_work != null and _at_work.kind == Kind.FOLLOW)
 
 
-## Makes a finished sketch, whose tree was edited by [param log].
-func make(title: String, sketch: TreeSketch, log: String) -> void:
+## Makes a finished sketch, whose tree was edited by [param log]. With a [param plane] it becomes as
+## large as it was drawn there.
+func make(title: String, sketch: TreeSketch, log: String, plane: ViewPlane = null) -> void:
 	var order: Order = _order(Kind.STEP, sketch, log)
+	order.plane = plane
 	order.title = title
 	_steps.append(order)
 	_follow = null
@@ -79,8 +104,9 @@ func make(title: String, sketch: TreeSketch, log: String) -> void:
 
 
 ## Makes a sketch under way, unless another one comes first.
-func follow(sketch: TreeSketch, log: String) -> void:
+func follow(sketch: TreeSketch, log: String, plane: ViewPlane = null) -> void:
 	_follow = _order(Kind.FOLLOW, sketch, log)
+	_follow.plane = plane
 	_begin()
 
 
@@ -131,7 +157,8 @@ func _begin() -> void:
 static func _make(running: Jobs.Job, worker: TreeReconstructor, order: Order) -> TreeReconstruction:
 	if order.sketch.strokes.is_empty():
 		return null
-	var made: TreeReconstruction = worker.sketch_tree(order.sketch)
+	var sketch: TreeSketch = order.sketch if order.plane == null else _sized(worker, order)
+	var made: TreeReconstruction = null if sketch == null else worker.sketch_tree(sketch)
 	if made == null:
 		order.sentence = worker.get_error_message()
 		return null
@@ -141,6 +168,22 @@ static func _make(running: Jobs.Job, worker: TreeReconstructor, order: Order) ->
 	var again: Array = Rerun.edit_again(running, made, order.log)
 	order.replayed = again[1]
 	return again[0]
+
+
+# The sketch with the height by which a pixel of its canvas is as long as on its sheet: how many of
+# them the tree is high is only known once the strokes are understood. Without twigs, that is quick.
+static func _sized(worker: TreeReconstructor, order: Order) -> TreeSketch:
+	var tried: TreeSketch = order.sketch.duplicate() as TreeSketch
+	tried.height = _TRIED_HEIGHT
+	tried.density = 0.0
+	tried.trunk_radius = 0.0
+	if worker.sketch_tree(tried) == null:
+		return null
+	var sized: TreeSketch = order.sketch.duplicate() as TreeSketch
+	sized.height = (
+		_TRIED_HEIGHT * order.plane.pixel / (worker.get_report()["metres_per_pixel"] as float)
+	)
+	return sized
 
 
 func _on_made(made: TreeReconstruction, _ended: Jobs.Job, order: Order) -> void:

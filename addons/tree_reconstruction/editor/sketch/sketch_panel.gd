@@ -31,6 +31,8 @@ const Follow := preload("sketch_follow.gd")
 const Bar := preload("sketch_bar.gd")
 const Files := preload("sketch_files.gd")
 const Known := preload("sketch_known.gd")
+const Message := preload("sketch_message.gd")
+const ViewStrokes := preload("view_strokes.gd")
 
 # A number that is turned has its tree once it rests for so long.
 const _REST_MSEC: int = 250
@@ -38,7 +40,9 @@ const _REST_MSEC: int = 250
 var canvas: Canvas = Canvas.new()
 var options: Options
 var bar: Bar = Bar.new()
-var message: Label = Widgets.sentence()
+var message: Message = Message.new()
+## Strokes that are drawn right in the 3D view.
+var view: ViewStrokes
 var maker: Maker
 var files: Files
 
@@ -63,6 +67,7 @@ var _may_follow: bool = false
 # The title of a step that begins when a number rests, and when.
 var _due_title: String = ""
 var _due: int = 0
+var _due_height: bool = false
 # Undo and redo that wait until what is finished is made: whether each is a redo.
 var _held: Array[bool] = []
 
@@ -75,9 +80,10 @@ func _init(session: Session) -> void:
 	maker.finished.connect(_on_finished)
 	maker.followed.connect(_on_followed)
 	maker.understood.connect(_on_understood)
+	view = ViewStrokes.new(session)
 	files = Files.new(session)
 	files.loaded.connect(_on_told.bind(tr("Load Sketch")))
-	files.said.connect(_say)
+	files.said.connect(message.say)
 	add_child(bar)
 	var split: HBoxContainer = HBoxContainer.new()
 	split.size_flags_vertical = Control.SIZE_EXPAND_FILL
@@ -87,13 +93,8 @@ func _init(session: Session) -> void:
 	split.add_child(canvas)
 	split.add_child(options)
 	add_child(split)
-	message.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	var scroll: ScrollContainer = ScrollContainer.new()
-	scroll.horizontal_scroll_mode = ScrollContainer.SCROLL_MODE_DISABLED
-	# Of any length: the window stays as large as it is.
-	scroll.custom_minimum_size.y = Widgets.px(44)
-	scroll.add_child(message)
-	add_child(scroll)
+	message.set_translation_domain(session.get_translation_domain())
+	add_child(message.framed())
 	_connect_all()
 	_draft.begin(null)
 	_show()
@@ -102,13 +103,19 @@ func _init(session: Session) -> void:
 ## Ends its part in the session.
 func close() -> void:
 	canvas.cancel()
+	view.enabled = false
 	_follow.restore()
 	maker.close()
 
 
 ## Whether something is under way that [method update] has to end.
 func is_busy() -> bool:
-	return canvas.is_busy() or maker.is_busy() or _due > 0 or not _held.is_empty()
+	return is_drawing() or maker.is_busy() or _due > 0 or not _held.is_empty()
+
+
+## Whether a stroke is being drawn, bent or rubbed out, on the paper or in the 3D view.
+func is_drawing() -> bool:
+	return canvas.is_busy() or view.is_busy()
 
 
 ## The strokes on the paper, with what is being made of them. Not to be changed.
@@ -143,7 +150,7 @@ static func sketch_of(tree: TreeReconstruction) -> TreeSketch:
 
 ## To be called once a frame.
 func update() -> void:
-	if canvas.is_busy():
+	if is_drawing():
 		_follow_pen()
 		return
 	if _due > 0 and Time.get_ticks_msec() >= _due:
@@ -167,12 +174,14 @@ func update() -> void:
 func settle() -> void:
 	if _due > 0:
 		_due = 0
-		maker.make(_due_title, _current, _log())
+		# A height that was told is the tree's from now on.
+		var plane: ViewStrokes.ViewPlane = null if _due_height else view.wanted_plane(_current)
+		maker.make(_due_title, _current, _log(), plane)
 
 
 ## Undoes the last stroke or another step, or does it again.
 func step(redo: bool) -> void:
-	if canvas.is_busy():
+	if is_drawing():
 		return
 	settle()
 	if maker.is_busy():
@@ -189,10 +198,16 @@ func _connect_all() -> void:
 	canvas.erased.connect(_on_erased)
 	canvas.cancelled.connect(_on_cancelled)
 	canvas.chosen.connect(_on_chosen)
+	view.drawing.connect(_on_drawing)
+	view.drawn.connect(_on_drawn_in_view)
+	view.cancelled.connect(_on_cancelled)
+	view.chosen.connect(_on_chosen_in_view)
+	view.said.connect(message.say.bind(&"warning_color"))
 	options.value_chosen.connect(_on_value)
 	options.role_chosen.connect(_on_role)
 	options.twigs.taken.connect(_on_told)
 	bar.tool_chosen.connect(_on_tool)
+	bar.in_view_chosen.connect(func(on: bool) -> void: view.enabled = on)
 	bar.begin.pressed.connect(set_node.bind(null))
 	bar.load_file.pressed.connect(load_wanted.emit)
 	bar.save_file.pressed.connect(save_wanted.emit)
@@ -209,8 +224,9 @@ func _shortcut_input(event: InputEvent) -> void:
 	elif event.is_action_pressed(&"ui_graph_delete", false, true) and canvas.selected != 0:
 		_on_erased([canvas.selected])
 	elif event.is_action_pressed(&"ui_cancel"):
-		if canvas.is_busy():
+		if is_drawing():
 			canvas.cancel()
+			view.cancel()
 		else:
 			close_wanted.emit()
 	else:
@@ -273,16 +289,20 @@ func _put_on_paper() -> void:
 	if not known.is_empty():
 		canvas.understood = known
 	options.show_sketch(_current, canvas.selected)
+	view.show_sketch(_current, canvas.understood, get_node_drawn_on(), _base())
+	view.selected = canvas.selected
+	view.set_scale_of_base(_known.get_foot(_base()), _known.get_pixel(_base()))
 	bar.update(not _current.strokes.is_empty())
-	_tell()
+	message.tell(_known, _current)
 
 
 # A finished change: its tree follows, as a step.
 func _change(title: String, sketch: TreeSketch) -> void:
 	_due = 0
+	view.carry(_current, sketch)
 	_current = sketch
 	_put_on_paper()
-	maker.make(title, sketch, _log())
+	maker.make(title, sketch, _log(), view.wanted_plane(sketch))
 
 
 func _on_finished(order: Maker.Order, tree: TreeReconstruction) -> void:
@@ -297,7 +317,7 @@ func _on_finished(order: Maker.Order, tree: TreeReconstruction) -> void:
 			_add(order, tree)
 		elif node.reconstruction.edit_log != order.log:
 			# The user edited it meanwhile.
-			maker.make(order.title, order.sketch, node.reconstruction.edit_log)
+			maker.make(order.title, order.sketch, node.reconstruction.edit_log, order.plane)
 			return
 		else:
 			_replace(order, node, tree)
@@ -313,7 +333,8 @@ func _add(order: Maker.Order, tree: TreeReconstruction) -> void:
 	if not _draft.goes_on_from(null):
 		_draft.begin(null)
 	_draft.end()
-	tree.resource_name = options.get_title_of(order.sketch)
+	tree.resource_name = tr(options.get_title_of(order.sketch))
+	view.place = null if order.plane == null else order.get_place()
 	made.emit(tree)
 
 
@@ -325,7 +346,9 @@ func _replace(order: Maker.Order, node: TreeInstance3D, tree: TreeReconstruction
 		node_wanted.emit(node)
 	var is_same_rule: bool = _base().leaf_rule == order.sketch.leaf_rule
 	var other: bool = _base().species != order.sketch.species or not is_same_rule
-	_session.replace_tree(order.title, tree, tree.leaf_preset if other else "", tree.leaf_rule)
+	var place: Variant = null if order.plane == null else order.get_place_of(node)
+	var preset: String = tree.leaf_preset if other else ""
+	_session.replace_tree(order.title, tree, preset, tree.leaf_rule, place)
 	var left_out: int = (order.replayed.get("left_out", []) as Array).size()
 	if left_out != _left_out:
 		# Not with every stroke.
@@ -339,13 +362,11 @@ func _keep(order: Maker.Order) -> void:
 	if not _draft.goes_on_from(base):
 		_draft.begin(base)
 	_draft.push(order.sketch)
-	_known.add(order.sketch, order.report, _session)
-	_known.set_sentence(order.sketch, _translated(order.sentence))
+	_known.add(order.sketch, order.report, _session, order.sentence)
 
 
 func _on_understood(order: Maker.Order) -> void:
-	_known.add(order.sketch, order.report, _session)
-	_known.set_sentence(order.sketch, _translated(order.sentence))
+	_known.add(order.sketch, order.report, _session, order.sentence)
 	if is_same(order.sketch, _current):
 		_put_on_paper()
 
@@ -363,12 +384,14 @@ func _follow_pen() -> void:
 	var sketch: TreeSketch = _current.duplicate() as TreeSketch
 	_under_way.call(sketch)
 	_under_way = Callable()
-	maker.follow(sketch, _log())
+	maker.follow(sketch, _log(), view.wanted_plane(_current))
 
 
-func _on_followed(_order: Maker.Order, tree: TreeReconstruction) -> void:
+func _on_followed(order: Maker.Order, tree: TreeReconstruction) -> void:
 	var node: TreeInstance3D = get_node_drawn_on()
-	if canvas.is_busy() and _may_follow and node != null:
+	# With another foot it would stand elsewhere, which it does once the stroke is finished.
+	var is_there: bool = order.plane == null or order.get_place_of(node) == null
+	if is_drawing() and _may_follow and node != null and is_there:
 		_follow.show(node.reconstruction, tree)
 
 
@@ -403,10 +426,20 @@ func _end_following() -> void:
 
 
 func _on_drawn(points: PackedVector2Array, pressure: PackedFloat32Array) -> void:
-	_end_following()
 	var sketch: TreeSketch = _current.duplicate() as TreeSketch
 	sketch.add_stroke(points, pressure)
+	_on_drawn_in_view(sketch)
+
+
+func _on_drawn_in_view(sketch: TreeSketch) -> void:
+	_end_following()
 	_change(tr("Draw Stroke"), sketch)
+
+
+func _on_chosen_in_view(id: int) -> void:
+	canvas.selected = id
+	view.selected = id
+	_on_chosen(id)
 
 
 func _on_bent(id: int, points: PackedVector2Array) -> void:
@@ -444,6 +477,7 @@ func _on_chosen(id: int) -> void:
 
 func _on_tool(tool: int) -> void:
 	canvas.tool = tool as Canvas.Tool
+	view.tool = canvas.tool
 
 
 func _on_role(role: int) -> void:
@@ -458,40 +492,9 @@ func _on_value(title: String, property: StringName, value: Variant, merged: bool
 	if not merged:
 		_change(title, sketch)
 		return
+	view.carry(_current, sketch)
 	_current = sketch
 	_put_on_paper()
+	_due_height = property == &"height"
 	_due_title = title
 	_due = Time.get_ticks_msec() + _REST_MSEC
-
-
-# --- what is said ---------------------------------------------------------------------------------
-
-
-func _tell() -> void:
-	var faults: PackedStringArray = _known.get_faults(_current)
-	var sentence: String = _known.get_sentence(_current)
-	if not faults.is_empty():
-		_say("\n".join(faults), &"error_color")
-	elif not sentence.is_empty():
-		_say(sentence, &"font_color")
-	elif _current.strokes.is_empty():
-		_say("", &"font_color")
-	else:
-		var words: String = tr(
-			"Green is the crown's outline, brown the trunk, light brown a branch; red isn't understood."
-		)
-		_say("\n".join(_known.get_remarks(_current) + PackedStringArray([words])), &"font_color")
-
-
-func _say(sentence: String, color: StringName) -> void:
-	message.text = sentence
-	if color == &"font_color":
-		message.remove_theme_color_override(&"font_color")
-	else:
-		message.add_theme_color_override(
-			&"font_color", get_theme_color(color, &"Editor") if is_inside_tree() else Color.RED
-		)
-
-
-func _translated(sentence: String) -> String:
-	return Session.Sentences.translate(sentence, get_translation_domain())

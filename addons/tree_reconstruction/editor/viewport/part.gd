@@ -245,12 +245,18 @@ func _let_hovered_go() -> void:
 func _on_node_changed() -> void:
 	_actions.turntable.stop()
 	_actions.photos.note_node()
-	for control: Control in [_strip, _menu, _toolbar]:
-		control.visible = _session.node != null
+	_show_controls()
 	_home_due = _session.tree != null
 	_visibility.take(_session.node)
 	_take_in_hand()
 	_on_tree_changed()
+
+
+# While a sketch is drawn in the view, its size must not change by what is selected: all would be
+# seen elsewhere than where it was drawn.
+func _show_controls() -> void:
+	for control: Control in [_strip, _menu, _toolbar]:
+		control.visible = _session.node != null and not _session.view.drawing
 
 
 func _on_tree_changed() -> void:
@@ -284,6 +290,7 @@ func _on_view_changed() -> void:
 	if _session.view.editing != _was_editing:
 		_take_in_hand()
 	_visibility.update()
+	_show_controls()
 	_toolbar.update()
 	_menu.update()
 	_strip.update_tool()
@@ -370,6 +377,9 @@ func _look_home() -> void:
 	elif _surfaces.has(camera.get_viewport()):
 		_home_due = false
 		var added: bool = _session.view.take_wanted(_session.node)
+		if _session.view.drawing:
+			# It is seen where it was drawn.
+			return
 		if Actions.CameraViews.is_untouched(camera):
 			_actions.views.look(&"view_home", camera)
 		elif added and not _actions.views.is_framed(camera):
