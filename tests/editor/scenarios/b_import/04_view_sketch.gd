@@ -66,8 +66,8 @@ func _stroke(points: PackedVector2Array) -> void:
 
 func _ring(around: Vector2, radii: Vector2) -> PackedVector2Array:
 	var line: PackedVector2Array = []
-	for i: int in 19:
-		var angle: float = TAU * i / 18.0
+	for i: int in 13:
+		var angle: float = TAU * i / 12.0
 		line.append(around + radii * Vector2(sin(angle), -cos(angle)))
 	return line
 
