@@ -109,6 +109,7 @@ class Understanding {
 
     void read_trunk() {
         DrawnLine& trunk = drawn().trunk;
+        if (split_outline()) return;
         if (!found_.trunks.empty()) {
             const size_t first = *std::min_element(found_.trunks.begin(), found_.trunks.end());
             if (found_.trunks.size() == 2)
@@ -131,23 +132,40 @@ class Understanding {
             throw Error(
                 "Nothing in the drawing looks like a trunk or like a crown's outline. Draw a trunk "
                 "from the ground up, or the outline of the crown.");
-        const size_t outline = found_.outlines[0];
-        trunk.stroke = outline;
-        if (found_.outlines.size() == 1 && found_.branches.empty()) {
-            if (const auto split = split_lollipop(lines_[outline], drawn().outline)) {
-                const MadeOutline crown = make_outline({split->crown});
-                if (!crown.polygon.empty()) {
-                    drawn().outline = crown.polygon;
-                    trunk = split->trunk;
-                    trunk.stroke = outline;
-                    if (!trunk.radii.empty()) mark(outline, StrokeRepair::kTwoSides);
-                    result_.remarks.emplace_back("Trunk and crown were drawn in one stroke.");
-                    return;
-                }
-            }
-        }
+        trunk.stroke = found_.outlines[0];
         trunk.points = make_trunk(drawn().outline, trunk_place(), lowest_);
         result_.remarks.emplace_back("No trunk was drawn; a straight one was made.");
+    }
+
+    // Where the outline stands on the ground, it may go around the trunk, too. What was taken for the trunk
+    // then is something beside it.
+    bool split_outline() {
+        if (found_.outlines.size() != 1 || drawn().outline.empty()) return false;
+        const size_t outline = found_.outlines[0];
+        const double ground = line_box(lines_[outline]).low.y;
+        if (ground > lowest_ + 0.5 * (highest_ - lowest_)) return false;
+        const auto split = split_lollipop(lines_[outline], drawn().outline);
+        if (!split) return false;
+        const MadeOutline crown = make_outline({split->crown});
+        if (crown.polygon.empty()) return false;
+        const FlatBox box = line_box(crown.polygon);
+        for (const size_t stroke : found_.trunks) {
+            const FlatBox trunk = line_box(lines_[stroke]);
+            const bool bears_it = trunk.low.y < box.low.y && trunk.high.y > box.low.y &&
+                                  trunk.high.x > box.low.x && trunk.low.x < box.high.x;
+            if (bears_it || sketch_.strokes[stroke].role == StrokeRole::kTrunk) return false;
+        }
+        drawn().outline = crown.polygon;
+        drawn().trunk = split->trunk;
+        drawn().trunk.stroke = outline;
+        if (!split->trunk.radii.empty()) mark(outline, StrokeRepair::kTwoSides);
+        result_.remarks.emplace_back("Trunk and crown were drawn in one stroke.");
+        for (const size_t stroke : found_.trunks)
+            reading(stroke).role = StrokeRole::kBranch;
+        found_.branches.insert(found_.branches.end(), found_.trunks.begin(), found_.trunks.end());
+        std::sort(found_.branches.begin(), found_.branches.end());
+        found_.trunks.clear();
+        return true;
     }
 
     // Where a trunk stands that was not drawn: among the branches' inner ends, or below the crown's middle.

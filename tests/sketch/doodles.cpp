@@ -224,6 +224,7 @@ class Scribbler {
         const DVec2 tip = base + length * around(angle);
         add(stroke(base, tip, 0.06));
         reach_.push_back(tip);
+        if (depth < deepest_) reach_.push_back(base);
         if (depth == 0) return;
         const int count = 2 + static_cast<int>(random_.below(2));
         for (int i = 0; i < count; i++) {
@@ -246,10 +247,11 @@ class Scribbler {
                 const DVec2 base(0.5, foot.y + (top - foot.y) * share);
                 const DVec2 tip = base + from(0.14, 0.26) * (1.2 - share) * around(side * from(0.6, 1.2));
                 add(stroke(base, tip, 0.06));
-                reach_.push_back(tip);
+                reach_.insert(reach_.end(), {base, tip});
             }
         } else {
-            fork(foot, from(-0.08, 0.08), from(0.26, 0.36), 1 + static_cast<int>(random_.below(2)));
+            deepest_ = 1 + static_cast<int>(random_.below(2));
+            fork(foot, from(-0.08, 0.08), from(0.26, 0.36), deepest_);
         }
         DVec2 low = reach_[0], high = reach_[0];
         for (const DVec2& p : reach_) {
@@ -328,8 +330,11 @@ class Scribbler {
 
     void palm() {
         const DVec2 foot(from(0.4, 0.6), 0.95), top(0.5 + from(-0.08, 0.08), from(0.28, 0.36));
-        add(stroke(foot, top, 0.1));
-        if (chance(0.4)) add(stroke(foot + DVec2(0.05, 0.0), top + DVec2(0.03, 0.02), 0.1));
+        Line stem = stroke(foot, top, 0.1);
+        add(stem);
+        for (DVec2& p : stem)
+            p += DVec2(0.05 - 0.02 * (foot.y - p.y), 0.0);
+        if (chance(0.4)) add(stem);
         DVec2 low = top, high = top;
         const uint32_t count = 4 + random_.below(4);
         for (uint32_t i = 0; i < count; i++) {
@@ -490,6 +495,7 @@ class Scribbler {
     std::vector<Line> lines_;
     DVec2 crown_middle_{0.0}, crown_radii_{0.0};
     std::vector<DVec2> reach_;
+    int deepest_ = 0;
 };
 
 }  // namespace
