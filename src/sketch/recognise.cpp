@@ -16,9 +16,9 @@ constexpr double kRingChord = 0.7, kArchChord = 0.92, kClosedChord = 0.35;
 // ... and its convex hull is no sliver: 4 pi area / perimeter^2, which is 1 of a circle.
 constexpr double kRingRoundness = 0.3;
 constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
-constexpr double kSmallRing = 0.09;  // of the drawing's height: an apple or a hole
+constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hole or a sun
 // Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
-constexpr double kStraight = 0.97, kMeet = 0.1;
+constexpr double kStraight = 0.92, kMeet = 0.1;
 constexpr size_t kMostArcs = 40;
 constexpr double kLeastRing = 0.02;  // of the whole drawing's hull: less is a sun
 constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
@@ -69,8 +69,8 @@ class Recogniser {
     Recognised run() {
         for (size_t i = 0; i < lines_.size(); i++)
             if (shapes_[i].is_dot) leave_out(i, "This is only a dot; draw a line.");
-        find_outline();
         leave_out_small_rings();
+        find_outline();
         find_trunk();
         add_outlines();
         for (size_t i = 0; i < lines_.size(); i++) {
@@ -157,7 +157,7 @@ class Recogniser {
     bool find_arcs() {
         std::vector<size_t> arcs;
         for (size_t i = 0; i < lines_.size(); i++)
-            if (is_free(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
+            if (is_free(i) && !is_around(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
                 shapes_[i].is_ring(kArchChord) && shapes_[i].area > 0.5 * kLeastCrown * whole_.area)
                 arcs.push_back(i);
         if (arcs.size() > 40) return false;
@@ -194,7 +194,7 @@ class Recogniser {
         for (size_t i = 0; i < lines_.size(); i++) {
             if (!is_free(i) || shapes_[i].is_dot) continue;
             largest = std::max(largest, shapes_[i].area);
-            if (shapes_[i].chord > 0.5 * kClosedChord * shapes_[i].length &&
+            if (!is_around(i) && shapes_[i].chord > 0.5 * kClosedChord * shapes_[i].length &&
                 shapes_[i].chord < kStraight * shapes_[i].length)
                 arcs.push_back(i);
         }
@@ -413,14 +413,16 @@ class Recogniser {
 
     // Apples, and a hole in the trunk.
     void leave_out_small_rings() {
-        bool other = !found_.outlines.empty();
-        for (size_t i = 0; i < lines_.size() && !other; i++)
-            other = is_free(i) && !shapes_[i].is_ring(kClosedChord);
         const double most = kSmallRing * whole_.box.size().y;
+        bool other = false;
+        for (size_t i = 0; i < lines_.size() && !other; i++) {
+            const DVec2 size = shapes_[i].box.size();
+            other = is_open(i) && (!shapes_[i].is_ring(kClosedChord) || std::max(size.x, size.y) > most);
+        }
         for (size_t i = 0; i < lines_.size() && other; i++) {
             const DVec2 size = shapes_[i].box.size();
             if (is_free(i) && shapes_[i].is_ring(kClosedChord) && std::max(size.x, size.y) < most)
-                leave_out(i, "This is a small ring, as of an apple or a hole; it changes nothing of the tree.");
+                leave_out(i, "This is a small ring, as of an apple, a hole or a sun; it changes nothing of the tree.");
         }
     }
 
