@@ -50,6 +50,25 @@ DrawnLine middle_of_rows(const std::vector<Row>& rows, double bottom, double ste
     return middle;
 }
 
+// A slanting foot or top cuts off corners: rows there are as wide as the first whole one.
+void widen_ends(std::vector<Row>& rows) {
+    std::vector<double> widths;
+    for (const Row& row : rows)
+        if (!row.empty()) widths.push_back(row.high - row.low);
+    if (widths.size() < 5) return;
+    std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(widths.size() / 2), widths.end());
+    const double usual = widths[widths.size() / 2];
+    const size_t most = rows.size() / 4;
+    for (const bool top : {false, true}) {
+        const auto at = [&](size_t i) -> Row& { return rows[top ? rows.size() - 1 - i : i]; };
+        size_t whole = 0;
+        while (whole < most && (at(whole).empty() || at(whole).high - at(whole).low < 0.7 * usual))
+            whole++;
+        for (size_t i = 0; i < whole && whole < most; i++)
+            at(i) = at(whole);
+    }
+}
+
 constexpr double kRowStep = 4.0;  // pixels
 constexpr int kMostRows = 500;
 
@@ -110,6 +129,7 @@ DrawnLine middle_of_outline(const FlatLine& around) {
     for (int i = 0; i <= count; i++)
         rows.push_back(
             row_at(around, box.low.y + std::clamp(static_cast<double>(i), 0.5, count - 0.5) * step, true));
+    widen_ends(rows);
     return middle_of_rows(rows, box.low.y, step);
 }
 
