@@ -15,6 +15,7 @@ constexpr double kLeastLength = 6.0;  // pixels: shorter is a dot
 constexpr double kRingChord = 0.7, kArchChord = 0.92, kClosedChord = 0.35;
 // ... and its convex hull is no sliver: 4 pi area / perimeter^2, which is 1 of a circle.
 constexpr double kRingRoundness = 0.3;
+constexpr double kSlenderChord = 0.1, kSlenderRoundness = 0.12;
 constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
 constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hole or a sun
 // Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
@@ -126,7 +127,8 @@ class Recogniser {
                 highest = i;
         size_t tried = 0;
         for (size_t i = 0; i < lines_.size(); i++) {
-            if (!is_free(i) || !shapes_[i].is_ring(i == highest ? kArchChord : kRingChord)) continue;
+            if (!is_free(i)) continue;
+            if (!shapes_[i].is_ring(i == highest ? kArchChord : kRingChord) && !is_slender_crown(i)) continue;
             if (best < lines_.size() && shapes_[i].area <= shapes_[best].area) continue;
             const bool closed = shapes_[i].chord < kClosedChord * shapes_[i].length;
             // Hostile drawings have a thousand rings.
@@ -135,6 +137,15 @@ class Recogniser {
                 best = i;
         }
         if (best < lines_.size() && !goes_around_trunk(best)) give(best, StrokeRole::kOutline);
+    }
+
+    // As a cypress has: closed, up to the top, and off the ground.
+    bool is_slender_crown(size_t i) const {
+        const FlatBox& box = shapes_[i].box;
+        const double height = whole_.box.size().y;
+        return !shapes_[i].is_dot && shapes_[i].chord < kSlenderChord * shapes_[i].length &&
+               shapes_[i].roundness > kSlenderRoundness && box.high.y > whole_.box.high.y - 0.1 * height &&
+               box.low.y > whole_.box.low.y + 0.1 * height;
     }
 
     bool stands_alone(size_t i) const {
