@@ -19,7 +19,7 @@ constexpr double kSlenderChord = 0.1, kSlenderRoundness = 0.12;
 constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
 constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hole or a sun
 // Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
-constexpr double kStraight = 0.92, kMeet = 0.1;
+constexpr double kStraight = 0.92, kMeet = 0.06, kChainRoundness = 0.5;
 constexpr size_t kMostArcs = 40;
 constexpr double kLeastRing = 0.02;  // of the whole drawing's hull: less is a sun
 constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
@@ -168,7 +168,7 @@ class Recogniser {
     bool find_arcs() {
         std::vector<size_t> arcs;
         for (size_t i = 0; i < lines_.size(); i++)
-            if (is_free(i) && !is_around(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
+            if (is_free(i) && !stands_around(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
                 shapes_[i].is_ring(kArchChord) && shapes_[i].area > 0.5 * kLeastCrown * whole_.area)
                 arcs.push_back(i);
         if (arcs.size() > 40) return false;
@@ -205,7 +205,7 @@ class Recogniser {
         for (size_t i = 0; i < lines_.size(); i++) {
             if (!is_free(i) || shapes_[i].is_dot) continue;
             largest = std::max(largest, shapes_[i].area);
-            if (!is_around(i) && shapes_[i].chord > 0.5 * kClosedChord * shapes_[i].length &&
+            if (!stands_around(i) && shapes_[i].chord > 0.5 * kClosedChord * shapes_[i].length &&
                 shapes_[i].chord < kStraight * shapes_[i].length)
                 arcs.push_back(i);
         }
@@ -245,7 +245,7 @@ class Recogniser {
             }
             const Shape joint = shape_of(chain);
             if (members.size() < 2 || joint.chord > 0.5 * kClosedChord * length ||
-                joint.roundness < kRingRoundness || joint.area < least_area)
+                joint.roundness < kChainRoundness || joint.area < least_area)
                 continue;
             // Without what hangs on it, as a trunk's sides.
             if (joint.area * joint.roundness <= most) continue;
@@ -320,6 +320,12 @@ class Recogniser {
         const FlatBox& box = shapes_[i].box;
         return box.high.y < crown.low.y - 0.25 * size.y || box.high.x < crown.low.x - 0.1 * size.x ||
                box.low.x > crown.high.x + 0.1 * size.x;
+    }
+
+    // A trunk's three sides are no arc of a crown.
+    bool stands_around(size_t i) const {
+        return is_around(i) &&
+               shapes_[i].box.low.y < whole_.box.low.y + kFeetZone * whole_.box.size().y;
     }
 
     // lines_.size(): none stands.

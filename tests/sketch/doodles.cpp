@@ -27,22 +27,22 @@ class Scribbler {
         struct Kind {
             const char* name;
             uint32_t weight;
-            bool tree_like;
+            bool tree_like, has_outline;
             void (Scribbler::*draw)();
         };
         static const std::array<Kind, 12> kKinds = {{
-            {"round", 18, true, &Scribbler::round_tree},
-            {"cloud", 18, true, &Scribbler::cloud_tree},
-            {"zigzag", 6, true, &Scribbler::zigzag_tree},
-            {"triangle", 6, true, &Scribbler::triangle_tree},
-            {"fir", 12, true, &Scribbler::fir},
-            {"bare", 12, true, &Scribbler::bare_tree},
-            {"one stroke", 8, true, &Scribbler::one_stroke_tree},
-            {"scribble", 6, true, &Scribbler::scribbled_tree},
-            {"spiral", 4, true, &Scribbler::spiral_tree},
-            {"arcs", 4, true, &Scribbler::tree_of_arcs},
-            {"palm", 4, true, &Scribbler::palm},
-            {"no tree", 16, false, &Scribbler::no_tree},
+            {"round", 18, true, true, &Scribbler::round_tree},
+            {"cloud", 18, true, true, &Scribbler::cloud_tree},
+            {"zigzag", 6, true, true, &Scribbler::zigzag_tree},
+            {"triangle", 6, true, true, &Scribbler::triangle_tree},
+            {"fir", 12, true, true, &Scribbler::fir},
+            {"bare", 12, true, false, &Scribbler::bare_tree},
+            {"one stroke", 8, true, true, &Scribbler::one_stroke_tree},
+            {"scribble", 6, true, false, &Scribbler::scribbled_tree},
+            {"spiral", 4, true, false, &Scribbler::spiral_tree},
+            {"arcs", 4, true, true, &Scribbler::tree_of_arcs},
+            {"palm", 4, true, false, &Scribbler::palm},
+            {"no tree", 16, false, false, &Scribbler::no_tree},
         }};
         uint32_t all = 0;
         for (const Kind& kind : kKinds)
@@ -53,6 +53,7 @@ class Scribbler {
             drawn -= (kind++)->weight;
         doodle_.kind = kind->name;
         doodle_.tree_like = kind->tree_like;
+        doodle_.has_outline = kind->has_outline;
         (this->*kind->draw)();
         if (kind->tree_like && chance(0.45)) add_beside();
         spoil();
