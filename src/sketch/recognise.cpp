@@ -16,12 +16,12 @@ constexpr double kRingChord = 0.7, kArchChord = 0.92, kClosedChord = 0.35;
 // ... and its convex hull is no sliver: 4 pi area / perimeter^2, which is 1 of a circle.
 constexpr double kRingRoundness = 0.3;
 constexpr double kSlenderChord = 0.1, kSlenderRoundness = 0.12;
-constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
+constexpr double kLeastCrown = 0.1;  // of the whole drawing's hull, in area
 constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hole or a sun
 // Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
 constexpr double kStraight = 0.92, kMeet = 0.06, kChainRoundness = 0.5;
 constexpr size_t kMostArcs = 40;
-constexpr double kLeastRing = 0.02;  // of the whole drawing's hull: less is a sun
+constexpr double kLeastRing = 0.02;                     // of the whole drawing's hull: less is a sun
 constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
 
 struct Shape {
@@ -324,8 +324,7 @@ class Recogniser {
 
     // A trunk's three sides are no arc of a crown.
     bool stands_around(size_t i) const {
-        return is_around(i) &&
-               shapes_[i].box.low.y < whole_.box.low.y + kFeetZone * whole_.box.size().y;
+        return is_around(i) && shapes_[i].box.low.y < whole_.box.low.y + kFeetZone * whole_.box.size().y;
     }
 
     // lines_.size(): none stands.
@@ -439,7 +438,9 @@ class Recogniser {
         for (size_t i = 0; i < lines_.size() && other; i++) {
             const DVec2 size = shapes_[i].box.size();
             if (is_free(i) && shapes_[i].is_ring(kClosedChord) && std::max(size.x, size.y) < most)
-                leave_out(i, "This is a small ring, as of an apple, a hole or a sun; it changes nothing of the tree.");
+                leave_out(
+                    i,
+                    "This is a small ring, as of an apple, a hole or a sun; it changes nothing of the tree.");
         }
     }
 

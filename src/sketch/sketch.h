@@ -29,8 +29,9 @@ enum class SketchCrown : uint8_t {
 struct SketchOptions {
     SketchDepth depth = SketchDepth::kTrue;
     SketchCrown crown = SketchCrown::kSections;
-    double trunk_radius = 0.0;  // metres at the foot; 0: as drawn with two lines, else height / 40
-    double density = 1.0;       // of twigs, 0..4
+    double trunk_radius =
+        0.0;  // metres at the foot; 0: as drawn with two lines, else height / 40, less in a slender crown
+    double density = 1.0;  // of twigs, 0..4
 };
 
 struct SketchedTree {

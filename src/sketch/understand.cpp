@@ -402,7 +402,7 @@ class Understanding {
     Recognised found_;
     UnderstoodSketch result_;
     FlatLine closed_outline_;
-    FlatLine outline_line_;  // as drawn, where it is one line
+    FlatLine outline_line_;           // as drawn, where it is one line
     std::vector<size_t> drawn_from_;  // by stroke: its place in branches or side branches
     std::vector<LinePlace> branch_places_, side_places_;
     double lowest_ = 1e300, highest_ = -1e300;

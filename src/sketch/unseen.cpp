@@ -18,6 +18,9 @@ constexpr double kExtensionSteps = 8.0;
 constexpr double kLeastExtension = 0.08;  // of the crown's height
 // Of the trunk's radius at its foot: how thick it may end, and how thick one ends that goes on.
 constexpr double kThinEnd = 0.15, kTipShare = 0.05;
+// Of the room around it: twigs shorter than six radii of what they stand on would be snags, which bear no
+// leaves.
+constexpr double kThickestInCrown = 0.125;
 constexpr double kTaperedEnd = 0.5;  // the last part of a trunk that ends thick, which tapers
 
 // Drawn branches lie within about 50 degrees of the canvas's plane: they fill 200 of the 360 degrees around.
@@ -165,7 +168,11 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
         // As thick as drawn, and from there on it goes to nothing.
         while (limbs.trunk.radii.size() < limbs.trunk.points.size()) {
             const double part = static_cast<double>(limbs.trunk.radii.size() - drawn + 1) / kExtensionSteps;
-            limbs.trunk.radii.push_back(std::max(last * (1.0 - part), tip));
+            const DVec3& at = limbs.trunk.points[limbs.trunk.radii.size()];
+            const double room = crown.half_depth(at.x, at.y);
+            const double own = last * (1.0 - part);
+            limbs.trunk.radii.push_back(
+                std::max(room < 0.0 ? own : std::min(own, kThickestInCrown * room), tip));
         }
     }
     for (Limb& branch : limbs.branches)

@@ -29,19 +29,21 @@ double share(std::vector<double> values, double of) {
     return values[static_cast<size_t>(of * static_cast<double>(values.size() - 1))];
 }
 
-// The paper's table 2 (papers/003): how long its authors drew and how long their program then took, beside what ours
-// takes for the same four trees, drawn anew.
+// The paper's table 2 (papers/003): how long its authors drew and how long their program then took, beside
+// what ours takes for the same four trees, drawn anew.
 void bench_table2() {
     struct Row {
         const char* species;
         int strokes;
         double drawn, paper;  // seconds
     };
-    constexpr Row kRows[] = {
-        {"poplar", 8, 18.0, 33.0}, {"maple", 5, 14.0, 26.0}, {"magnolia", 7, 20.0, 41.0}, {"ginkgo", 5, 15.0, 22.0}};
+    constexpr Row kRows[] = {{"poplar", 8, 18.0, 33.0},
+                             {"maple", 5, 14.0, 26.0},
+                             {"magnolia", 7, 20.0, 41.0},
+                             {"ginkgo", 5, 15.0, 22.0}};
     std::printf("\nthe paper's table 2, s; ours with the finest mesh and leaves, the median of 9\n");
-    std::printf("%-10s %15s %8s %8s %14s %9s\n", "species", "paper's strokes", "drawing", "paper", "our strokes",
-                "ours");
+    std::printf("%-10s %15s %8s %8s %14s %9s\n", "species", "paper's strokes", "drawing", "paper",
+                "our strokes", "ours");
     for (const Row& row : kRows) {
         const std::string path = std::string("tests/sketch/cases/") + row.species + ".json";
         const Sketch sketch = read_sketch(path);

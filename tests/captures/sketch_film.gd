@@ -1,14 +1,14 @@
 extends SceneTree
-## A tree that follows the pen: replays a sketch point by point, strokes at the left and the tree beside them:
+## A tree that follows the pen: replays a sketch point by point, strokes and tree side by side:
 ##
 ##     godot --path project --script tests/captures/sketch_film.gd -- SKETCH.json FOLDER
 ##
 ## FOLDER gets one picture for each step, 0000.png and so on; make_captures.sh makes a film of them.
 
 const _PART: Vector2i = Vector2i(320, 320)
-const _SUPERSAMPLING: int = 2
-const _STEPS: int = 52
-const _LAST: int = 20
+const _SUPERSAMPLING: int = 1
+const _STEPS: int = 40
+const _LAST: int = 16
 const _MOST_DEGREES: float = 360.0
 const _INK: Dictionary[String, Color] = {
 	"outline": Color(0.25, 0.5, 0.2),
@@ -81,8 +81,8 @@ func _draw(points: int) -> void:
 			break
 		var part: Dictionary = stroke.duplicate()
 		part["points"] = line.slice(0, points)
-		part["pressure"] = (stroke.get("pressure", PackedFloat32Array()) as PackedFloat32Array).slice(
-			0, points
+		part["pressure"] = (
+			(stroke.get("pressure", PackedFloat32Array()) as PackedFloat32Array).slice(0, points)
 		)
 		strokes.append(part)
 		points -= line.size()
@@ -128,8 +128,8 @@ func _look(turn: float) -> void:
 	_camera.size = size
 	var off: Vector2 = (0.5 * _sketch.canvas_size - _foot) * _scale
 	var middle: Vector3 = Vector3(off.x, -off.y, 0.0)
-	var way: Vector3 = Vector3(sin(turn), 0.1, cos(turn)).normalized()
-	_camera.look_at_from_position(middle + 100.0 * way, middle)
+	_camera.look_at_from_position(middle + 100.0 * Vector3(0.0, 0.1, 1.0).normalized(), middle)
+	_shown.rotation.y = turn
 
 
 func _open_stage() -> void:

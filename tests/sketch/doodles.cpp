@@ -81,6 +81,10 @@ class Scribbler {
 
     static void append(Line& line, const Line& more) { line.insert(line.end(), more.begin(), more.end()); }
 
+    void go_to(Line& line, const DVec2& p, double bend) {
+        append(line, line.empty() ? Line{p} : stroke(line.back(), p, bend));
+    }
+
     // Around, from a chance place, with a gap or an overshoot at its end; bumps stand out by `bump`.
     Line ring(const DVec2& middle, const DVec2& radii, int bumps = 0, double bump = 0.0) {
         const double begin = from(0.0, 2.0 * kPi);
@@ -124,13 +128,16 @@ class Scribbler {
             append(line, stroke(line.back(), {x + half, up}, 0.02));
             add(line);
         } else {
-            Line line = stroke({x - half, up}, {x - half, foot}, 0.01);
-            append(line, stroke(line.back(), {x + half, foot}, 0.01));
-            append(line, stroke(line.back(), {x + half, up}, 0.01));
-            append(line, stroke(line.back(), line.front(), 0.01));
-            add(line);
+            add(box({x - half, foot}, {x + half, up}));
         }
         if (chance(0.15)) roots(x, foot);
+    }
+
+    Line box(const DVec2& low, const DVec2& high) {
+        Line line = stroke({low.x, high.y}, low, 0.01);
+        for (const DVec2& to : {DVec2(high.x, low.y), high, DVec2(low.x, high.y)})
+            append(line, stroke(line.back(), to, 0.01));
+        return line;
     }
 
     void roots(double x, double foot) {
@@ -148,18 +155,14 @@ class Scribbler {
         }
     }
 
-    void round_tree() {
-        crown_at({0.5 + from(-0.05, 0.05), from(0.3, 0.38)}, {from(0.16, 0.34), from(0.18, 0.3)});
-        add(ring(crown_middle_, crown_radii_));
-        trunk(crown_middle_.y + crown_radii_.y);
-        if (chance(0.3)) branches_within();
-    }
+    void round_tree() { rounded_tree(0); }
+    void cloud_tree() { rounded_tree(5 + static_cast<int>(random_.below(8))); }
 
-    void cloud_tree() {
-        crown_at({0.5 + from(-0.05, 0.05), from(0.3, 0.38)}, {from(0.2, 0.36), from(0.18, 0.28)});
-        add(ring(crown_middle_, crown_radii_, 5 + static_cast<int>(random_.below(8)), from(0.12, 0.4)));
-        trunk(crown_middle_.y + 0.9 * crown_radii_.y);
-        if (chance(0.2)) branches_within();
+    void rounded_tree(int bumps) {
+        crown_at({0.5 + from(-0.05, 0.05), from(0.3, 0.38)}, {from(0.18, 0.35), from(0.18, 0.29)});
+        add(ring(crown_middle_, crown_radii_, bumps, from(0.12, 0.4)));
+        trunk(crown_middle_.y + (bumps > 0 ? 0.9 : 1.0) * crown_radii_.y);
+        if (chance(0.25)) branches_within();
     }
 
     void zigzag_tree() {
@@ -169,10 +172,7 @@ class Scribbler {
         for (int i = 0; i <= 2 * teeth; i++) {
             const double out = i % 2 == 0 ? 1.0 : from(0.72, 0.86);
             const DVec2 p = crown_middle_ + crown_radii_ * out * around(kPi + kPi * i / teeth);
-            if (line.empty())
-                line.push_back(p);
-            else
-                append(line, stroke(line.back(), p, 0.02));
+            go_to(line, p, 0.02);
         }
         add(line);
         trunk(crown_middle_.y + 0.9 * crown_radii_.y);
@@ -293,10 +293,7 @@ class Scribbler {
             const double y = -0.95 + 1.9 * i / rows;
             const double x = std::sqrt(1.0 - y * y) * from(0.8, 1.0) * (i % 2 == 0 ? 1.0 : -1.0);
             const DVec2 p = crown_middle_ + crown_radii_ * DVec2(x, y);
-            if (line.empty())
-                line.push_back(p);
-            else
-                append(line, stroke(line.back(), p, 0.03));
+            go_to(line, p, 0.03);
         }
         add(line);
         trunk(crown_middle_.y + crown_radii_.y);
@@ -307,7 +304,8 @@ class Scribbler {
         Line line;
         const double turns = from(2.0, 5.0);
         for (int i = 0; i <= 240; i++)
-            line.push_back(crown_middle_ + crown_radii_ * (i / 240.0) * around(2.0 * kPi * turns * i / 240.0));
+            line.push_back(crown_middle_ +
+                           crown_radii_ * (i / 240.0) * around(2.0 * kPi * turns * i / 240.0));
         add(line);
         trunk(crown_middle_.y + crown_radii_.y);
     }
@@ -356,15 +354,15 @@ class Scribbler {
     // What stands around and on a tree.
     void add_beside() {
         const double ground = doodle_.foot.y;
-        if (chance(0.4)) add(stroke({from(0.02, 0.2), ground + 0.01}, {from(0.8, 0.98), ground + 0.01}, 0.02));
+        if (chance(0.4))
+            add(stroke({from(0.02, 0.2), ground + 0.01}, {from(0.8, 0.98), ground + 0.01}, 0.02));
         if (chance(0.25)) {
             const uint32_t apples = 2 + random_.below(5);
             for (uint32_t i = 0; i < apples; i++)
                 add(ring(crown_middle_ + crown_radii_ * from(0.1, 0.6) * around(from(0.0, 6.28)),
                          DVec2(from(0.012, 0.03))));
         }
-        if (chance(0.15))
-            add(ring({doodle_.foot.x, ground - from(0.06, 0.12)}, {0.012, from(0.012, 0.025)}));
+        if (chance(0.15)) add(ring({doodle_.foot.x, ground - from(0.06, 0.12)}, {0.012, from(0.012, 0.025)}));
         if (chance(0.2)) {
             Line grass;
             for (int i = 0; i <= 12; i++)
@@ -374,12 +372,12 @@ class Scribbler {
         if (chance(0.15)) {
             add(ring({0.92, 0.07}, DVec2(0.05)));
             for (int i = 0; i < 5; i++)
-                add(stroke(DVec2(0.92, 0.07) + 0.06 * around(1.2 * i), DVec2(0.92, 0.07) + 0.08 * around(1.2 * i)));
+                add(stroke(DVec2(0.92, 0.07) + 0.06 * around(1.2 * i),
+                           DVec2(0.92, 0.07) + 0.08 * around(1.2 * i)));
         }
         if (chance(0.15)) letters({0.02, from(0.5, 0.8)}, 0.05);
         if (chance(0.15)) add({DVec2(from(0.1, 0.9), from(0.1, 0.9))});
     }
-
     void letters(const DVec2& place, double size) {
         add({place, place + DVec2(size, 0.0)});
         add(stroke(place + DVec2(0.5 * size, 0.0), place + DVec2(0.5 * size, size)));
@@ -388,7 +386,7 @@ class Scribbler {
     }
 
     void no_tree() {
-        const uint32_t kind = random_.below(8);
+        const uint32_t kind = random_.below(6);
         const uint32_t count = 1 + random_.below(12);
         for (uint32_t i = 0; i < count; i++) {
             const DVec2 a(random_.uniform(), random_.uniform()), b(random_.uniform(), random_.uniform());
@@ -396,13 +394,10 @@ class Scribbler {
                 case 0:  // dots
                     add(Line(1 + random_.below(5), a));
                     break;
-                case 1:  // hatching
-                    add(stroke({0.1, 0.1 + 0.06 * i}, {0.9, 0.1 + 0.06 * i}));
-                    break;
-                case 2:
+                case 1:
                     letters(a * 0.8, from(0.03, 0.15));
                     break;
-                case 3: {  // a scrawl
+                case 2: {  // a scrawl
                     Line line = {a};
                     const uint32_t points = 2 + random_.below(400);
                     for (uint32_t k = 0; k < points; k++)
@@ -410,13 +405,10 @@ class Scribbler {
                     add(line);
                     break;
                 }
-                case 4:  // bubbles
+                case 3:  // bubbles
                     add(ring(a, DVec2(from(0.01, 0.4), from(0.01, 0.4))));
                     break;
-                case 5:  // to and fro on one line
-                    add({a, b, a, b, a, b});
-                    break;
-                case 6:  // a grid, all crossing
+                case 4:  // a grid, all crossing
                     add(i % 2 == 0 ? stroke({0.05 * i, 0.0}, {0.05 * i, 1.0}, 0.0)
                                    : stroke({0.0, 0.05 * i}, {1.0, 0.05 * i}, 0.0));
                     break;
@@ -500,7 +492,6 @@ class Scribbler {
 };
 
 }  // namespace
-
 Doodle scribbled_doodle(uint64_t seed) {
     return Scribbler(seed).run();
 }

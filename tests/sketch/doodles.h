@@ -16,9 +16,10 @@ namespace treerec::test {
 struct Doodle {
     Sketch sketch;
     const char* kind = "";
-    bool tree_like = false;  // a person would call it a tree
+    bool tree_like = false;    // a person would call it a tree
     bool has_outline = false;  // of the crown, in one stroke or several
-    // Where its crown is and where its trunk stands, pixels of the sketch's canvas, y down; of tree-like ones.
+    // Where its crown is and where its trunk stands, pixels of the sketch's canvas, y down; of tree-like
+    // ones.
     DVec2 crown_low{0.0}, crown_high{0.0};
     DVec2 foot{0.0};
 };

@@ -1,7 +1,7 @@
 // Doodles beside what is made of them, to be looked at:
 //
-//     show_doodles SHEET.png [FIRST [COUNT]]     what each stroke was taken for; beside it the wood and the crown
-//     show_doodles FOLDER/ [FIRST [COUNT]]       as sketches, for tests/captures/sketches.gd
+//     show_doodles SHEET.png [FIRST [COUNT]]     what each stroke was taken for; beside it the wood and the
+//     crown show_doodles FOLDER/ [FIRST [COUNT]]       as sketches, for tests/captures/sketches.gd
 #include <algorithm>
 #include <array>
 #include <cmath>
