@@ -16,7 +16,9 @@ constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
 // The share of a twig's wood that is near enough to a tip to bear leaves, of our species and at least.
 constexpr double kBearing = 0.6, kLeastBearing = 0.25;
 // Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
-constexpr double kStandsOut = 0.42;
+constexpr double kStandsOut = 0.46;
+// Of half a crown's width: in a slender one leaves would find no wood to stand on.
+constexpr double kMostMargin = 0.25;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 // Leaves that would cover the crown's outline often enough.
@@ -42,8 +44,10 @@ double leaf_length(const LeafRules& rules, double height) {
 double leaf_margin(const CrownSections& crown, const LeafRules& rules, double height) {
     // Where they would be more than the rules allow, fewer and larger ones stand.
     const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
-    return kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
-           rules.petiole;
+    const double margin =
+        kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
+        rules.petiole;
+    return std::min(margin, kMostMargin * crown.reach());
 }
 
 double bearing_share(const SketchSpecies& species, double height) {

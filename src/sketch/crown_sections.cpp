@@ -79,7 +79,14 @@ double CrownSections::half_depth(double x, double y) const {
 }
 
 bool CrownSections::contains(const DVec3& p, double margin) const {
-    if (margin > 0.0 && !(encloses(p.x, p.y + margin) && encloses(p.x, p.y - margin))) return false;
+    if (margin > 0.0) {
+        // Above, below and on the slopes; the section tells of the sides.
+        const double slant = std::sqrt(0.5) * margin;
+        if (!(encloses(p.x, p.y + margin) && encloses(p.x, p.y - margin) &&
+              encloses(p.x - slant, p.y + slant) && encloses(p.x + slant, p.y + slant) &&
+              encloses(p.x - slant, p.y - slant) && encloses(p.x + slant, p.y - slant)))
+            return false;
+    }
     for (const Section& section : at(p.y)) {
         const double half = 0.5 * (section.right - section.left) - margin;
         const double off = p.x - 0.5 * (section.left + section.right);

@@ -50,6 +50,26 @@ DrawnLine middle_of_rows(const std::vector<Row>& rows, double bottom, double ste
     return middle;
 }
 
+// A slanting foot or top cuts off corners: rows there are as wide as the first whole one.
+void widen_ends(std::vector<Row>& rows) {
+    std::vector<double> widths;
+    for (const Row& row : rows)
+        if (!row.empty()) widths.push_back(row.high - row.low);
+    if (widths.size() < 5) return;
+    std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(widths.size() / 2),
+                     widths.end());
+    const double usual = widths[widths.size() / 2];
+    const size_t most = rows.size() / 4;
+    for (const bool top : {false, true}) {
+        const auto at = [&](size_t i) -> Row& { return rows[top ? rows.size() - 1 - i : i]; };
+        size_t whole = 0;
+        while (whole < most && (at(whole).empty() || at(whole).high - at(whole).low < 0.7 * usual))
+            whole++;
+        for (size_t i = 0; i < whole && whole < most; i++)
+            at(i) = at(whole);
+    }
+}
+
 constexpr double kRowStep = 4.0;  // pixels
 constexpr int kMostRows = 500;
 
@@ -110,6 +130,7 @@ DrawnLine middle_of_outline(const FlatLine& around) {
     for (int i = 0; i <= count; i++)
         rows.push_back(
             row_at(around, box.low.y + std::clamp(static_cast<double>(i), 0.5, count - 0.5) * step, true));
+    widen_ends(rows);
     return middle_of_rows(rows, box.low.y, step);
 }
 
@@ -196,6 +217,9 @@ std::optional<Lollipop> split_lollipop(const FlatLine& line, const FlatLine& pol
     return split;
 }
 
+// Of half the crown's width there: twigs of a crown that its trunk fills would be shorter than it is thick.
+constexpr double kThickestInCrown = 0.125;
+
 bool reach_into_crown(DrawnLine& trunk, const FlatLine& outline) {
     const FlatBox box = line_box(outline);
     const DVec2 top = trunk.points.back();
@@ -208,9 +232,12 @@ bool reach_into_crown(DrawnLine& trunk, const FlatLine& outline) {
     const double radius = trunk.radii.empty() ? 0.0 : trunk.radii.back();
     for (size_t i = 1; i < on.size(); i++) {
         trunk.points.push_back(on[i]);
-        if (radius > 0.0)
-            trunk.radii.push_back(std::max(
-                0.5, radius * (1.0 - 0.8 * static_cast<double>(i) / static_cast<double>(on.size() - 1))));
+        if (radius == 0.0) continue;
+        const double tapered =
+            radius * (1.0 - 0.8 * static_cast<double>(i) / static_cast<double>(on.size() - 1));
+        const Row crown = row_at(outline, on[i].y, true);
+        const double most = crown.empty() ? tapered : kThickestInCrown * 0.5 * (crown.high - crown.low);
+        trunk.radii.push_back(std::max(0.5, std::min(tapered, most)));
     }
     return on.size() > 1;
 }

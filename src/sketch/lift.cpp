@@ -24,6 +24,17 @@ constexpr double kMostDepth = 1.2;
 // A branch's share of the trunk's thickness there, whatever its length.
 constexpr double kThinnestBranch = 0.25, kThickestBranch = 0.75;
 
+// Of a tree's height, half its crown's width: beside the usual trunk a more slender crown's twigs would be as
+// snags, which bear no leaves.
+constexpr double kSlender = 0.12;
+
+// Metres, at the foot, where none was drawn.
+double usual_radius(const CrownSections& crown, double foot) {
+    const double height = crown.top() - foot;
+    const double slender = std::min(crown.reach() / (kSlender * height), 1.0);
+    return height / 40.0 * slender * slender;
+}
+
 // Where each branch grows: the place of a point of the trunk's line.
 std::vector<size_t> joints_of(const DrawnTree& drawn) {
     std::vector<size_t> joints;
@@ -147,7 +158,7 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
     const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
                         : !radii.empty()           ? radii[0] * place.scale
                         : taper                    ? taper->foot
-                                                   : (crown.top() - limbs.trunk.points[0].y) / 40.0;
+                                                   : usual_radius(crown, limbs.trunk.points[0].y);
     const double least = std::max(foot / 10.0, kLeastRadius);
     limbs.trunk.radii = taper ? taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
                               : tapered(limbs.trunk.points, foot, least);

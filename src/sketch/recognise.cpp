@@ -15,7 +15,13 @@ constexpr double kLeastLength = 6.0;  // pixels: shorter is a dot
 constexpr double kRingChord = 0.7, kArchChord = 0.92, kClosedChord = 0.35;
 // ... and its convex hull is no sliver: 4 pi area / perimeter^2, which is 1 of a circle.
 constexpr double kRingRoundness = 0.3;
-constexpr double kLeastCrown = 0.1;                     // of the whole drawing's hull, in area
+constexpr double kSlenderChord = 0.1, kSlenderRoundness = 0.12;
+constexpr double kLeastCrown = 0.1;  // of the whole drawing's hull, in area
+constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hole or a sun
+// Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
+constexpr double kStraight = 0.92, kMeet = 0.06, kChainRoundness = 0.5;
+constexpr size_t kMostArcs = 40;
+constexpr double kLeastRing = 0.02;                     // of the whole drawing's hull: less is a sun
 constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
 
 struct Shape {
@@ -64,11 +70,13 @@ class Recogniser {
     Recognised run() {
         for (size_t i = 0; i < lines_.size(); i++)
             if (shapes_[i].is_dot) leave_out(i, "This is only a dot; draw a line.");
+        leave_out_small_rings();
         find_outline();
         find_trunk();
+        add_outlines();
         for (size_t i = 0; i < lines_.size(); i++) {
             if (!is_open(i)) continue;
-            if (wanted_[i] == StrokeRole::kBranch || !is_more_outline(i)) give(i, StrokeRole::kBranch);
+            if (wanted_[i] == StrokeRole::kBranch || !is_other_outline(i)) give(i, StrokeRole::kBranch);
         }
         std::stable_sort(found_.outlines.begin(), found_.outlines.end(),
                          [&](size_t a, size_t b) { return shapes_[a].area > shapes_[b].area; });
@@ -111,7 +119,7 @@ class Recogniser {
         for (size_t i = 0; i < lines_.size(); i++)
             if (wanted_[i] == StrokeRole::kOutline && is_open(i)) give(i, StrokeRole::kOutline);
         if (!found_.outlines.empty()) return;
-        if (find_arcs()) return;
+        if (find_arcs() || find_chain()) return;
         size_t highest = lines_.size(), best = lines_.size();
         for (size_t i = 0; i < lines_.size(); i++)
             if (!shapes_[i].is_dot &&
@@ -119,15 +127,25 @@ class Recogniser {
                 highest = i;
         size_t tried = 0;
         for (size_t i = 0; i < lines_.size(); i++) {
-            if (!is_free(i) || !shapes_[i].is_ring(i == highest ? kArchChord : kRingChord)) continue;
+            if (!is_free(i)) continue;
+            if (!shapes_[i].is_ring(i == highest ? kArchChord : kRingChord) && !is_slender_crown(i)) continue;
             if (best < lines_.size() && shapes_[i].area <= shapes_[best].area) continue;
             const bool closed = shapes_[i].chord < kClosedChord * shapes_[i].length;
             // Hostile drawings have a thousand rings.
-            if ((closed && shapes_[i].area > kLeastCrown * whole_.area) || stands_alone(i) ||
-                (tried++ < 50 && share_within(i) >= 0.5))
+            if ((closed && shapes_[i].area > 0.5 * kLeastCrown * whole_.area) || stands_alone(i) ||
+                (shapes_[i].area > kLeastRing * whole_.area && tried++ < 50 && share_within(i) >= 0.5))
                 best = i;
         }
         if (best < lines_.size() && !goes_around_trunk(best)) give(best, StrokeRole::kOutline);
+    }
+
+    // As a cypress has: closed, up to the top, and off the ground.
+    bool is_slender_crown(size_t i) const {
+        const FlatBox& box = shapes_[i].box;
+        const double height = whole_.box.size().y;
+        return !shapes_[i].is_dot && shapes_[i].chord < kSlenderChord * shapes_[i].length &&
+               shapes_[i].roundness > kSlenderRoundness && box.high.y > whole_.box.high.y - 0.1 * height &&
+               box.low.y > whole_.box.low.y + 0.1 * height;
     }
 
     bool stands_alone(size_t i) const {
@@ -150,7 +168,7 @@ class Recogniser {
     bool find_arcs() {
         std::vector<size_t> arcs;
         for (size_t i = 0; i < lines_.size(); i++)
-            if (is_free(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
+            if (is_free(i) && !stands_around(i) && shapes_[i].chord > kClosedChord * shapes_[i].length &&
                 shapes_[i].is_ring(kArchChord) && shapes_[i].area > 0.5 * kLeastCrown * whole_.area)
                 arcs.push_back(i);
         if (arcs.size() > 40) return false;
@@ -178,6 +196,65 @@ class Recogniser {
         give(best[0], StrokeRole::kOutline);
         give(best[1], StrokeRole::kOutline);
         return true;
+    }
+
+    // An outline of several arcs, end to end: bumps of a cloud, each a stroke of its own, or a torn line.
+    bool find_chain() {
+        std::vector<size_t> arcs;
+        double largest = 0.0;
+        for (size_t i = 0; i < lines_.size(); i++) {
+            if (!is_free(i) || shapes_[i].is_dot) continue;
+            largest = std::max(largest, shapes_[i].area);
+            if (!stands_around(i) && shapes_[i].chord > 0.5 * kClosedChord * shapes_[i].length &&
+                shapes_[i].chord < kStraight * shapes_[i].length)
+                arcs.push_back(i);
+        }
+        if (arcs.size() < 2 || arcs.size() > kMostArcs) return false;
+        // It must be more than any stroke of them is by itself.
+        const double least_area = std::max(1.15 * largest, 0.5 * kLeastCrown * whole_.area);
+        double most = 0.0;
+        std::vector<size_t> best;
+        for (const size_t start : arcs) {
+            FlatLine chain = lines_[start];
+            std::vector<size_t> members = {start};
+            double length = shapes_[start].length;
+            while (true) {
+                const DVec2 end = chain.back();
+                // Closed, unless another stroke begins nearer.
+                double least = members.size() > 1 ? glm::length(chain.front() - end) : 1e300;
+                size_t next = lines_.size();
+                bool turned = false;
+                for (const size_t i : arcs) {
+                    if (std::find(members.begin(), members.end(), i) != members.end()) continue;
+                    const double near = kMeet * (shapes_[members.back()].length + shapes_[i].length);
+                    for (const bool back : {false, true}) {
+                        const double away = glm::length((back ? lines_[i].back() : lines_[i].front()) - end);
+                        if (away > near || away >= least) continue;
+                        least = away;
+                        next = i;
+                        turned = back;
+                    }
+                }
+                if (next == lines_.size()) break;
+                members.push_back(next);
+                length += shapes_[next].length;
+                if (turned)
+                    chain.insert(chain.end(), lines_[next].rbegin(), lines_[next].rend());
+                else
+                    chain.insert(chain.end(), lines_[next].begin(), lines_[next].end());
+            }
+            const Shape joint = shape_of(chain);
+            if (members.size() < 2 || joint.chord > 0.5 * kClosedChord * length ||
+                joint.roundness < kChainRoundness || joint.area < least_area)
+                continue;
+            // Without what hangs on it, as a trunk's sides.
+            if (joint.area * joint.roundness <= most) continue;
+            most = joint.area * joint.roundness;
+            best = members;
+        }
+        for (const size_t i : best)
+            give(i, StrokeRole::kOutline);
+        return !best.empty();
     }
 
     // How many ends of other lines lie near this one, at most 4.
@@ -227,15 +304,37 @@ class Recogniser {
     bool is_around(size_t i) const {
         const double height = shapes_[i].box.size().y;
         return shapes_[i].length > 1.6 * height && shapes_[i].chord < 0.5 * shapes_[i].length &&
-               shapes_[i].area < 0.6 * height * height && shapes_[i].area > 3.0 * height;
+               shapes_[i].area < 1.2 * height * height && shapes_[i].area > 3.0 * height;
+    }
+
+    // Whether it is apart from the outline, as are letters beside the tree, a hill and the like: no trunk,
+    // however low, where there is another.
+    bool is_apart(size_t i) const {
+        if (found_.outlines.empty()) return false;
+        FlatBox crown = shapes_[found_.outlines[0]].box;
+        for (const size_t outline : found_.outlines) {
+            crown.low = glm::min(crown.low, shapes_[outline].box.low);
+            crown.high = glm::max(crown.high, shapes_[outline].box.high);
+        }
+        const DVec2 size = crown.size();
+        const FlatBox& box = shapes_[i].box;
+        return box.high.y < crown.low.y - 0.25 * size.y || box.high.x < crown.low.x - 0.1 * size.x ||
+               box.low.x > crown.high.x + 0.1 * size.x;
+    }
+
+    // A trunk's three sides are no arc of a crown.
+    bool stands_around(size_t i) const {
+        return is_around(i) && shapes_[i].box.low.y < whole_.box.low.y + kFeetZone * whole_.box.size().y;
     }
 
     // lines_.size(): none stands.
     size_t best_trunk() const {
         double lowest = 0.0;
-        bool any = false;
+        bool any = false, all = true;
+        for (size_t i = 0; i < lines_.size() && all; i++)
+            all = !is_free(i) || is_apart(i);
         for (size_t i = 0; i < lines_.size(); i++) {
-            if (!is_free(i)) continue;
+            if (!is_free(i) || (!all && is_apart(i))) continue;
             lowest = any ? std::min(lowest, shapes_[i].box.low.y) : shapes_[i].box.low.y;
             any = true;
         }
@@ -243,7 +342,9 @@ class Recogniser {
         double most = 0.0;
         int tried = 0;
         for (size_t i = 0; any && i < lines_.size(); i++) {
-            if (!is_free(i) || shapes_[i].box.low.y > lowest + kGroundZone * whole_.box.size().y) continue;
+            if (!is_free(i) || shapes_[i].box.low.y > lowest + kGroundZone * whole_.box.size().y ||
+                (!all && is_apart(i)))
+                continue;
             if (tried++ > 50) break;
             const int touched = touches(i);
             const double upright = shapes_[i].box.size().y;
@@ -256,6 +357,13 @@ class Recogniser {
             }
         }
         return best;
+    }
+
+    double lowest_of_crown() const {
+        double lowest = found_.outlines.empty() ? -1e300 : 1e300;
+        for (const size_t outline : found_.outlines)
+            lowest = std::min(lowest, shapes_[outline].box.low.y);
+        return lowest;
     }
 
     // Whether both lines stand side by side from the ground up. told: the user says that both are the
@@ -276,7 +384,9 @@ class Recogniser {
             if (std::abs(between) < (told ? 1.0 : 3.0) || between * foot < 0.0) return false;
             if (std::abs(between) > (told ? 2.5 : 1.5) * std::abs(foot) + 4.0) return false;
         }
-        return std::abs(foot) < (told ? 1.0 : 0.5) * common;
+        // Both of them below a crown, and alone there, are a stout, short trunk.
+        const bool stout = told || (high < lowest_of_crown() + 0.2 * common && common > 0.8 * tall);
+        return std::abs(foot) < (stout ? 1.0 : 0.5) * common;
     }
 
     // The mean of where a line crosses this height.
@@ -292,24 +402,46 @@ class Recogniser {
         return count == 0 ? line[0].x : sum / count;
     }
 
-    // A ring beside the outline: a part of it, or left out.
-    bool is_more_outline(size_t i) {
-        if (found_.outlines.empty() || !shapes_[i].is_ring(0.5)) return false;
-        const size_t first = found_.outlines[0];
-        const bool small = shapes_[i].area < 0.02 * shapes_[first].area;
-        for (size_t k = 0; k < found_.outlines.size() && k < 50 && !small; k++) {
+    // Rings that cross the outline, or one that does, are parts of it: a fir's are a chain.
+    void add_outlines() {
+        if (found_.outlines.empty()) return;
+        const double least = 0.02 * shapes_[found_.outlines[0]].area;
+        for (size_t k = 0; k < found_.outlines.size() && k < 50; k++) {
             const FlatLine& outline = lines_[found_.outlines[k]];
-            if (crossings(lines_[i], outline).empty() &&
-                crossings({lines_[i].back(), lines_[i].front()}, outline).empty())
-                continue;
-            give(i, StrokeRole::kOutline);
-            return true;
+            for (size_t i = 0; i < lines_.size(); i++) {
+                if (!is_free(i) || !shapes_[i].is_ring(0.5) || shapes_[i].area < least) continue;
+                if (!crossings(lines_[i], outline).empty() ||
+                    !crossings({lines_[i].back(), lines_[i].front()}, outline).empty())
+                    give(i, StrokeRole::kOutline);
+            }
         }
+    }
+
+    // A ring apart from the outline: left out.
+    bool is_other_outline(size_t i) {
+        if (found_.outlines.empty() || !shapes_[i].is_ring(0.5)) return false;
         if (shapes_[i].chord > 0.2 * shapes_[i].length) return false;
-        leave_out(i, is_inside(lines_[first], lines_[i][0])
+        leave_out(i, is_inside(lines_[found_.outlines[0]], lines_[i][0])
                          ? "This lies within the crown's outline and changes nothing of it."
                          : "A tree has one crown, and this is a second outline; let it cross the first one.");
         return true;
+    }
+
+    // Apples, and a hole in the trunk.
+    void leave_out_small_rings() {
+        const double most = kSmallRing * whole_.box.size().y;
+        bool other = false;
+        for (size_t i = 0; i < lines_.size() && !other; i++) {
+            const DVec2 size = shapes_[i].box.size();
+            other = is_open(i) && (!shapes_[i].is_ring(kClosedChord) || std::max(size.x, size.y) > most);
+        }
+        for (size_t i = 0; i < lines_.size() && other; i++) {
+            const DVec2 size = shapes_[i].box.size();
+            if (is_free(i) && shapes_[i].is_ring(kClosedChord) && std::max(size.x, size.y) < most)
+                leave_out(
+                    i,
+                    "This is a small ring, as of an apple, a hole or a sun; it changes nothing of the tree.");
+        }
     }
 
     std::span<const FlatLine> lines_;

@@ -31,8 +31,9 @@ enum class SketchCrown : uint8_t {
 struct SketchOptions {
     SketchDepth depth = SketchDepth::kTrue;
     SketchCrown crown = SketchCrown::kSections;
-    double trunk_radius = 0.0;  // metres at the foot; 0: as drawn with two lines, else height / 40
-    double density = 1.0;       // of twigs, 0..4
+    // Metres at the foot; 0: as drawn with two lines, else height / 40, less in a slender crown.
+    double trunk_radius = 0.0;
+    double density = 1.0;  // of twigs, 0..4
     // Of the leaves that are to fill the crown; nothing: those of the preset of the sketch's species.
     std::optional<LeafRules> leaves;
 };

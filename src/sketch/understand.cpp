@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kSeenGap = 10.0;     // pixels between an outline's ends that are worth a word
 constexpr double kNoMargin = 10.0;    // pixels that a line may be out of the crown before it is said
+constexpr double kStandsOn = 0.04;    // of the outline's height: what goes farther down bears it
 constexpr double kNearBranch = 25.0;  // pixels from the branch that a side branch grows from
 
 class Understanding {
@@ -90,6 +91,7 @@ class Understanding {
             parts.push_back(lines_[stroke]);
         const std::vector<FlatLine> rings = join_arcs(parts);
         const MadeOutline made = make_outline(rings);
+        if (rings.size() == 1) outline_line_ = rings[0];
         if (made.polygon.empty()) {
             for (const size_t stroke : found_.outlines)
                 leave_out(stroke, "This outline encloses nothing; draw it around the crown.");
@@ -109,6 +111,7 @@ class Understanding {
 
     void read_trunk() {
         DrawnLine& trunk = drawn().trunk;
+        if (split_outline()) return;
         if (!found_.trunks.empty()) {
             const size_t first = *std::min_element(found_.trunks.begin(), found_.trunks.end());
             if (found_.trunks.size() == 2)
@@ -131,23 +134,42 @@ class Understanding {
             throw Error(
                 "Nothing in the drawing looks like a trunk or like a crown's outline. Draw a trunk "
                 "from the ground up, or the outline of the crown.");
-        const size_t outline = found_.outlines[0];
-        trunk.stroke = outline;
-        if (found_.outlines.size() == 1 && found_.branches.empty()) {
-            if (const auto split = split_lollipop(lines_[outline], drawn().outline)) {
-                const MadeOutline crown = make_outline({split->crown});
-                if (!crown.polygon.empty()) {
-                    drawn().outline = crown.polygon;
-                    trunk = split->trunk;
-                    trunk.stroke = outline;
-                    if (!trunk.radii.empty()) mark(outline, StrokeRepair::kTwoSides);
-                    result_.remarks.emplace_back("Trunk and crown were drawn in one stroke.");
-                    return;
-                }
-            }
-        }
+        trunk.stroke = found_.outlines[0];
         trunk.points = make_trunk(drawn().outline, trunk_place(), lowest_);
         result_.remarks.emplace_back("No trunk was drawn; a straight one was made.");
+    }
+
+    // Where the outline stands on the ground, it may go around the trunk, too. What was taken for the trunk
+    // then is something beside it.
+    bool split_outline() {
+        if (outline_line_.empty() || drawn().outline.empty()) return false;
+        const size_t outline = found_.outlines[0];
+        const FlatBox around = line_box(outline_line_);
+        const double ground = around.low.y;
+        if (ground > lowest_ + 0.5 * (highest_ - lowest_)) return false;
+        const auto split = split_lollipop(outline_line_, drawn().outline);
+        if (!split) return false;
+        const MadeOutline crown = make_outline({split->crown});
+        if (crown.polygon.empty()) return false;
+        const FlatBox box = line_box(crown.polygon);
+        for (const size_t stroke : found_.trunks) {
+            const FlatBox trunk = line_box(lines_[stroke]);
+            const bool beside = trunk.high.x < box.low.x || trunk.low.x > box.high.x;
+            const bool below = trunk.low.y < ground - kStandsOn * around.size().y && trunk.high.y > ground;
+            const bool bears_it = !beside && trunk.low.y < box.low.y && (below || trunk.high.y > box.low.y);
+            if (bears_it || sketch_.strokes[stroke].role == StrokeRole::kTrunk) return false;
+        }
+        drawn().outline = crown.polygon;
+        drawn().trunk = split->trunk;
+        drawn().trunk.stroke = outline;
+        if (!split->trunk.radii.empty()) mark(outline, StrokeRepair::kTwoSides);
+        result_.remarks.emplace_back("Trunk and crown were drawn in one stroke.");
+        for (const size_t stroke : found_.trunks)
+            reading(stroke).role = StrokeRole::kBranch;
+        found_.branches.insert(found_.branches.end(), found_.trunks.begin(), found_.trunks.end());
+        std::sort(found_.branches.begin(), found_.branches.end());
+        found_.trunks.clear();
+        return true;
     }
 
     // Where a trunk stands that was not drawn: among the branches' inner ends, or below the crown's middle.
@@ -380,6 +402,7 @@ class Understanding {
     Recognised found_;
     UnderstoodSketch result_;
     FlatLine closed_outline_;
+    FlatLine outline_line_;           // as drawn, where it is one line
     std::vector<size_t> drawn_from_;  // by stroke: its place in branches or side branches
     std::vector<LinePlace> branch_places_, side_places_;
     double lowest_ = 1e300, highest_ = -1e300;

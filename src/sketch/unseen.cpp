@@ -15,6 +15,13 @@ namespace {
 // The trunk is to reach so far up the crown, where nothing drawn does.
 constexpr double kReachedShare = 0.55, kExtendedShare = 0.88;
 constexpr double kExtensionSteps = 8.0;
+constexpr double kLeastExtension = 0.08;  // of the crown's height
+// Of the trunk's radius at its foot: how thick it may end, and how thick one ends that goes on.
+constexpr double kThinEnd = 0.15, kTipShare = 0.05;
+// Of the room around it: twigs shorter than six radii of what they stand on would be snags, which bear no
+// leaves.
+constexpr double kThickestInCrown = 0.125;
+constexpr double kTaperedEnd = 0.5;  // the last part of a trunk that ends thick, which tapers
 
 // Drawn branches lie within about 50 degrees of the canvas's plane: they fill 200 of the 360 degrees around.
 constexpr double kUnseenShare = 0.8;
@@ -103,6 +110,20 @@ bool fits(const std::vector<DVec3>& points, const CrownSections& crown, const DV
     return inside;
 }
 
+void taper_end(Limbs& limbs) {
+    std::vector<double>& radii = limbs.trunk.radii;
+    const double length = length_of(limbs.trunk.points);
+    const double tip = std::max(kTipShare * radii[0], kLeastRadius);
+    double along = 0.0;
+    for (size_t i = 1; i < radii.size(); i++) {
+        along += glm::length(limbs.trunk.points[i] - limbs.trunk.points[i - 1]);
+        const double left = std::clamp((1.0 - along / length) / kTaperedEnd, 0.0, 1.0);
+        radii[i] = std::min(radii[i - 1], std::max(radii[i] * left, tip));
+    }
+    for (Limb& branch : limbs.branches)
+        branch.radii = radii_of(branch, limbs);
+}
+
 }  // namespace
 
 void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
@@ -111,9 +132,17 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
     for (const Limb& branch : limbs.branches)
         for (const DVec3& p : branch.points)
             highest = std::max(highest, p.y);
-    if (highest >= crown.bottom() + kReachedShare * height) return;
+    const bool reaches = highest >= crown.bottom() + kReachedShare * height;
+    const double foot = limbs.trunk.radii[0];
+    const double last = limbs.trunk.radii.back();
+    if (reaches && last <= kThinEnd * foot) return;
     const DVec3 from = limbs.trunk.points.back();
     const double to_height = crown.bottom() + kExtendedShare * height;
+    // What was drawn into the crown's top, two lines wide, has its thickness there; all of it tapers.
+    if (from.y > to_height - kLeastExtension * height) {
+        if (last > kThinEnd * foot) taper_end(limbs);
+        return;
+    }
     const auto sections = crown.at(to_height);
     if (sections.empty()) return;
     // The nearest of the crown's tops.
@@ -125,16 +154,29 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
         to_x = middle;
     }
     Random random(hash_seed(seed, 1));
-    const double foot = limbs.trunk.radii[0];
-    const double least = limbs.trunk.radii.back();
     const double bend = random.uniform(-0.03, 0.03) * (to_height - from.y);
+    const size_t drawn = limbs.trunk.points.size();
     for (double i = 1.0; i <= kExtensionSteps; i += 1.0) {
         const double part = i / kExtensionSteps;
         limbs.trunk.points.emplace_back(from.x + (to_x - from.x) * part, from.y + (to_height - from.y) * part,
                                         bend * portable::sin(kPi * part));
     }
-    limbs.trunk.radii = limbs.taper ? limbs.taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
-                                    : tapered(limbs.trunk.points, foot, std::max(0.5 * least, kLeastRadius));
+    const double tip = std::max(kTipShare * foot, kLeastRadius);
+    if (limbs.taper) {
+        limbs.trunk.radii = limbs.taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius);
+    } else if (last <= kThinEnd * foot) {
+        limbs.trunk.radii = tapered(limbs.trunk.points, foot, tip);
+    } else {
+        // As thick as drawn, and from there on it goes to nothing.
+        while (limbs.trunk.radii.size() < limbs.trunk.points.size()) {
+            const double part = static_cast<double>(limbs.trunk.radii.size() - drawn + 1) / kExtensionSteps;
+            const DVec3& at = limbs.trunk.points[limbs.trunk.radii.size()];
+            const double room = crown.half_depth(at.x, at.y);
+            const double own = last * (1.0 - part);
+            limbs.trunk.radii.push_back(
+                std::max(room < 0.0 ? own : std::min(own, kThickestInCrown * room), tip));
+        }
+    }
     for (Limb& branch : limbs.branches)
         branch.radii = radii_of(branch, limbs);
 }

@@ -8,8 +8,9 @@
 
 namespace treerec {
 
-// Where the drawn wood ends in the lower half of the crown, the trunk goes on through it, thinner and
-// thinner. Call it before add_unseen_branches().
+// Where the drawn wood ends in the lower half of the crown, or the trunk ends thick, as one of two lines
+// does, the trunk goes on through it, thinner and thinner; where it is at the top already its end tapers.
+// Call it before add_unseen_branches().
 void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed);
 
 // Branches so that those of all sides are about as many, none of them drawn: each has the shape of the drawn

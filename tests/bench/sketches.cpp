@@ -10,6 +10,7 @@
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
 #include "pipeline/sketch_report.h"
+#include "sketch/read_sketch.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
 
@@ -26,6 +27,36 @@ double ms_of(const std::function<void()>& work) {
 double share(std::vector<double> values, double of) {
     std::sort(values.begin(), values.end());
     return values[static_cast<size_t>(of * static_cast<double>(values.size() - 1))];
+}
+
+// The paper's table 2 (papers/003): how long its authors drew and how long their program then took, beside
+// what ours takes for the same four trees, drawn anew.
+void bench_table2() {
+    struct Row {
+        const char* species;
+        int strokes;
+        double drawn, paper;  // seconds
+    };
+    constexpr Row kRows[] = {{"poplar", 8, 18.0, 33.0},
+                             {"maple", 5, 14.0, 26.0},
+                             {"magnolia", 7, 20.0, 41.0},
+                             {"ginkgo", 5, 15.0, 22.0}};
+    std::printf("\nthe paper's table 2, s; ours with the finest mesh and leaves, the median of 9\n");
+    std::printf("%-10s %15s %8s %8s %14s %9s\n", "species", "paper's strokes", "drawing", "paper",
+                "our strokes", "ours");
+    for (const Row& row : kRows) {
+        const std::string path = std::string("tests/sketch/cases/") + row.species + ".json";
+        const Sketch sketch = read_sketch(path);
+        std::vector<double> times;
+        for (int i = 0; i < 9; i++)
+            times.push_back(ms_of([&] {
+                const SketchedTree made = sketch_tree(sketch, {});
+                build_branch_tubes(made.tree);
+                leaf_buffer(place_leaves(made.tree, leaf_preset(row.species), 1));
+            }));
+        std::printf("%-10s %15d %8.0f %8.0f %14zu %9.3f\n", row.species, row.strokes, row.drawn, row.paper,
+                    sketch.strokes.size(), 1e-3 * share(times, 0.5));
+    }
 }
 
 }  // namespace
@@ -70,6 +101,7 @@ void bench_sketches(const Settings& settings) {
                     share(ious, 0.0), 100.0 * share(outsides, 1.0));
         std::fflush(stdout);
     }
+    bench_table2();
 }
 
 }  // namespace treerec::bench

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each. (The forest is too much for
+# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each; sketch: docs/sketch.webp. (The forest is too much for
 # a software rasterizer; docs/game/forest.jpg is one picture of it.) Run './dev demo' before,
 # on a machine that does nothing else; then, with GODOT naming the engine and img2webp (Debian's package webp) at hand,
 #
@@ -15,6 +15,12 @@ trap 'rm -rf "$frames"' EXIT
 for name in "${@:-one_tree scan_and_tree felling}"; do
     for scene in $name; do
         rm -f "$frames"/*
+        if [ "$scene" = sketch ]; then
+            own_cache xvfb-run -a "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
+                --resolution 160x120 --script "$PWD/tests/captures/sketch_film.gd" -- "$PWD/tests/sketch/cases/maple.json" "$frames"
+            ffmpeg -loglevel error -y -framerate 7 -i "$frames/%04d.png" -loop 0 -quality 70 docs/sketch.webp
+            continue
+        fi
         # A fixed rate: what moves moves by a frame's time in each picture, however long it takes to draw.
         own_cache xvfb-run -a -s '-screen 0 640x360x24' "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
             --resolution 640x360 --fixed-fps 12 --script "$PWD/tests/captures/film.gd" -- "$scene" "$frames"

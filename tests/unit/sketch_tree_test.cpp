@@ -9,6 +9,7 @@
 #include "pipeline/sketch_report.h"
 #include "sketch/crown_sections.h"
 #include "sketch/fill.h"
+#include "sketch/read_sketch.h"
 #include "sketch/sketch.h"
 #include "sketch/species.h"
 #include "steady_sketches.h"
@@ -140,6 +141,49 @@ TEST(SketchTree, FillsTheOutline) {
         EXPECT_LE(overlap.outside, 0.03) << seed;
     }
     EXPECT_GE(mean, 0.92);
+}
+
+TEST(SketchTree, DrawnCasesFillTheirOutlines) {
+    double mean = 0.0, count = 0.0;
+    for (const char* name :
+         {"bush", "cloud", "fir_like", "ginkgo", "leaning", "magnolia", "maple", "outline_and_trunk",
+          "poplar", "slender", "twin_lobes", "two_line_trunk", "umbrella", "windswept"}) {
+        const Sketch sketch = read_sketch(std::string("tests/sketch/cases/") + name + ".json");
+        const SketchedTree made = sketch_tree(sketch, {});
+        const std::vector<OutlinePart> parts =
+            outline_parts(made.tree, leaf_preset(made.species), made.species, 1, {});
+        const CrownOverlap overlap = measure_crown_overlap(made, sketch, parts, 128);
+        EXPECT_GE(overlap.overlap.iou, 0.85) << name;
+        EXPECT_LE(overlap.outside, 0.03) << name;
+        EXPECT_EQ(made.understood.strokes[*made.understood.drawn.outline_stroke].role, StrokeRole::kOutline);
+        mean += overlap.overlap.iou;
+        count += 1.0;
+    }
+    EXPECT_GE(mean / count, 0.92);
+}
+
+// Drawn with two lines a trunk is thick where they end; the tree's goes on and tapers.
+TEST(SketchTree, ThickTrunksEndThin) {
+    for (const double top : {560.0, 400.0, 200.0, 70.0}) {
+        Sketch sketch;
+        sketch.height = 10.0;
+        sketch.strokes.push_back(drawn_outline({500.0, 330.0}, {280.0, 290.0}));
+        sketch.strokes.push_back(drawn_line({460.0, 960.0}, {470.0, top}));
+        sketch.strokes.push_back(drawn_line({540.0, 960.0}, {530.0, top}));
+        sketch.number_strokes();
+        const SketchedTree made = sketch_tree(sketch, {});
+        ASSERT_EQ(made.understood.strokes[1].role, StrokeRole::kTrunk);
+        ASSERT_EQ(made.understood.strokes[2].role, StrokeRole::kTrunk);
+        double end = 0.0, highest = 0.0;
+        for (const NodeId id : made.tree.depth_first()) {
+            const Node& node = made.tree.node(id);
+            if (!(node.flags & kTrunkFlag) || node.position.y <= highest) continue;
+            highest = node.position.y;
+            end = node.radius;
+        }
+        EXPECT_LT(end, 0.15 * made.tree.node(made.tree.root()).radius) << top;
+        EXPECT_GT(highest, 7.5) << top;
+    }
 }
 
 TEST(SketchTree, RadiiTaperAndAreNeverTooThin) {

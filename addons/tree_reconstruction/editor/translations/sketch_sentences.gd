@@ -13,6 +13,7 @@ const PATTERNS: PackedStringArray = [
 	"A tree has one trunk; this line does not stand beside the other one.",
 	"This lies within the crown's outline and changes nothing of it.",
 	"A tree has one crown, and this is a second outline; let it cross the first one.",
+	"This is a small ring, as of an apple, a hole or a sun; it changes nothing of the tree.",
 	"This outline encloses nothing; draw it around the crown.",
 	"This outline crosses itself or runs to and fro; the line around all of it was taken.",
 	"This looks like the ground and not like a branch.",
