@@ -218,7 +218,7 @@ std::optional<Lollipop> split_lollipop(const FlatLine& line, const FlatLine& pol
 }
 
 // Of half the crown's width there: twigs of a crown that its trunk fills would be shorter than it is thick.
-constexpr double kThickestInCrown = 0.125;
+constexpr double kThickestInCrown = 0.08;
 
 bool reach_into_crown(DrawnLine& trunk, const FlatLine& outline) {
     const FlatBox box = line_box(outline);

@@ -18,9 +18,9 @@ constexpr double kExtensionSteps = 8.0;
 constexpr double kLeastExtension = 0.08;  // of the crown's height
 // Of the trunk's radius at its foot: how thick it may end, and how thick one ends that goes on.
 constexpr double kThinEnd = 0.15, kTipShare = 0.05;
-// Of the room around it: twigs shorter than six radii of what they stand on would be snags, which bear no
-// leaves.
-constexpr double kThickestInCrown = 0.125;
+// Of the room around it: twigs that reach no farther than twelve radii of what they stand on would be snags,
+// which bear no leaves.
+constexpr double kThickestInCrown = 0.08;
 constexpr double kTaperedEnd = 0.5;  // the last part of a trunk that ends thick, which tapers
 
 // Drawn branches lie within about 50 degrees of the canvas's plane: they fill 200 of the 360 degrees around.

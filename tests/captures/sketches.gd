@@ -95,7 +95,7 @@ func _open_stage() -> void:
 	_viewport.add_child(sun)
 	var ground: MeshInstance3D = MeshInstance3D.new()
 	var plane: PlaneMesh = PlaneMesh.new()
-	plane.size = Vector2(200.0, 60.0)
+	plane.size = Vector2(60.0, 60.0)
 	var earth: StandardMaterial3D = StandardMaterial3D.new()
 	earth.albedo_color = Color(0.16, 0.2, 0.09)
 	earth.roughness = 1.0
