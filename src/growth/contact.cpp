@@ -199,7 +199,8 @@ bool Contact::pair_meets(const Change& change, const std::array<Vertex, 3>& made
         if (cosine > 0.0) return false;
         const DVec3 before = surface_.place(change.moved);
         if (glm::distance(change.to, pair.p[2]) > 0.0) return false;
-        return volume(pair.p[0], pair.p[1], pair.q[2], before) * volume(pair.p[0], pair.p[1], pair.q[2], pair.p[2]) <
+        return volume(pair.p[0], pair.p[1], pair.q[2], before) *
+                   volume(pair.p[0], pair.p[1], pair.q[2], pair.p[2]) <
                0.0;
     }
     Box p, q;
@@ -211,26 +212,75 @@ bool Contact::pair_meets(const Change& change, const std::array<Vertex, 3>& made
     return pair.shared == 1 ? corner_meets(pair) : triangles_meet(pair.p, pair.q, kTouch);
 }
 
+// Of the faces found, those that go on from the patch and stand above the same plane as it can't come down on
+// it before some fold is seen nearer by: they get the next stamp.
+void Contact::leave_own_sheet() {
+    const uint32_t far = stamp_++;
+    DVec3 mean(0.0);
+    for (const DVec3& normal : normals_)
+        mean += normal;
+    mean = normalized_or(mean, DVec3(0.0));
+    for (const DVec3& normal : normals_)
+        if (glm::dot(normal, mean) <= kGraph) return;
+    const SurfaceMesh& mesh = surface_.mesh;
+    sheet_ = near_;
+    while (!sheet_.empty()) {
+        Halfedge h = mesh.halfedge(sheet_.back());
+        sheet_.pop_back();
+        for (int side = 0; side < 3; side++, h = mesh.next(h)) {
+            const Face next = mesh.face(mesh.opposite(h));
+            FaceCell& cell = surface_.faces[next];
+            if (cell.stamp != far || glm::dot(cell.normal, mean) <= kGraph) continue;
+            cell.stamp = stamp_;
+            sheet_.push_back(next);
+        }
+    }
+}
+
 Hold Contact::check_far(const Change& change) {
     Box swept;
     for (const std::array<Vertex, 3>& made : change.made)
         for (const Vertex corner : made)
             swept.take(place(change, corner));
     if (change.swept) swept.take(surface_.place(change.moved));
+    // Boxes of slanted faces side by side overlap, where balls about them don't.
+    const DVec3 middle =
+        change.moved == SurfaceMesh::null_vertex() ? 0.5 * (swept.low + swept.high) : change.to;
+    double round = change.swept ? glm::distance(surface_.place(change.moved), middle) : 0.0;
+    for (const std::array<Vertex, 3>& made : change.made)
+        for (const Vertex corner : made)
+            round = std::max(round, glm::distance(place(change, corner), middle));
     const Box around = swept.grown(reach_);
     double nearest = reach_;
     found_.clear();
+    distances_.clear();
+    close_.clear();
     const uint32_t far = ++stamp_;
     grid_.visit(around, [&](uint32_t item) {
         const Face face(item);
         FaceCell& cell = surface_.faces[face];
         if (cell.stamp >= far - 1 || !cell.fat.meets(around)) return;
         cell.stamp = far;
-        const double distance = swept.distance(surface_.box(face));
+        Vertex corners[3];
+        surface_.corners(face, corners);
+        const DVec3 p[3] = {surface_.place(corners[0]), surface_.place(corners[1]),
+                            surface_.place(corners[2])};
+        const DVec3 centre = (p[0] + p[1] + p[2]) / 3.0;
+        double radius = 0.0;
+        Box box;
+        for (const DVec3& corner : p) {
+            radius = std::max(radius, glm::distance(corner, centre));
+            box.take(corner);
+        }
+        const double distance = std::max(swept.distance(box), glm::distance(centre, middle) - radius - round);
         if (distance >= reach_) return;
-        nearest = std::min(nearest, distance);
         found_.push_back(face);
+        distances_.push_back(distance);
+        if (distance <= gap_) close_.push_back({box, {p[0], p[1], p[2]}});
     });
+    leave_own_sheet();
+    for (size_t i = 0; i < found_.size(); i++)
+        if (surface_.faces[found_[i]].stamp == far) nearest = std::min(nearest, distances_[i]);
     if (change.sudden)
         for (const Face face : found_) {
             Vertex corners[3];
@@ -241,33 +291,30 @@ Hold Contact::check_far(const Change& change) {
     if (obstacles_) nearest = std::min(nearest, obstacles_->distance(swept, reach_));
     if (change.swept && !change.sudden)
         surface_.cells[change.moved].safe_until = odometer_ + 0.5 * (nearest - most_ - gap_);
-    // In the order of the faces, whatever the grid's: nothing depends on how it was filled.
+    if (!close_.empty() || obstacles_) return check_close(change);
+    return Hold::kFree;
+}
+
+// Exactly, for what may lie as near as that.
+Hold Contact::check_close(const Change& change) {
     const auto meets = [&](const DVec3(&p)[3]) {
         Box box;
         for (const DVec3& corner : p)
             box.take(corner);
         box = box.grown(gap_);
-        for (const Face face : found_) {
-            Vertex corners[3];
-            surface_.corners(face, corners);
-            const DVec3 q[3] = {surface_.place(corners[0]), surface_.place(corners[1]),
-                                surface_.place(corners[2])};
-            Box other;
-            for (const DVec3& corner : q)
-                other.take(corner);
-            if (other.meets(box) && triangles_meet(p, q, gap_)) return true;
-        }
-        return false;
+        return std::any_of(close_.begin(), close_.end(), [&](const Close& other) {
+            return other.box.meets(box) && triangles_meet(p, other.corners, gap_);
+        });
     };
     const DVec3 before = change.swept ? surface_.place(change.moved) : DVec3(0.0);
     for (const std::array<Vertex, 3>& made : change.made) {
         const DVec3 p[3] = {place(change, made[0]), place(change, made[1]), place(change, made[2])};
-        if (!found_.empty() && meets(p)) return Hold::kSurface;
+        if (meets(p)) return Hold::kSurface;
         if (obstacles_ && obstacles_->meets(p, gap_)) return Hold::kObstacle;
         if (!change.swept) continue;
         // Walls of what the face sweeps: between its place now and then.
         const DVec3 wall[3] = {before, change.to, p[1]};
-        if (!found_.empty() && meets(wall)) return Hold::kSurface;
+        if (meets(wall)) return Hold::kSurface;
         if (obstacles_ && obstacles_->meets(wall, gap_)) return Hold::kObstacle;
     }
     return Hold::kFree;

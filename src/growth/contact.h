@@ -50,6 +50,8 @@ class Contact {
   private:
     Hold check_near(const Change& change, const std::vector<DVec3>& normals);
     Hold check_far(const Change& change);
+    Hold check_close(const Change& change);
+    void leave_own_sheet();
     bool pair_meets(const Change& change, const std::array<Vertex, 3>& made, const DVec3& normal, Face face);
     bool made_meet(const Change& change, size_t a, size_t b, const std::vector<DVec3>& normals);
     DVec3 place(const Change& change, Vertex v) const {
@@ -66,7 +68,13 @@ class Contact {
     double most_ = 0.0;
     uint32_t stamp_ = 0;
     Change moving_;
-    std::vector<Face> near_, found_;
+    std::vector<Face> near_, found_, sheet_;
+    struct Close {
+        Box box;
+        DVec3 corners[3];
+    };
+    std::vector<Close> close_;       // of those found, what may touch
+    std::vector<double> distances_;  // metres, of those found
     std::vector<DVec3> normals_;
 };
 

@@ -12,10 +12,11 @@ namespace treerec::growth {
 
 namespace {
 
-constexpr double kNearer = 1.0 - 1e-9;   // equation 2: less than rounding is no coming nearer
-constexpr double kFlat = 0.94;           // cosine between faces (20 degrees) whose edge may be flipped
-constexpr double kBetter = 0.05;         // radians that a flip must win
-constexpr double kKeepsSide = 0.2;       // cosine between a face's normals before and after a merge
+constexpr double kNearer = 1.0 - 1e-9;  // equation 2: less than rounding is no coming nearer
+constexpr double kFlat = 0.94;          // cosine between faces (20 degrees) whose edge may be flipped
+constexpr double kBetter = 0.05;        // radians that a flip must win
+constexpr int kMostRounds = 20;         // of splits and merges in a step
+constexpr double kKeepsSide = 0.2;      // cosine between a face's normals before and after a merge
 
 // At the corner opposite to the halfedge, radians.
 double corner_angle(const Surface& surface, Halfedge h) {
@@ -29,7 +30,8 @@ double corner_angle(const Surface& surface, Halfedge h) {
 }  // namespace
 
 bool Optimiser::nearer_tip(int32_t a, int32_t b) const {
-    return plan_.branches[static_cast<size_t>(a)].first_step() > plan_.branches[static_cast<size_t>(b)].first_step();
+    return plan_.branches[static_cast<size_t>(a)].first_step() >
+           plan_.branches[static_cast<size_t>(b)].first_step();
 }
 
 void Optimiser::look_again_around(Vertex vertex) {
@@ -40,10 +42,18 @@ void Optimiser::look_again_around(Vertex vertex) {
 
 void Optimiser::run() {
     merged_.clear();
-    split_long();
-    merge_short();
-    split_long();
+    settle();
     flip_all();
+    settle();
+}
+
+// Until nothing is too long and nothing can be merged any more; then the last round's counts are final.
+void Optimiser::settle() {
+    for (int round = 0; round < kMostRounds; round++) {
+        split_long();
+        if (merge_short() == 0) return;
+    }
+    split_long();
 }
 
 void Optimiser::split_long() {
@@ -104,17 +114,19 @@ void Optimiser::split(Edge edge) {
     look_again_around(v);
 }
 
-void Optimiser::merge_short() {
+size_t Optimiser::merge_short() {
     SurfaceMesh& mesh = surface_.mesh;
     short_edges_ = {};
     std::vector<std::tuple<double, uint32_t, uint32_t, Edge>> queue;
     for (const Edge edge : mesh.edges()) {
         const double length = surface_.length(edge);
         if (length >= shortest_) continue;
-        const uint32_t a = surface_.cells[mesh.vertex(edge, 0)].id, b = surface_.cells[mesh.vertex(edge, 1)].id;
+        const uint32_t a = surface_.cells[mesh.vertex(edge, 0)].id,
+                       b = surface_.cells[mesh.vertex(edge, 1)].id;
         queue.emplace_back(length, std::min(a, b), std::max(a, b), edge);
     }
     std::sort(queue.begin(), queue.end());
+    size_t merges = 0;
     for (const auto& [length, low, high, edge] : queue) {
         if (mesh.is_removed(edge)) continue;
         const Vertex i = mesh.vertex(edge, 0), j = mesh.vertex(edge, 1);
@@ -132,8 +144,11 @@ void Optimiser::merge_short() {
             const Hold hold = try_merge(edge);
             if (hold == Hold::kFold) short_edges_.fold++;
             if (hold == Hold::kSurface || hold == Hold::kObstacle) short_edges_.contact++;
+            if (hold == Hold::kFree) merges++;
         }
     }
+    short_edges_.unexplained = merges;
+    return merges;
 }
 
 // Table 2.
@@ -190,7 +205,8 @@ Hold Optimiser::try_merge(Edge edge) {
         return surface_.links[mesh.edge(mesh.next(side))] || surface_.links[mesh.edge(mesh.prev(side))];
     };
     const bool link = went_with(h), other_link = went_with(mesh.opposite(h));
-    const Vertex opposite = mesh.target(mesh.next(h)), other_opposite = mesh.target(mesh.next(mesh.opposite(h)));
+    const Vertex opposite = mesh.target(mesh.next(h)),
+                 other_opposite = mesh.target(mesh.next(mesh.opposite(h)));
     const Vertex kept = CGAL::Euler::collapse_edge(edge, mesh);
     mesh.point(kept) = place;
     surface_.cells[kept] = cell;

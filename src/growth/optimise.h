@@ -11,12 +11,12 @@ namespace treerec::growth {
 
 // Why edges shorter than T_m are left.
 struct ShortEdges {
-    size_t apical = 0;    // between two apical vertices or buds
-    size_t parting = 0;   // not nearer than a step ago (equation 2)
-    size_t link = 0;      // the mesh would not stay a surface
-    size_t fold = 0;      // faces would turn over
-    size_t contact = 0;   // it would meet another part of the surface, or an obstacle
-    size_t unexplained = 0;
+    size_t apical = 0;       // between two apical vertices or buds
+    size_t parting = 0;      // not nearer than a step ago (equation 2)
+    size_t link = 0;         // the mesh would not stay a surface
+    size_t fold = 0;         // faces would turn over
+    size_t contact = 0;      // it would meet another part of the surface, or an obstacle
+    size_t unexplained = 0;  // could have been merged in a further round
 };
 
 class Optimiser {
@@ -34,7 +34,8 @@ class Optimiser {
   private:
     void split_long();
     void split(Edge edge);
-    void merge_short();
+    void settle();
+    size_t merge_short();  // how many
     Hold try_merge(Edge edge);
     void flip_all();
     bool try_flip(Edge edge);

@@ -20,9 +20,9 @@ struct AxisPlace {
 
 struct GrowthBranch {
     int32_t parent = -1;
-    double parent_along = 0.0;     // metres of the parent's axis, where it leaves it
-    std::vector<AxisPlace> axis;   // two places or more
-    bool ends_open = false;        // a thinner tube goes on from the tip
+    double parent_along = 0.0;    // metres of the parent's axis, where it leaves it
+    std::vector<AxisPlace> axis;  // two places or more
+    bool ends_open = false;       // a thinner tube goes on from the tip
 
     double first_step() const { return axis.front().step; }
     double last_step() const { return axis.back().step; }

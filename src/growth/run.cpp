@@ -48,9 +48,9 @@ void Run::plant() {
     for (int row = 0; row < 2; row++)
         for (int side = 0; side < kSides; side++) {
             const double angle = 2.0 * kPi * side / kSides;
-            ring[row][side] = add(foot.position + edge * (x * std::cos(angle) + z * std::sin(angle)) +
-                                      up * (edge * row),
-                                  Tissue::kCambium, foot.along + edge * row);
+            ring[row][side] =
+                add(foot.position + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
+                    Tissue::kCambium, foot.along + edge * row);
         }
     const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
     const Vertex above = add(foot.position + up * (1.7 * edge), Tissue::kApical, foot.along + 1.7 * edge);
@@ -120,10 +120,12 @@ void Run::choose_buds() {
         const Vertex tip = apex_[static_cast<size_t>(branch.parent)];
         if (tip == SurfaceMesh::null_vertex()) continue;
         const Cell& leader = surface_.cells[tip];
-        const bool passed = leader.tissue == Tissue::kApical && leader.along > branch.parent_along + 0.5 * longest_;
+        const bool passed =
+            leader.tissue == Tissue::kApical && leader.along > branch.parent_along + 0.5 * longest_;
         if (!passed && step_ < branch.first_step()) continue;
         // Near to where the branch leaves its parent's axis.
-        const AxisPlace base = place_at(plan_.branches[static_cast<size_t>(branch.parent)], branch.parent_along);
+        const AxisPlace base =
+            place_at(plan_.branches[static_cast<size_t>(branch.parent)], branch.parent_along);
         const DVec3 toward = branch.axis.front().direction;
         const DVec3 aside = normalized_or(toward - base.direction * glm::dot(toward, base.direction), toward);
         Vertex best = SurfaceMesh::null_vertex();

@@ -82,8 +82,7 @@ class Surface {
     SurfaceMesh mesh;
     SurfaceMesh::Property_map<Vertex, Cell> cells = mesh.add_property_map<Vertex, Cell>("v:cell").first;
     SurfaceMesh::Property_map<Edge, bool> links = mesh.add_property_map<Edge, bool>("e:link", false).first;
-    SurfaceMesh::Property_map<Face, FaceCell> faces =
-        mesh.add_property_map<Face, FaceCell>("f:cell").first;
+    SurfaceMesh::Property_map<Face, FaceCell> faces = mesh.add_property_map<Face, FaceCell>("f:cell").first;
     uint32_t next_id = 0;
 
     Surface() = default;
@@ -91,9 +90,7 @@ class Surface {
     Surface& operator=(const Surface&) = delete;
 
     const DVec3& place(Vertex v) const { return mesh.point(v); }
-    double length(Edge e) const {
-        return glm::distance(place(mesh.vertex(e, 0)), place(mesh.vertex(e, 1)));
-    }
+    double length(Edge e) const { return glm::distance(place(mesh.vertex(e, 0)), place(mesh.vertex(e, 1))); }
     // Corners of a face, counter-clockwise from outside.
     void corners(Face f, Vertex (&v)[3]) const {
         const Halfedge h = mesh.halfedge(f);

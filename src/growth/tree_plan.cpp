@@ -11,16 +11,16 @@ namespace treerec::growth {
 
 namespace {
 
-constexpr double kFastest = 1.0;       // longest edges that a tip grows in a step at most
-constexpr double kThickening = 0.15;   // shortest edges that cambium grows in a step about at most
-constexpr double kYoung = 0.5;         // shortest edges that a tip is thick at once: a needle could not bend
+constexpr double kFastest = 1.0;      // longest edges that a tip grows in a step at most
+constexpr double kThickening = 0.15;  // shortest edges that cambium grows in a step about at most
+constexpr double kYoung = 0.5;        // shortest edges that a tip is thick at once: a needle could not bend
 constexpr int kFewestSteps = 60;
-constexpr double kBudSteps = 3.0;      // between a tip's passing a branch and that sprouting
-constexpr double kDepth = 1.0;         // radii that the trunk's axis begins below its foot
-constexpr double kSinks = 2.0;         // longest edges before its open end within which the surface sinks
-constexpr double kSunk = 0.6;          // to this share of the radius
-constexpr double kAbove = 1.02;        // of the radius: what covers a tube that begins inside
-constexpr double kLeastLength = 3.0;   // longest edges that a branch is covered at least
+constexpr double kBudSteps = 3.0;     // between a tip's passing a branch and that sprouting
+constexpr double kDepth = 1.0;        // radii that the trunk's axis begins below its foot
+constexpr double kSinks = 2.0;        // longest edges before its open end within which the surface sinks
+constexpr double kSunk = 0.6;         // to this share of the radius
+constexpr double kAbove = 1.02;       // of the radius: what covers a tube that begins inside
+constexpr double kLeastLength = 3.0;  // longest edges that a branch is covered at least
 
 double ease(double t) {
     t = std::clamp(t, 0.0, 1.0);
@@ -28,7 +28,8 @@ double ease(double t) {
 }
 
 // The part of the axis that is covered, sampled evenly enough. Empty where too little is thick enough.
-std::vector<AxisPlace> cover(const std::vector<AxisPoint>& points, double longest, double shortest, bool& open) {
+std::vector<AxisPlace> cover(const std::vector<AxisPoint>& points, double longest, double shortest,
+                             bool& open) {
     std::vector<AxisPlace> axis;
     open = false;
     for (const AxisPoint& point : points) {
@@ -47,7 +48,8 @@ std::vector<AxisPlace> cover(const std::vector<AxisPoint>& points, double longes
     if (open) {
         const double end = axis.back().along, begin = std::max(end - kSinks * longest, 0.0);
         for (AxisPlace& place : axis)
-            place.radius *= glm::mix(kAbove, kSunk, ease((place.along - begin) / std::max(end - begin, 1e-9)));
+            place.radius *=
+                glm::mix(kAbove, kSunk, ease((place.along - begin) / std::max(end - begin, 1e-9)));
     }
     return axis;
 }
@@ -74,8 +76,8 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
         if (points.size() < 2) continue;
         // How thick it begins is told by its own first node: at the fork it is as thick as its parent.
         const double own = tree.node(list.nodes[static_cast<size_t>(branch.begin)]).radius;
+        if (own < shortest) continue;
         if (branch.parent >= 0) {
-            if (own < shortest) continue;
             for (AxisPoint& point : points)
                 point.radius = std::min(point.radius, std::max(own, shortest));
             const GrowthBranch& parent = plan.branches[static_cast<size_t>(grown.parent)];
@@ -87,7 +89,8 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
                 nearest = distance;
                 grown.parent_along = place.along;
             }
-            if (nearest > longest + shortest || grown.parent_along > parent.axis.back().along - longest) continue;
+            if (nearest > longest + shortest || grown.parent_along > parent.axis.back().along - longest)
+                continue;
         }
         grown.axis = cover(points, longest, shortest, grown.ends_open);
         if (grown.axis.empty()) continue;
@@ -111,7 +114,8 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
                     std::to_string(static_cast<int>(std::lround(1000.0 * shortest))) +
                     " mm: make them shorter, or check the tree's units.");
     // Steps before the end, by thickness; then no tip faster than may be, and no branch before its parent.
-    const double all = steps > 0 ? steps : std::max(thickest / (kThickening * shortest), double{kFewestSteps});
+    const double all =
+        steps > 0 ? steps : std::max(thickest / (kThickening * shortest), double{kFewestSteps});
     const double fastest = kFastest * longest;
     std::vector<double> limit(plan.branches.size(), 0.0);
     for (size_t b = plan.branches.size(); b-- > 0;) {
@@ -120,8 +124,8 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
             AxisPlace& place = branch.axis[i];
             place.step = all * (1.0 - place.radius / thickest);
             if (i + 1 < branch.axis.size())
-                place.step = std::min(place.step, branch.axis[i + 1].step -
-                                                      (branch.axis[i + 1].along - place.along) / fastest);
+                place.step = std::min(
+                    place.step, branch.axis[i + 1].step - (branch.axis[i + 1].along - place.along) / fastest);
         }
         // Of all branches that leave it: it must have passed them in time.
         for (size_t c = b + 1; c < plan.branches.size(); c++) {
@@ -131,8 +135,7 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
             for (size_t i = branch.axis.size(); i-- > 0;) {
                 AxisPlace& place = branch.axis[i];
                 const double way = place.along - child.parent_along;
-                if (way <= 0.0)
-                    place.step = std::min(place.step, until + way / fastest);
+                if (way <= 0.0) place.step = std::min(place.step, until + way / fastest);
             }
         }
     }

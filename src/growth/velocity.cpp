@@ -45,7 +45,8 @@ double burl_growth(const BurlSphere& sphere, double distance) {
     return sphere.growth * t * t * (3.0 - 2.0 * t);
 }
 
-double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features, int step) {
+double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
+                      int step) {
     double most = 0.0;
     for (const Vertex v : surface.mesh.vertices()) {
         Cell& cell = surface.cells[v];

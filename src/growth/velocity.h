@@ -11,6 +11,7 @@ namespace treerec::growth {
 
 // Fills Cell::velocity and Cell::speed for the step from `step` to step + 1. Returns the largest velocity of
 // all that are not apical, metres a step.
-double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features, int step);
+double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
+                      int step);
 
 }  // namespace treerec::growth
