@@ -49,6 +49,9 @@ void run_info(const std::vector<std::string>& words);
 const Command& score_command();
 void run_score(const std::vector<std::string>& words);
 
+const Command& bark_command();
+void run_bark(const std::vector<std::string>& words);
+
 const Command& edit_command();
 void run_edit(const std::vector<std::string>& words);
 

@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/describe_parameter.h"
 #include "cli/terminal_progress.h"
 #include "edit/script.h"
 #include "exchange/tree_files.h"
@@ -11,47 +12,9 @@ namespace treerec {
 
 namespace {
 
-// "factor=1 (0 to 1000)", "node=...".
-std::string describe(const Parameter& parameter) {
-    std::string text = parameter.name + "=";
-    switch (parameter.type) {
-        case ParameterType::kNumber:
-        case ParameterType::kLength:
-        case ParameterType::kWhole:
-            text += parameter.standard.empty() ? "N" : parameter.standard;
-            text += " (" + number_text(parameter.least) + " to " + number_text(parameter.most) + ")";
-            break;
-        case ParameterType::kWord:
-            for (size_t i = 0; i < parameter.words.size(); i++)
-                text += (i ? "|" : "") + parameter.words[i];
-            break;
-        case ParameterType::kSwitch:
-            text += parameter.standard == "yes" ? "yes|no" : "no|yes";
-            break;
-        case ParameterType::kText:
-            text += "TEXT";
-            break;
-        case ParameterType::kNode:
-            text += "NODE";
-            break;
-        case ParameterType::kNodes:
-            text += parameter.standard.empty() ? "NODES" : parameter.standard;
-            break;
-        case ParameterType::kPoint:
-        case ParameterType::kOffset:
-        case ParameterType::kDirection:
-            text += parameter.standard.empty() ? "X,Y,Z" : parameter.standard;
-            break;
-    }
-    return (parameter.required ? text : "[" + text + "]") + "  " + parameter.help;
-}
-
 void print_commands() {
-    for (const EditCommand& command : edit_commands()) {
-        std::printf("%s  %s\n", command.name.c_str(), command.summary.c_str());
-        for (const Parameter& parameter : command.parameters)
-            std::printf("    %s\n", describe(parameter).c_str());
-    }
+    for (const EditCommand& command : edit_commands())
+        print_command(command.name, command.summary, command.parameters);
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ std::vector<Entry> entries() {
             {lstring_command(), run_lstring},
             {grow_command(), run_grow},
             {sketch_command(), run_sketch},
+            {bark_command(), run_bark},
             {textures_command(), run_textures}};
 }
 

@@ -174,7 +174,9 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
             nearest++;
         node_along[id] = static_cast<float>(points[nearest].along);
     }
-    if (branch.attach != kNoNode) {
+    if (!cut_covered(index, points)) return;
+    const bool begins = covered[index] <= 0.0;  // else it goes on from grown bark
+    if (branch.attach != kNoNode && begins) {
         // A stub that ends within its parent is never seen.
         const double end = glm::distance(points.back().position, points.front().position);
         const double parent = tree.node(branch.attach).radius;
@@ -182,12 +184,12 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
             return;
         add_collar(branch, points, tube);
     }
-    if (branch.attach == kNoNode && options.level <= 1 && tree.node(tree.root()).is_trunk())
+    if (branch.attach == kNoNode && begins && options.level <= 1 && tree.node(tree.root()).is_trunk())
         tube.flare = plan_flare(points, sides_of(tree.node(tree.root()).radius, options));
     pick_rings(branch, points, tube, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
-    if (branch.attach != kNoNode && options.level == 0) {
+    if (branch.attach != kNoNode && begins && options.level == 0) {
         const double own = tree.node(list.nodes[branch.begin]).radius;
         if (own >= kCollarRadius)
             limit_slant(out.data() + tube.first_ring, tube.rings,
@@ -196,7 +198,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     double thickest = 0.0;
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
-    if (branch.attach == kNoNode && tree.node(tree.root()).is_trunk())
+    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk())
         tube.foot = cut_level(out.data() + tube.first_ring, tube.rings);
     if (!tube.foot) tube.flare = {};
     if (tube.foot) stretch_foot(tube.flare, out.data() + tube.first_ring, tube.rings);
@@ -205,7 +207,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     // From as far as coarser levels are seen, a thick end still shows.
     tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
     tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
-    tube.base = branch.attach == kNoNode && !tube.foot;
+    tube.base = branch.attach == kNoNode && !tube.foot && begins;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
     frame_rings(out.data() + tube.first_ring, tube.rings);
@@ -214,10 +216,10 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
 // Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.
 void Builder::seat(size_t index) {
     const Branch& branch = list.branches[index];
-    if (tubes[index].rings == 0 || branch.attach == kNoNode) return;
+    if (tubes[index].rings == 0 || branch.attach == kNoNode || covered[index] > 0.0) return;
     const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
     const Tube& parent = tubes[host];
-    if (parent.rings < 2) return;
+    if (parent.rings < 2 || static_cast<double>(node_along[branch.attach]) < covered[host]) return;
     const Ring* begin = rings_of(host);
     const Ring* end = begin + parent.rings;
     const auto above = [&](double along) {
@@ -253,10 +255,10 @@ void Builder::seat(size_t index) {
 void Builder::join(size_t index) {
     const Branch& branch = list.branches[index];
     Tube& tube = tubes[index];
-    if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode) return;
+    if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode || covered[index] > 0.0) return;
     if (tree.node(list.nodes[branch.begin]).radius < kWebRadius) return;
     const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
-    if (tubes[host].rings < 2) return;
+    if (tubes[host].rings < 2 || static_cast<double>(node_along[branch.attach]) < covered[host]) return;
     std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];
     tube.first_collar = out.size();
     tube.collar = make_collar({rings_of(index), tube.rings, tube.sides},
@@ -319,6 +321,7 @@ Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Prog
         for (size_t i = begin; i < end; i++)
             if (builder.tubes[i].rings > 0) builder.emit(i, mesh);
     });
+    if (options.grown) builder.add_grown(mesh);
     return mesh;
 }
 

@@ -2,6 +2,7 @@
 // branch).
 #pragma once
 
+#include "mesh/grown_bark.h"
 #include "mesh/mesh.h"
 #include "progress.h"
 #include "tree/tree.h"
@@ -20,6 +21,8 @@ struct TubeOptions {
     // over.
     bool whole_repeats = false;
     bool pivots = true;  // custom0, radii and wind are filled; files have no place for them
+    // Drawn instead of the tubes that it covers; null: tubes alone. It must outlive the call.
+    const GrownBark* grown = nullptr;
 };
 
 // Vertices carry normals, tangents, UVs (u around in repeats, v along in metres), wind channels.

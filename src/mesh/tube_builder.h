@@ -91,10 +91,18 @@ struct Builder {
           widened(share_twigs(t, list, crown, o.twig_level < 0.0 ? o.level : o.twig_level)),
           node_along(static_cast<size_t>(t.id_end()), 0.0f),
           continues(static_cast<size_t>(t.id_end()), kNoNode) {
+        take_grown();
         for (const Branch& branch : list.branches)
             for (int32_t i = branch.begin; i + 1 < branch.end; i++)
                 continues[list.nodes[i]] = list.nodes[i + 1];
     }
+
+    std::vector<double> covered;  // by branch: metres along that grown bark is drawn for
+
+    void take_grown();
+    // Leaves what is to be drawn as a tube; false for nothing.
+    bool cut_covered(size_t index, std::vector<AxisPoint>& points) const;
+    void add_grown(Mesh& mesh) const;
 
     const Ring* rings_of(size_t branch) const {
         return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;

@@ -32,7 +32,10 @@ double Builder::repeats_of(size_t index, double radius) const {
     const double width = std::max(options.bark_width, 1e-6);
     // As the shader finds them from the radius: that of the wood, however wide it is drawn.
     if (!options.whole_repeats) return 2.0 * kPi * radius / (width * std::max(widened[index], 1.0f));
-    return std::max(1.0, std::round(2.0 * kPi * rings_of(index)[1].radius / width));
+    // Grown bark and the tube that goes on from it have one number.
+    const double thick = covered[index] > 0.0 ? tree.node(list.nodes[list.branches[index].begin]).radius
+                                              : rings_of(index)[1].radius;
+    return std::max(1.0, std::round(2.0 * kPi * thick / width));
 }
 
 Vec2 Builder::wind_at(size_t index, double along, const DVec3& place) const {

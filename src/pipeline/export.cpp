@@ -109,6 +109,7 @@ const Mesh& TreeExporter::bark() {
         TubeOptions tubes;
         tubes.pivots = false;
         tubes.whole_repeats = true;
+        tubes.grown = options_.grown;
         bark_ = build_branch_tubes(leafy_tree(tree_, kinds_, options_.foliage), tubes, progress_);
     }
     return *bark_;

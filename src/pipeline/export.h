@@ -8,6 +8,7 @@
 
 #include "exchange/material_textures.h"
 #include "foliage/leaves.h"
+#include "mesh/grown_bark.h"
 #include "mesh/mesh.h"
 #include "photos/leaf_colours.h"
 #include "progress.h"
@@ -27,6 +28,8 @@ struct ExportOptions {
     std::vector<NamedPicture> bark = {};
     // Of the leaves that have no look of their own, instead of the preset's; passed over where not seen().
     std::optional<LeafColours> leaf_colours = {};
+    // Bark that was grown on the tree, for the finest level; null: tubes alone. It must outlive the exporter.
+    const GrownBark* grown = nullptr;
 };
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The

@@ -1,0 +1,116 @@
+#include <cstdio>
+
+#include "cli/commands.h"
+#include "cli/describe_parameter.h"
+#include "cli/terminal_progress.h"
+#include "file_bytes.h"
+#include "growth/grow_bark.h"
+#include "pipeline/export.h"
+
+namespace treerec {
+
+namespace {
+
+void print_check(const GrowthStep& step) {
+    std::printf(
+        "{\"step\": %d, \"V\": %zu, \"E\": %zu, \"F\": %zu, \"chi\": %ld, \"components\": %zu, \"closed\": "
+        "%s, "
+        "\"outward\": %s, \"above_longest\": %zu, \"under_shortest\": {\"apical\": %zu, \"parting\": %zu, "
+        "\"link\": %zu, \"fold\": %zu, \"contact\": %zu, \"unexplained\": %zu}, \"intersections\": %zu, "
+        "\"frozen\": %zu}\n",
+        step.step, step.vertices, step.edges, step.faces, step.chi, step.components,
+        step.closed ? "true" : "false", step.outward ? "true" : "false", step.above_longest, step.apical,
+        step.parting, step.link, step.fold, step.contact, step.unexplained, step.intersections, step.frozen);
+}
+
+bool sound(const GrowthStep& step) {
+    return step.closed && step.outward && step.above_longest == 0 && step.unexplained == 0 &&
+           step.intersections == 0;
+}
+
+}  // namespace
+
+const Command& bark_command() {
+    static const Command command{
+        "bark",
+        "bark TREE -o FILE [-c COMMAND] [--recipe FILE] [options]",
+        "Grows bark around a tree, with burls, as one closed surface.",
+        {{"-o", "FILE", "what to write: .glb .gltf .obj; again for more", true},
+         {"-c", "COMMAND", "one line of the recipe; after the recipe's own, in the order given", true},
+         {"--recipe", "FILE", "one command per line, # begins a comment"},
+         {"--log", "FILE", "writes the recipe as it was found on this tree"},
+         {"--check", "N", "judges the surface every N steps and prints what it is, a line of JSON each"},
+         {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
+         {"--seed", "N", "of the leaves (default 1)"},
+         {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
+         {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
+         {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
+         {"--commands", "", "lists the commands and what they take"},
+         {"--quiet", "", "print errors only"}},
+        "TREE: a skeleton (see 'treerec info'). Lengths are metres. Branches thinner than the shortest edge "
+        "stay\ntubes, which begin inside the surface."};
+    return command;
+}
+
+void run_bark(const std::vector<std::string>& words) {
+    const Arguments arguments(bark_command(), words);
+    if (arguments.has("--commands")) {
+        for (const GrowthCommand& one : growth_commands())
+            print_command(one.name, one.summary, one.parameters);
+        return;
+    }
+    if (arguments.positional().size() != 1) throw UsageError("Name one skeleton that bark is to grow on.");
+    if (!arguments.has("-o") && !arguments.has("--check")) throw UsageError("Where to? Name a file with -o.");
+    const std::vector<std::string> none;
+    const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
+    for (const std::string& out : outs)
+        require_writable_format(out);
+    if (arguments.has("--log"))
+        require_own(arguments.text("--log", ""), kGrowthRecipeMark, "no recipe of growth");
+    ExportOptions exports;
+    exports.textures = arguments.text("--leaves", exports.textures);
+    exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    exports.pictures_beside = arguments.has("--pictures-beside");
+    try {
+        exports.leaves = leaf_preset(exports.textures);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+    const bool quiet = arguments.has("--quiet");
+    TerminalProgress progress(quiet);
+    GrowOptions options;
+    options.check_every = static_cast<int>(arguments.whole("--check", 0, 0, 100000));
+
+    const Tree tree = skeleton_from(arguments, arguments.positional()[0]);
+    std::string text;
+    if (arguments.has("--recipe")) text = read_file(arguments.text("--recipe", "")).view();
+    if (arguments.has("-c"))
+        for (const std::string& line : arguments.all("-c"))
+            text += "\n" + line;
+    const GrowthRecipe recipe = read_growth_recipe(tree, text);
+    const GrownTree grown = grow_bark(tree, recipe, options, &progress);
+    exports.grown = &grown.bark;
+    TreeExporter exporter(tree, exports, &progress);
+    for (const std::string& out : outs)
+        exporter.write(out);
+    if (arguments.has("--log"))
+        write_file(arguments.text("--log", ""), std::string(kGrowthRecipeMark) + "1\n" + recipe.text);
+    progress.clear();
+    for (const std::string& remark : grown.remarks)
+        std::fprintf(stderr, "%s\n", remark.c_str());
+    bool all_sound = true;
+    for (const GrowthStep& step : grown.checks) {
+        print_check(step);
+        all_sound &= sound(step);
+    }
+    if (!quiet && !arguments.has("--check")) {
+        std::printf("%zu branches covered in %d steps: %zu vertices, %zu triangles\n",
+                    grown.bark.branches.size(), grown.steps, grown.bark.vertices.size(),
+                    grown.bark.indices.size() / 3);
+        for (const std::string& out : outs)
+            std::printf("wrote %s\n", out.c_str());
+    }
+    if (!all_sound) throw Error("The surface is not sound: see the lines above.");
+}
+
+}  // namespace treerec

@@ -1,0 +1,81 @@
+// Keeps the surface from running into itself and into obstacles. Internal to growth/.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "growth/box_grid.h"
+#include "growth/obstacles.h"
+#include "growth/surface.h"
+
+namespace treerec::growth {
+
+// A change of the surface that is not made yet: `replaced` go, `made` come, and one vertex stands elsewhere.
+struct Change {
+    std::vector<std::array<Vertex, 3>> made;
+    std::vector<Face> replaced;
+    Vertex moved = SurfaceMesh::null_vertex();
+    DVec3 to{0.0};
+    bool swept = false;   // the vertex gets there by the straight way, and nothing may lie on it
+    bool sudden = false;  // larger than what the odometer tells of
+
+    void clear() {
+        made.clear();
+        replaced.clear();
+        moved = SurfaceMesh::null_vertex();
+        swept = sudden = false;
+    }
+};
+
+class Contact {
+  public:
+    // longest: T_s, metres; obstacles may be null and must outlive this.
+    Contact(Surface& surface, double longest, const Obstacles* obstacles);
+
+    // All faces that there are.
+    void list_all();
+    // Call list() for a face that is new or has changed, unlist() before one goes or changes its corners.
+    void list(Face face);
+    void unlist(Face face);
+
+    // At the start of a step, in which no vertex but apical ones moves by more than `most` metres.
+    void advance(double most);
+    // Moves the vertex, if nothing is in its way all along.
+    Hold move(Vertex vertex, const DVec3& to);
+    // Whether the change leaves a surface without folds that meets nothing.
+    Hold check(const Change& change);
+    // Of what changed its corners: its vertices must look around again.
+    void look_again(Vertex vertex) { surface_.cells[vertex].safe_until = 0.0; }
+
+  private:
+    Hold check_near(const Change& change, const std::vector<DVec3>& normals);
+    Hold check_far(const Change& change);
+    Hold check_close(const Change& change);
+    void leave_own_sheet();
+    bool pair_meets(const Change& change, const std::array<Vertex, 3>& made, const DVec3& normal, Face face);
+    bool made_meet(const Change& change, size_t a, size_t b, const std::vector<DVec3>& normals);
+    DVec3 place(const Change& change, Vertex v) const {
+        return v == change.moved ? change.to : surface_.place(v);
+    }
+
+    Surface& surface_;
+    const Obstacles* obstacles_;
+    BoxGrid grid_;
+    const double reach_;   // metres around a change within which others are told to look again
+    const double margin_;  // of the listed boxes
+    const double gap_;     // kept between surfaces
+    double odometer_ = 0.0;
+    double most_ = 0.0;
+    uint32_t stamp_ = 0;
+    Change moving_;
+    std::vector<Face> near_, found_, sheet_;
+    struct Close {
+        Box box;
+        DVec3 corners[3];
+    };
+    std::vector<Close> close_;       // of those found, what may touch
+    std::vector<double> distances_;  // metres, of those found
+    std::vector<DVec3> normals_;
+};
+
+}  // namespace treerec::growth

@@ -1,0 +1,45 @@
+// Bark that grew (papers/001): a surface that grows around a tree, with burls.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "growth/recipe.h"
+#include "mesh/grown_bark.h"
+#include "progress.h"
+#include "tree/tree.h"
+
+namespace treerec {
+
+// Of one step, for who wants to judge it.
+struct GrowthStep {
+    int step = 0;
+    size_t vertices = 0, edges = 0, faces = 0;
+    long chi = 0;  // V - E + F
+    size_t components = 0;
+    size_t above_longest = 0;                                                          // edges
+    size_t apical = 0, parting = 0, link = 0, fold = 0, contact = 0, unexplained = 0;  // edges under T_m
+    size_t intersections = 0;                                                          // pairs of faces
+    size_t frozen = 0;  // vertices that could not move
+    bool closed = false, outward = false;
+};
+
+struct GrowOptions {
+    // Every so many steps, and after the last, the surface is judged by CGAL; 0: never.
+    int check_every = 0;
+};
+
+struct GrownTree {
+    GrownBark bark;
+    int steps = 0;
+    std::vector<GrowthStep> checks;
+    std::vector<std::string> remarks;  // sentences for the user
+};
+
+// The same tree and recipe give the same bytes. Throws Error for a tree without wood that is thick enough,
+// and in a build without CGAL; Cancelled.
+GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOptions& options = {},
+                    Progress* progress = nullptr);
+
+}  // namespace treerec

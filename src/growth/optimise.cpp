@@ -1,0 +1,264 @@
+#include "growth/optimise.h"
+
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/boost/graph/properties.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace treerec::growth {
+
+namespace {
+
+constexpr double kNearer = 1.0 - 1e-9;  // equation 2: less than rounding is no coming nearer
+constexpr double kFlat = 0.94;          // cosine between faces (20 degrees) whose edge may be flipped
+constexpr double kBetter = 0.05;        // radians that a flip must win
+constexpr int kMostRounds = 20;         // of splits and merges in a step
+constexpr double kKeepsSide = 0.2;      // cosine between a face's normals before and after a merge
+
+// At the corner opposite to the halfedge, radians.
+double corner_angle(const Surface& surface, Halfedge h) {
+    const SurfaceMesh& mesh = surface.mesh;
+    const DVec3 at = surface.place(mesh.target(mesh.next(h)));
+    const DVec3 a = normalized_or(surface.place(mesh.target(h)) - at, DVec3(0.0));
+    const DVec3 b = normalized_or(surface.place(mesh.source(h)) - at, DVec3(0.0));
+    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+}
+
+}  // namespace
+
+bool Optimiser::nearer_tip(int32_t a, int32_t b) const {
+    return plan_.branches[static_cast<size_t>(a)].first_step() >
+           plan_.branches[static_cast<size_t>(b)].first_step();
+}
+
+void Optimiser::look_again_around(Vertex vertex) {
+    contact_.look_again(vertex);
+    for (const Vertex other : CGAL::vertices_around_target(surface_.mesh.halfedge(vertex), surface_.mesh))
+        contact_.look_again(other);
+}
+
+void Optimiser::run() {
+    merged_.clear();
+    settle();
+    flip_all();
+    settle();
+}
+
+// Until nothing is too long and nothing can be merged any more; then the last round's counts are final.
+void Optimiser::settle() {
+    for (int round = 0; round < kMostRounds; round++) {
+        split_long();
+        if (merge_short() == 0) return;
+    }
+    split_long();
+}
+
+void Optimiser::split_long() {
+    std::vector<std::tuple<double, uint32_t, Edge>> queue;
+    for (bool more = true; more;) {
+        queue.clear();
+        for (const Edge edge : surface_.mesh.edges()) {
+            const double length = surface_.length(edge);
+            if (length > longest_) queue.emplace_back(-length, static_cast<uint32_t>(edge), edge);
+        }
+        std::sort(queue.begin(), queue.end());
+        for (const auto& [length, index, edge] : queue)
+            split(edge);
+        more = !queue.empty();
+    }
+}
+
+// Table 1.
+void Optimiser::split(Edge edge) {
+    SurfaceMesh& mesh = surface_.mesh;
+    const Halfedge h = mesh.halfedge(edge);
+    const Vertex i = mesh.source(h), j = mesh.target(h);
+    const Cell a = surface_.cells[i], b = surface_.cells[j];
+    const DVec3 place = 0.5 * (surface_.place(i) + surface_.place(j));
+    const bool link = surface_.links[edge];
+    const Halfedge made = CGAL::Euler::split_edge(h, mesh);
+    const Vertex v = mesh.target(made);
+    mesh.point(v) = place;
+    surface_.links[mesh.edge(made)] = link;
+    const Halfedge back = mesh.opposite(h);
+    for (const Halfedge side : {CGAL::Euler::split_face(made, mesh.next(h), mesh),
+                                CGAL::Euler::split_face(back, mesh.next(mesh.opposite(made)), mesh)})
+        surface_.links[mesh.edge(side)] = false;
+    Cell cell;
+    cell.id = surface_.next_id++;
+    cell.previous = 0.5 * (a.previous + b.previous);
+    cell.excess = 0.5 * (a.excess + b.excess);
+    const bool decayed = a.tissue == Tissue::kDecayed || b.tissue == Tissue::kDecayed;
+    const bool apical = a.tissue == Tissue::kApical || b.tissue == Tissue::kApical;
+    cell.tissue = decayed && !apical ? Tissue::kDecayed : Tissue::kCambium;
+    if (cell.tissue == Tissue::kDecayed) cell.hollow = a.tissue == Tissue::kDecayed ? a.hollow : b.hollow;
+    // New cambium belongs to its apical vertex's branch, else to the one nearer the tip (papers/001, 9).
+    const Cell& elder = a.owner == b.owner || nearer_tip(a.owner, b.owner) ? a : b;
+    const Cell& by = a.tissue == Tissue::kApical ? a : b.tissue == Tissue::kApical ? b : elder;
+    cell.owner = by.owner;
+    cell.speed = 0.5 * (a.speed + b.speed);
+    if (a.owner == b.owner) {
+        cell.along = 0.5 * (a.along + b.along);
+    } else {
+        const double begin = plan_.branches[static_cast<size_t>(by.owner)].axis.front().along;
+        const bool tip = by.tissue == Tissue::kApical;
+        const double back = tip ? 0.5 * glm::distance(surface_.place(i), surface_.place(j)) : 0.0;
+        cell.along = std::max(by.along - back, begin);
+    }
+    surface_.cells[v] = cell;
+    for (const Face face : CGAL::faces_around_target(mesh.halfedge(v), mesh))
+        contact_.list(face);
+    look_again_around(v);
+}
+
+size_t Optimiser::merge_short() {
+    SurfaceMesh& mesh = surface_.mesh;
+    short_edges_ = {};
+    std::vector<std::tuple<double, uint32_t, uint32_t, Edge>> queue;
+    for (const Edge edge : mesh.edges()) {
+        const double length = surface_.length(edge);
+        if (length >= shortest_) continue;
+        const uint32_t a = surface_.cells[mesh.vertex(edge, 0)].id,
+                       b = surface_.cells[mesh.vertex(edge, 1)].id;
+        queue.emplace_back(length, std::min(a, b), std::max(a, b), edge);
+    }
+    std::sort(queue.begin(), queue.end());
+    size_t merges = 0;
+    for (const auto& [length, low, high, edge] : queue) {
+        if (mesh.is_removed(edge)) continue;
+        const Vertex i = mesh.vertex(edge, 0), j = mesh.vertex(edge, 1);
+        const Cell &a = surface_.cells[i], &b = surface_.cells[j];
+        if (surface_.length(edge) >= shortest_) continue;
+        const bool stays_a = a.tissue == Tissue::kApical || a.bud >= 0;
+        const bool stays_b = b.tissue == Tissue::kApical || b.bud >= 0;
+        if (stays_a && stays_b) {
+            short_edges_.apical++;
+        } else if (surface_.length(edge) >= kNearer * glm::distance(a.previous, b.previous)) {
+            short_edges_.parting++;
+        } else if (!CGAL::Euler::does_satisfy_link_condition(edge, mesh)) {
+            short_edges_.link++;
+        } else {
+            const Hold hold = try_merge(edge);
+            if (hold == Hold::kFold) short_edges_.fold++;
+            if (hold == Hold::kSurface || hold == Hold::kObstacle) short_edges_.contact++;
+            if (hold == Hold::kFree) merges++;
+        }
+    }
+    short_edges_.unexplained = merges;
+    return merges;
+}
+
+// Table 2.
+Hold Optimiser::try_merge(Edge edge) {
+    SurfaceMesh& mesh = surface_.mesh;
+    const Halfedge h = mesh.halfedge(edge);
+    const Vertex i = mesh.source(h), j = mesh.target(h);  // j stays
+    const Cell a = surface_.cells[i], b = surface_.cells[j];
+    Cell cell = b;
+    DVec3 place = 0.5 * (surface_.place(i) + surface_.place(j));
+    const auto weight = [](const Cell& c) {
+        return c.tissue == Tissue::kApical ? 3 : c.bud >= 0 ? 2 : c.tissue == Tissue::kCambium ? 1 : 0;
+    };
+    if (weight(a) != weight(b)) {
+        const bool first = weight(a) > weight(b);
+        cell = first ? a : b;
+        if (weight(a) >= 2 || weight(b) >= 2 || a.tissue != b.tissue) place = surface_.place(first ? i : j);
+    } else {
+        cell = nearer_tip(a.owner, b.owner) ? a : b;
+        if (a.owner == b.owner) cell.along = 0.5 * (a.along + b.along);
+        cell.excess = 0.5 * (a.excess + b.excess);
+        cell.previous = 0.5 * (a.previous + b.previous);
+        cell.id = std::min(a.id, b.id);
+    }
+    cell.centre = a.centre || b.centre;
+    change_.clear();
+    change_.moved = j;
+    change_.to = place;
+    change_.sudden = true;
+    for (const Vertex end : {i, j})
+        for (const Face face : CGAL::faces_around_target(mesh.halfedge(end), mesh)) {
+            if (face == mesh.face(h) || face == mesh.face(mesh.opposite(h))) {
+                if (end == j) change_.replaced.push_back(face);
+                continue;
+            }
+            std::array<Vertex, 3> made;
+            Vertex corners[3];
+            surface_.corners(face, corners);
+            for (size_t k = 0; k < 3; k++)
+                made[k] = corners[k] == i ? j : corners[k];
+            DVec3 p[3];
+            for (size_t k = 0; k < 3; k++)
+                p[k] = made[k] == j ? place : surface_.place(made[k]);
+            const DVec3 normal = normalized_or(glm::cross(p[1] - p[0], p[2] - p[0]), DVec3(0.0));
+            if (glm::dot(normal, surface_.faces[face].normal) < kKeepsSide) return Hold::kFold;
+            change_.made.push_back(made);
+            change_.replaced.push_back(face);
+        }
+    const Hold hold = contact_.check(change_);
+    if (hold != Hold::kFree) return hold;
+    for (const Face face : change_.replaced)
+        contact_.unlist(face);
+    const auto went_with = [&](Halfedge side) {  // edges that two become one of
+        return surface_.links[mesh.edge(mesh.next(side))] || surface_.links[mesh.edge(mesh.prev(side))];
+    };
+    const bool link = went_with(h), other_link = went_with(mesh.opposite(h));
+    const Vertex opposite = mesh.target(mesh.next(h)),
+                 other_opposite = mesh.target(mesh.next(mesh.opposite(h)));
+    const Vertex kept = CGAL::Euler::collapse_edge(edge, mesh);
+    mesh.point(kept) = place;
+    surface_.cells[kept] = cell;
+    surface_.links[mesh.edge(mesh.halfedge(kept, opposite))] = link;
+    surface_.links[mesh.edge(mesh.halfedge(kept, other_opposite))] = other_link;
+    for (const Face face : CGAL::faces_around_target(mesh.halfedge(kept), mesh))
+        contact_.list(face);
+    look_again_around(kept);
+    merged_.emplace_back(kept == j ? i : j, kept);
+    return Hold::kFree;
+}
+
+void Optimiser::flip_all() {
+    SurfaceMesh& mesh = surface_.mesh;
+    std::vector<Edge> edges(mesh.edges().begin(), mesh.edges().end());
+    for (const Edge edge : edges)
+        if (!surface_.links[edge]) try_flip(edge);
+}
+
+// Towards Delaunay, where it changes no shape.
+bool Optimiser::try_flip(Edge edge) {
+    SurfaceMesh& mesh = surface_.mesh;
+    const Halfedge h = mesh.halfedge(edge), o = mesh.opposite(h);
+    const Face f = mesh.face(h), g = mesh.face(o);
+    if (glm::dot(surface_.faces[f].normal, surface_.faces[g].normal) < kFlat) return false;
+    if (corner_angle(surface_, h) + corner_angle(surface_, o) <= kPi + kBetter) return false;
+    const Vertex i = mesh.source(h), j = mesh.target(h);
+    const Vertex x = mesh.target(mesh.next(h)), y = mesh.target(mesh.next(o));
+    const double length = glm::distance(surface_.place(x), surface_.place(y));
+    if (length > longest_ || length < shortest_) return false;
+    if (mesh.halfedge(x, y) != SurfaceMesh::null_halfedge()) return false;
+    if (mesh.degree(i) <= 3 || mesh.degree(j) <= 3) return false;
+    change_.clear();
+    change_.sudden = true;
+    change_.made = {{x, y, j}, {y, x, i}};
+    change_.replaced = {f, g};
+    for (const std::array<Vertex, 3>& made : change_.made) {
+        const DVec3 p[3] = {surface_.place(made[0]), surface_.place(made[1]), surface_.place(made[2])};
+        const DVec3 normal = normalized_or(glm::cross(p[1] - p[0], p[2] - p[0]), DVec3(0.0));
+        if (glm::dot(normal, surface_.faces[f].normal) < kFlat ||
+            glm::dot(normal, surface_.faces[g].normal) < kFlat)
+            return false;
+    }
+    if (contact_.check(change_) != Hold::kFree) return false;
+    contact_.unlist(f);
+    contact_.unlist(g);
+    CGAL::Euler::flip_edge(h, mesh);
+    contact_.list(f);
+    contact_.list(g);
+    for (const Vertex v : {i, j, x, y})
+        contact_.look_again(v);
+    return true;
+}
+
+}  // namespace treerec::growth

@@ -1,0 +1,42 @@
+#include "growth/plan.h"
+
+#include <algorithm>
+
+namespace treerec::growth {
+
+namespace {
+
+AxisPlace between(const AxisPlace& a, const AxisPlace& b, double t) {
+    AxisPlace place;
+    place.position = glm::mix(a.position, b.position, t);
+    place.direction = normalized_or(glm::mix(a.direction, b.direction, t), a.direction);
+    place.along = glm::mix(a.along, b.along, t);
+    place.radius = glm::mix(a.radius, b.radius, t);
+    place.step = glm::mix(a.step, b.step, t);
+    place.speed = glm::mix(a.speed, b.speed, t);
+    return place;
+}
+
+template <typename Key>
+AxisPlace find(const GrowthBranch& branch, double value, Key key) {
+    const std::vector<AxisPlace>& axis = branch.axis;
+    const auto after = std::lower_bound(axis.begin(), axis.end(), value,
+                                        [&](const AxisPlace& place, double v) { return key(place) < v; });
+    if (after == axis.begin()) return axis.front();
+    if (after == axis.end()) return axis.back();
+    const auto before = after - 1;
+    const double span = key(*after) - key(*before);
+    return between(*before, *after, span > 0.0 ? (value - key(*before)) / span : 1.0);
+}
+
+}  // namespace
+
+AxisPlace place_at(const GrowthBranch& branch, double along) {
+    return find(branch, along, [](const AxisPlace& place) { return place.along; });
+}
+
+AxisPlace tip_at(const GrowthBranch& branch, double step) {
+    return find(branch, step, [](const AxisPlace& place) { return place.step; });
+}
+
+}  // namespace treerec::growth

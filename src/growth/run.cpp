@@ -1,0 +1,199 @@
+#include "growth/run.h"
+
+#include <CGAL/boost/graph/iterator.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "growth/velocity.h"
+
+namespace treerec::growth {
+
+namespace {
+
+constexpr int kSides = 6;          // of the seed
+constexpr double kSeedEdge = 0.7;  // of the longest edge
+constexpr double kNear = 3.0;      // longest edges from the tip within which buds and features are set
+
+}  // namespace
+
+Run::Run(const GrowthPlan& plan, std::vector<Feature> features, double longest, double shortest,
+         const Obstacles* obstacles)
+    : plan_(plan),
+      features_(std::move(features)),
+      longest_(longest),
+      shortest_(shortest),
+      contact_(surface_, longest, obstacles),
+      optimiser_(surface_, contact_, plan_, longest, shortest),
+      apex_(plan.branches.size(), SurfaceMesh::null_vertex()) {
+    plant();
+}
+
+// Figure 4: a prism, closed by a point above; what grows up from it is the trunk.
+void Run::plant() {
+    SurfaceMesh& mesh = surface_.mesh;
+    const AxisPlace& foot = plan_.branches.front().axis.front();
+    const DVec3 up = foot.direction, x = any_perpendicular(up), z = glm::cross(up, x);
+    const double edge = kSeedEdge * longest_;
+    const auto add = [&](const DVec3& place, Tissue tissue, double along) {
+        const Vertex v = mesh.add_vertex(place);
+        Cell& cell = surface_.cells[v];
+        cell.id = surface_.next_id++;
+        cell.previous = place;
+        cell.tissue = tissue;
+        cell.along = along;
+        return v;
+    };
+    Vertex ring[2][kSides];
+    for (int row = 0; row < 2; row++)
+        for (int side = 0; side < kSides; side++) {
+            const double angle = 2.0 * kPi * side / kSides;
+            ring[row][side] =
+                add(foot.position + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
+                    Tissue::kCambium, foot.along + edge * row);
+        }
+    const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
+    const Vertex above = add(foot.position + up * (1.7 * edge), Tissue::kApical, foot.along + 1.7 * edge);
+    for (int side = 0; side < kSides; side++) {
+        const int next = (side + 1) % kSides;
+        mesh.add_face(below, ring[0][next], ring[0][side]);
+        mesh.add_face(ring[0][side], ring[0][next], ring[1][next]);
+        mesh.add_face(ring[0][side], ring[1][next], ring[1][side]);
+        mesh.add_face(above, ring[1][side], ring[1][next]);
+        surface_.links[mesh.edge(mesh.halfedge(ring[0][side], ring[1][side]))] = true;
+        surface_.links[mesh.edge(mesh.halfedge(ring[1][side], above))] = true;
+    }
+    apex_[0] = above;
+    contact_.list_all();
+}
+
+void Run::advance() {
+    sprout();
+    choose_buds();
+    place_features();
+    for (const Vertex v : surface_.mesh.vertices()) {
+        Cell& cell = surface_.cells[v];
+        cell.previous = surface_.place(v);
+        cell.hold = Hold::kFree;
+    }
+    contact_.advance(set_velocities(surface_, plan_, features_, step_));
+    move_all();
+    optimiser_.run();
+    follow_merges();
+    step_++;
+    count_.vertices = surface_.mesh.number_of_vertices();
+    count_.edges = surface_.mesh.number_of_edges();
+    count_.faces = surface_.mesh.number_of_faces();
+    count_.short_edges = optimiser_.short_edges();
+}
+
+// Equation 1, in pieces of at most T_m / 4.
+void Run::move_all() {
+    const double piece = shortest_ / 4.0;
+    count_.frozen = count_.folded = 0;
+    std::vector<Vertex> order(surface_.mesh.vertices().begin(), surface_.mesh.vertices().end());
+    for (int part = 0; !order.empty(); part++) {
+        std::vector<Vertex> later;
+        for (const Vertex v : order) {
+            Cell& cell = surface_.cells[v];
+            const double length = glm::length(cell.velocity);
+            if (!(length > 0.0)) continue;
+            const int parts = std::max(static_cast<int>(std::ceil(length / piece)), 1);
+            cell.hold = contact_.move(v, surface_.place(v) + cell.velocity / static_cast<double>(parts));
+            if (cell.hold != Hold::kFree) {
+                count_.frozen++;
+                if (cell.hold == Hold::kFold) count_.folded++;
+            }
+            const double excess = cell.tissue == Tissue::kCambium ? length - cell.speed : 0.0;
+            if (cell.hold == Hold::kFree) cell.excess += std::max(excess, 0.0) / parts;
+            if (part + 1 < parts && cell.hold == Hold::kFree) later.push_back(v);
+        }
+        order = std::move(later);
+    }
+}
+
+// Papers/001, 5.2: of the cambium near the tip that the branch leaves, the vertex that faces its way.
+void Run::choose_buds() {
+    for (size_t b = 1; b < plan_.branches.size(); b++) {
+        const GrowthBranch& branch = plan_.branches[b];
+        if (apex_[b] != SurfaceMesh::null_vertex()) continue;
+        const Vertex tip = apex_[static_cast<size_t>(branch.parent)];
+        if (tip == SurfaceMesh::null_vertex()) continue;
+        const Cell& leader = surface_.cells[tip];
+        const bool passed =
+            leader.tissue == Tissue::kApical && leader.along > branch.parent_along + 0.5 * longest_;
+        if (!passed && step_ < branch.first_step()) continue;
+        // Near to where the branch leaves its parent's axis.
+        const AxisPlace base =
+            place_at(plan_.branches[static_cast<size_t>(branch.parent)], branch.parent_along);
+        const DVec3 toward = branch.axis.front().direction;
+        const DVec3 aside = normalized_or(toward - base.direction * glm::dot(toward, base.direction), toward);
+        Vertex best = SurfaceMesh::null_vertex();
+        double most = -1e300;
+        for (const Vertex v : surface_.mesh.vertices()) {
+            const Cell& cell = surface_.cells[v];
+            if (cell.tissue != Tissue::kCambium || cell.bud >= 0 || cell.owner != branch.parent) continue;
+            const double off = std::abs(glm::dot(surface_.place(v) - base.position, base.direction));
+            if (off > longest_) continue;
+            const double score = glm::dot(vertex_normal(surface_, v), aside) - off / longest_;
+            if (score <= most) continue;
+            most = score;
+            best = v;
+        }
+        if (best == SurfaceMesh::null_vertex()) continue;
+        surface_.cells[best].bud = static_cast<int32_t>(b);
+        apex_[b] = best;
+    }
+}
+
+void Run::sprout() {
+    for (size_t b = 1; b < plan_.branches.size(); b++) {
+        if (apex_[b] == SurfaceMesh::null_vertex() || step_ < plan_.branches[b].first_step()) continue;
+        Cell& cell = surface_.cells[apex_[b]];
+        if (cell.bud != static_cast<int32_t>(b)) continue;
+        cell.bud = -1;
+        cell.tissue = Tissue::kApical;
+        cell.owner = static_cast<int32_t>(b);
+        cell.along = plan_.branches[b].axis.front().along;
+    }
+}
+
+void Run::place_features() {
+    for (Feature& feature : features_) {
+        if (feature.placed || step_ < feature.first_step) continue;
+        const Vertex tip = apex_[static_cast<size_t>(feature.branch)];
+        if (tip == SurfaceMesh::null_vertex()) continue;
+        const Cell& leader = surface_.cells[tip];
+        if (leader.tissue != Tissue::kApical || leader.along < feature.along + longest_) continue;
+        const AxisPlace base = place_at(plan_.branches[static_cast<size_t>(feature.branch)], feature.along);
+        Vertex best = SurfaceMesh::null_vertex();
+        double least = 1e300;
+        for (const Vertex v : surface_.mesh.vertices()) {
+            const Cell& cell = surface_.cells[v];
+            if (cell.tissue != Tissue::kCambium || cell.owner != feature.branch) continue;
+            const DVec3 off = surface_.place(v) - base.position;
+            const double out = glm::dot(off, feature.direction);
+            if (out <= 0.0) continue;
+            const double beside = glm::length(off - feature.direction * out);
+            if (beside >= least) continue;
+            least = beside;
+            best = v;
+        }
+        if (best == SurfaceMesh::null_vertex() || least > kNear * longest_) continue;
+        feature.spheres.push_back({best, feature.radius, feature.inner, feature.growth});
+        surface_.cells[best].centre = true;
+        feature.placed = true;
+    }
+}
+
+void Run::follow_merges() {
+    for (const auto& [gone, kept] : optimiser_.merged()) {
+        for (Vertex& apex : apex_)
+            if (apex == gone) apex = kept;
+        for (Feature& feature : features_)
+            for (BurlSphere& sphere : feature.spheres)
+                if (sphere.centre == gone) sphere.centre = kept;
+    }
+}
+
+}  // namespace treerec::growth

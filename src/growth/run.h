@@ -1,0 +1,57 @@
+// The simulation: a seed grows into a tree's surface, step by step. Internal to growth/.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "growth/contact.h"
+#include "growth/feature.h"
+#include "growth/obstacles.h"
+#include "growth/optimise.h"
+#include "growth/plan.h"
+#include "growth/surface.h"
+#include "progress.h"
+
+namespace treerec::growth {
+
+struct StepCount {
+    size_t vertices = 0, edges = 0, faces = 0;
+    size_t frozen = 0;  // that could not move,
+    size_t folded = 0;  // and of them by a fold of their own neighbourhood
+    ShortEdges short_edges;
+};
+
+class Run {
+  public:
+    // longest, shortest: T_s and T_m, metres. obstacles: null for none; must outlive this.
+    Run(const GrowthPlan& plan, std::vector<Feature> features, double longest, double shortest,
+        const Obstacles* obstacles = nullptr);
+
+    int step() const { return step_; }
+    bool done() const { return step_ >= plan_.steps; }
+    // From step() to step() + 1.
+    void advance();
+    const Surface& surface() const { return surface_; }
+    const std::vector<Feature>& features() const { return features_; }
+    const StepCount& count() const { return count_; }
+
+  private:
+    void plant();
+    void choose_buds();
+    void sprout();
+    void place_features();
+    void move_all();
+    void follow_merges();
+
+    const GrowthPlan plan_;
+    std::vector<Feature> features_;
+    const double longest_, shortest_;
+    Surface surface_;
+    Contact contact_;
+    Optimiser optimiser_;
+    std::vector<Vertex> apex_;  // by branch: its apical vertex or bud
+    StepCount count_;
+    int step_ = 0;
+};
+
+}  // namespace treerec::growth

@@ -1,0 +1,130 @@
+// The growing surface: a closed triangle mesh whose vertices are tissue. Internal to growth/.
+#pragma once
+
+#include <CGAL/Surface_mesh.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "growth/tissue.h"
+
+namespace treerec::growth {
+
+using SurfaceMesh = CGAL::Surface_mesh<DVec3>;
+using Vertex = SurfaceMesh::Vertex_index;
+using Halfedge = SurfaceMesh::Halfedge_index;
+using Edge = SurfaceMesh::Edge_index;
+using Face = SurfaceMesh::Face_index;
+
+// Why a vertex did not go where it wanted to.
+enum class Hold : uint8_t {
+    kFree,
+    kFold,      // its own neighbourhood would fold over
+    kSurface,   // another part of the surface is in the way
+    kObstacle,  // an obstacle is
+};
+
+// What is known of a vertex beside its place. Metres and steps.
+struct Cell {
+    DVec3 previous{0.0};      // where it was a step ago (equation 2)
+    DVec3 velocity{0.0};      // of this step (equation 1)
+    double along = 0.0;       // of its branch's axis
+    double speed = 0.0;       // S_c of this step
+    double excess = 0.0;      // what it has grown more than plain cambium, metres
+    double safe_until = 0.0;  // of Contact's odometer: until then nothing far can be in its way
+    uint32_t id = 0;          // never given out again
+    int32_t owner = 0;        // branch
+    int32_t bud = -1;         // the branch that sprouts here, while it is dormant
+    int32_t hollow = -1;      // the feature that makes it decay
+    Tissue tissue = Tissue::kCambium;
+    Hold hold = Hold::kFree;
+    bool centre = false;  // spheres of burls ride on it
+};
+
+// Axis-aligned, metres.
+struct Box {
+    DVec3 low{1e300};
+    DVec3 high{-1e300};
+
+    void take(const DVec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    void take(const Box& box) {
+        low = glm::min(low, box.low);
+        high = glm::max(high, box.high);
+    }
+    Box grown(double by) const { return {low - by, high + by}; }
+    bool holds(const Box& box) const {
+        return glm::all(glm::lessThanEqual(low, box.low)) && glm::all(glm::lessThanEqual(box.high, high));
+    }
+    // Metres between two boxes; 0 where they meet. Never more than between what lies in them.
+    double distance(const Box& box) const {
+        const DVec3 gap = glm::max(glm::max(low - box.high, box.low - high), DVec3(0.0));
+        return glm::length(gap);
+    }
+    bool meets(const Box& box) const {
+        return glm::all(glm::lessThanEqual(low, box.high)) && glm::all(glm::lessThanEqual(box.low, high));
+    }
+};
+
+struct FaceCell {
+    DVec3 normal{0.0};  // unit, outwards
+    Box fat;            // the cells that it is listed in
+    uint32_t stamp = 0;
+    bool listed = false;
+};
+
+// The mesh with what its vertices, edges and faces are.
+class Surface {
+  public:
+    SurfaceMesh mesh;
+    SurfaceMesh::Property_map<Vertex, Cell> cells = mesh.add_property_map<Vertex, Cell>("v:cell").first;
+    SurfaceMesh::Property_map<Edge, bool> links = mesh.add_property_map<Edge, bool>("e:link", false).first;
+    SurfaceMesh::Property_map<Face, FaceCell> faces = mesh.add_property_map<Face, FaceCell>("f:cell").first;
+    uint32_t next_id = 0;
+
+    Surface() = default;
+    Surface(const Surface&) = delete;
+    Surface& operator=(const Surface&) = delete;
+
+    const DVec3& place(Vertex v) const { return mesh.point(v); }
+    double length(Edge e) const { return glm::distance(place(mesh.vertex(e, 0)), place(mesh.vertex(e, 1))); }
+    // Corners of a face, counter-clockwise from outside.
+    void corners(Face f, Vertex (&v)[3]) const {
+        const Halfedge h = mesh.halfedge(f);
+        v[0] = mesh.target(h);
+        v[1] = mesh.target(mesh.next(h));
+        v[2] = mesh.source(h);
+    }
+    Box box(Face f) const {
+        Vertex v[3];
+        corners(f, v);
+        Box box;
+        for (const Vertex corner : v)
+            box.take(place(corner));
+        return box;
+    }
+    // Unit; zero for a face without area.
+    DVec3 normal_of(Face f) const {
+        Vertex v[3];
+        corners(f, v);
+        return normalized_or(glm::cross(place(v[1]) - place(v[0]), place(v[2]) - place(v[0])), DVec3(0.0));
+    }
+};
+
+// Equation 5: the unit sum of the unit normals of the faces around; zero where they cancel out.
+inline DVec3 vertex_normal(const Surface& surface, Vertex v) {
+    DVec3 sum(0.0);
+    const SurfaceMesh& mesh = surface.mesh;
+    const Halfedge first = mesh.halfedge(v);
+    Halfedge h = first;
+    do {
+        sum += surface.faces[mesh.face(h)].normal;
+        h = mesh.opposite(mesh.next(h));
+    } while (h != first);
+    return normalized_or(sum, DVec3(0.0));
+}
+
+}  // namespace treerec::growth

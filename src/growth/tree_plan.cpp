@@ -1,0 +1,178 @@
+#include "growth/tree_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "error.h"
+#include "foliage/branch_axis.h"
+
+namespace treerec::growth {
+
+namespace {
+
+constexpr double kFastest = 1.0;      // longest edges that a tip grows in a step at most
+constexpr double kThickening = 0.15;  // shortest edges that cambium grows in a step about at most
+constexpr double kYoung = 0.5;        // shortest edges that a tip is thick at once: a needle could not bend
+constexpr int kFewestSteps = 60;
+constexpr double kBudSteps = 3.0;     // between a tip's passing a branch and that sprouting
+constexpr double kDepth = 1.0;        // radii that the trunk's axis begins below its foot
+constexpr double kSinks = 2.0;        // longest edges before its open end within which the surface sinks
+constexpr double kSunk = 0.6;         // to this share of the radius
+constexpr double kAbove = 1.02;       // of the radius: what covers a tube that begins inside
+constexpr double kLeastLength = 3.0;  // longest edges that a branch is covered at least
+
+double ease(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// The part of the axis that is covered, sampled evenly enough. Empty where too little is thick enough.
+std::vector<AxisPlace> cover(const std::vector<AxisPoint>& points, double longest, double shortest,
+                             bool& open) {
+    std::vector<AxisPlace> axis;
+    open = false;
+    for (const AxisPoint& point : points) {
+        if (point.radius < shortest && axis.size() > 1) {
+            open = true;
+            break;
+        }
+        AxisPlace place;
+        place.position = point.position;
+        place.direction = point.direction;
+        place.along = point.along;
+        place.radius = point.radius;
+        axis.push_back(place);
+    }
+    if (axis.size() < 2 || axis.back().along - axis.front().along < kLeastLength * longest) return {};
+    if (open) {
+        const double end = axis.back().along, begin = std::max(end - kSinks * longest, 0.0);
+        for (AxisPlace& place : axis)
+            place.radius *=
+                glm::mix(kAbove, kSunk, ease((place.along - begin) / std::max(end - begin, 1e-9)));
+    }
+    return axis;
+}
+
+}  // namespace
+
+TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, double shortest, int steps) {
+    TreePlan result;
+    result.covered.assign(list.branches.size(), 0.0);
+    GrowthPlan& plan = result.plan;
+    plan.follow = true;
+    plan.young = kYoung * shortest;
+    std::vector<int32_t> plan_of(list.branches.size(), -1);
+    std::vector<AxisPoint> points;
+    double thickest = 0.0;
+    for (size_t b = 0; b < list.branches.size(); b++) {
+        const Branch& branch = list.branches[b];
+        GrowthBranch grown;
+        if (branch.parent >= 0) {
+            grown.parent = plan_of[static_cast<size_t>(branch.parent)];
+            if (grown.parent < 0) continue;
+        }
+        sample_axis(tree, list, branch, 0.25 * shortest, points);
+        if (points.size() < 2) continue;
+        // How thick it begins is told by its own first node: at the fork it is as thick as its parent.
+        const double own = tree.node(list.nodes[static_cast<size_t>(branch.begin)]).radius;
+        if (own < shortest) continue;
+        if (branch.parent >= 0) {
+            for (AxisPoint& point : points)
+                point.radius = std::min(point.radius, std::max(own, shortest));
+            const GrowthBranch& parent = plan.branches[static_cast<size_t>(grown.parent)];
+            const DVec3 from = tree.node(branch.attach).position;
+            double nearest = std::numeric_limits<double>::max();
+            for (const AxisPlace& place : parent.axis) {
+                const double distance = glm::distance(place.position, from);
+                if (distance >= nearest) continue;
+                nearest = distance;
+                grown.parent_along = place.along;
+            }
+            if (nearest > longest + shortest || grown.parent_along > parent.axis.back().along - longest)
+                continue;
+        }
+        grown.axis = cover(points, longest, shortest, grown.ends_open);
+        if (grown.axis.empty()) continue;
+        if (branch.parent < 0) {
+            AxisPlace below = grown.axis.front();
+            const double depth = kDepth * below.radius + longest;
+            below.position -= below.direction * depth;
+            below.along -= depth;
+            grown.axis.insert(grown.axis.begin(), below);
+        }
+        result.covered[b] = grown.ends_open ? grown.axis.back().along - kSinks * longest
+                                            : std::numeric_limits<double>::infinity();
+        for (const AxisPlace& place : grown.axis)
+            thickest = std::max(thickest, place.radius);
+        plan_of[b] = static_cast<int32_t>(plan.branches.size());
+        plan.branches.push_back(std::move(grown));
+        result.branch_of.push_back(static_cast<int32_t>(b));
+    }
+    if (plan.branches.empty())
+        throw Error("Nothing of this tree is thick enough for bark with edges of " +
+                    std::to_string(static_cast<int>(std::lround(1000.0 * shortest))) +
+                    " mm: make them shorter, or check the tree's units.");
+    // Steps before the end, by thickness; then no tip faster than may be, and no branch before its parent.
+    const double all =
+        steps > 0 ? steps : std::max(thickest / (kThickening * shortest), double{kFewestSteps});
+    const double fastest = kFastest * longest;
+    std::vector<double> limit(plan.branches.size(), 0.0);
+    for (size_t b = plan.branches.size(); b-- > 0;) {
+        GrowthBranch& branch = plan.branches[b];
+        for (size_t i = branch.axis.size(); i-- > 0;) {
+            AxisPlace& place = branch.axis[i];
+            place.step = all * (1.0 - place.radius / thickest);
+            if (i + 1 < branch.axis.size())
+                place.step = std::min(
+                    place.step, branch.axis[i + 1].step - (branch.axis[i + 1].along - place.along) / fastest);
+        }
+        // Of all branches that leave it: it must have passed them in time.
+        for (size_t c = b + 1; c < plan.branches.size(); c++) {
+            const GrowthBranch& child = plan.branches[c];
+            if (child.parent != static_cast<int32_t>(b)) continue;
+            const double until = child.axis.front().step - kBudSteps - longest / fastest;
+            for (size_t i = branch.axis.size(); i-- > 0;) {
+                AxisPlace& place = branch.axis[i];
+                const double way = place.along - child.parent_along;
+                if (way <= 0.0) place.step = std::min(place.step, until + way / fastest);
+            }
+        }
+    }
+    const double first = plan.branches.front().axis.front().step;
+    plan.steps = static_cast<int>(std::ceil(all - first));
+    for (GrowthBranch& branch : plan.branches)
+        for (AxisPlace& place : branch.axis) {
+            place.step -= first;
+            place.speed = place.radius / std::max(plan.steps - place.step, 1.0);
+        }
+    if (steps > 0 && plan.steps > steps) {  // as many as were asked for, with faster tips
+        const double faster = static_cast<double>(steps) / plan.steps;
+        for (GrowthBranch& branch : plan.branches)
+            for (AxisPlace& place : branch.axis) {
+                place.step *= faster;
+                place.speed /= faster;
+            }
+        plan.steps = steps;
+    }
+    // A branch begins where the bark of its parent is when it sprouts.
+    for (GrowthBranch& branch : plan.branches) {
+        if (branch.parent < 0) continue;
+        const GrowthBranch& parent = plan.branches[static_cast<size_t>(branch.parent)];
+        const AxisPlace base = place_at(parent, branch.parent_along);
+        const double age = (branch.first_step() - base.step) / std::max(plan.steps - base.step, 1.0);
+        const double bark = base.radius * std::clamp(age, 0.0, 1.0);
+        size_t begin = 0;
+        while (begin + 2 < branch.axis.size()) {
+            const DVec3 off = branch.axis[begin].position - base.position;
+            if (glm::length(off - base.direction * glm::dot(off, base.direction)) >= bark) break;
+            begin++;
+        }
+        const double step = branch.first_step();
+        branch.axis.erase(branch.axis.begin(), branch.axis.begin() + static_cast<std::ptrdiff_t>(begin));
+        branch.axis.front().step = std::min(step, branch.axis.front().step);
+    }
+    return result;
+}
+
+}  // namespace treerec::growth

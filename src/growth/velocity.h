@@ -1,0 +1,17 @@
+// How fast and where to each vertex grows (papers/001, 5.1, 6.1, 7.1, 7.2, 8). Internal to growth/.
+#pragma once
+
+#include <vector>
+
+#include "growth/feature.h"
+#include "growth/plan.h"
+#include "growth/surface.h"
+
+namespace treerec::growth {
+
+// Fills Cell::velocity and Cell::speed for the step from `step` to step + 1. Returns the largest velocity of
+// all that are not apical, metres a step.
+double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
+                      int step);
+
+}  // namespace treerec::growth

@@ -1,0 +1,205 @@
+// Bark that grows around trees (src/growth).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "edit/address.h"
+#include "geometry/random.h"
+#include "growth/grow_bark.h"
+#include "mesh/branch_tubes.h"
+#include "random_tree.h"
+#include "tree/branches.h"
+
+using namespace treerec;
+
+namespace {
+
+// A straight trunk, as thick all along.
+Tree cylinder(double radius, double height) {
+    Tree tree;
+    NodeId last = tree.add_root(DVec3(0.0), radius, kTrunkFlag);
+    for (int i = 1; i <= 10; i++)
+        last = tree.add_child(last, DVec3(0.0, height * i / 10.0, 0.0), radius, kTrunkFlag);
+    return tree;
+}
+
+// A trunk with stout branches this way and that, some of which fork.
+Tree stout_tree(uint64_t seed) {
+    Random random(seed);
+    Tree tree;
+    const double radius = random.uniform(0.08, 0.14), height = random.uniform(1.5, 2.5);
+    std::vector<NodeId> trunk{tree.add_root(DVec3(0.0), radius, kTrunkFlag)};
+    DVec3 place(0.0);
+    for (int i = 1; i <= 12; i++) {
+        place += DVec3(random.uniform(-0.03, 0.03), height / 12.0, random.uniform(-0.03, 0.03));
+        trunk.push_back(tree.add_child(trunk.back(), place, radius * (1.0 - 0.06 * i), kTrunkFlag));
+    }
+    for (int branch = 0; branch < 5; branch++) {
+        const double angle = random.uniform(0.0, 6.28), up = random.uniform(-0.2, 1.2);
+        const DVec3 direction = glm::normalize(DVec3(std::cos(angle), up, std::sin(angle)));
+        NodeId last = trunk[3 + random.below(8)];
+        const double own = tree.node(last).radius * random.uniform(0.5, 0.8);
+        DVec3 at = tree.node(last).position;
+        for (int i = 1; i <= 8; i++) {
+            at += 0.1 * glm::normalize(direction + 0.2 * random.direction());
+            last = tree.add_child(last, at, own * (1.0 - 0.06 * i));
+        }
+    }
+    return tree;
+}
+
+void expect_sound(const GrowthStep& step) {
+    EXPECT_TRUE(step.closed) << "step " << step.step;
+    EXPECT_TRUE(step.outward) << "step " << step.step;
+    EXPECT_EQ(step.chi, 2) << "step " << step.step;
+    EXPECT_EQ(step.components, 1U) << "step " << step.step;
+    EXPECT_EQ(step.intersections, 0U) << "step " << step.step;
+    EXPECT_EQ(step.above_longest, 0U) << "step " << step.step;
+    EXPECT_EQ(step.unexplained, 0U) << "step " << step.step;
+}
+
+GrowthRecipe recipe_of(const Tree& tree, const std::string& text) {
+    return read_growth_recipe(tree, text);
+}
+
+// Metres from the Y axis, of the vertices between two heights whose angle about it is within `width` radians
+// of `angle`.
+std::vector<double> radii(const GrownBark& bark, double low, double high, double angle = 0.0,
+                          double width = 4.0) {
+    std::vector<double> found;
+    for (const GrownBark::Vertex& vertex : bark.vertices) {
+        const DVec3 p(vertex.position);
+        if (p.y < low || p.y > high) continue;
+        if (std::abs(std::remainder(std::atan2(p.z, p.x) - angle, 2.0 * kPi)) > width) continue;
+        found.push_back(std::hypot(p.x, p.z));
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace
+
+TEST(GrowthBark, StaysSoundAtEveryStepOnRandomTrees) {
+    size_t frozen = 0, vertices = 0;
+    for (uint64_t seed = 1; seed <= 6; seed++) {
+        const Tree tree = stout_tree(seed);
+        GrowthRecipe recipe =
+            recipe_of(tree, "edges longest=0.045\nburl along=0.5 around=" + std::to_string(40 * seed) +
+                                " radius=0.15 growth=0.8\n");
+        const GrownTree grown = grow_bark(tree, recipe, {5});
+        ASSERT_GE(grown.checks.size(), 10U);
+        for (const GrowthStep& step : grown.checks)
+            expect_sound(step);
+        frozen += grown.checks.back().frozen;
+        vertices += grown.checks.back().vertices;
+        EXPECT_GE(grown.bark.branches.size(), 3U);
+    }
+    EXPECT_LE(static_cast<double>(frozen), 0.05 * static_cast<double>(vertices));
+}
+
+TEST(GrowthBark, ComesToTheTreesRadii) {
+    const Tree tree = cylinder(0.12, 1.5);
+    const GrownTree grown = grow_bark(tree, recipe_of(tree, "edges longest=0.04"));
+    const std::vector<double> found = radii(grown.bark, 0.2, 1.2);
+    ASSERT_GT(found.size(), 300U);
+    EXPECT_NEAR(found[found.size() / 2], 0.12, 0.02 * 0.12);
+    EXPECT_NEAR(found[found.size() / 20], 0.12, 0.05 * 0.12);
+    EXPECT_NEAR(found[found.size() * 19 / 20], 0.12, 0.05 * 0.12);
+}
+
+// Papers/001, equation 6: k S_c more a step, of S_c that makes the radius in all steps.
+TEST(GrowthBark, ABurlIsAsHighAsItsGrowth) {
+    const Tree tree = cylinder(0.15, 1.6);
+    const GrownTree plain = grow_bark(tree, recipe_of(tree, "edges longest=0.04"));
+    const GrownTree lump = grow_bark(
+        tree, recipe_of(tree,
+                        "edges longest=0.04\nburl along=0.8 around=0 radius=0.2 inner=0.12 growth=0.5 "
+                        "from=0.5"));
+    EXPECT_TRUE(lump.remarks.empty());
+    // S_c steps of the second half of its age: half of the radius.
+    const double expected = 0.5 * 0.5 * 0.15;
+    const std::vector<double> before = radii(plain.bark, 0.75, 0.85, 0.0, 0.3);
+    const std::vector<double> after = radii(lump.bark, 0.75, 0.85, 0.0, 0.3);
+    ASSERT_FALSE(before.empty());
+    ASSERT_FALSE(after.empty());
+    EXPECT_NEAR(after[after.size() / 2] - before[before.size() / 2], expected, 0.1 * expected);
+    // Beyond R and an edge there is none of it.
+    for (const double radius : radii(lump.bark, 1.06, 1.3))
+        EXPECT_NEAR(radius, 0.15, 0.005);
+    EXPECT_LT(radii(lump.bark, 0.75, 0.85, kPi, 0.5).back(), 0.155)
+        << radii(plain.bark, 0.75, 0.85, kPi, 0.5).back();
+}
+
+TEST(GrowthBark, IsTheSameEachTime) {
+    const Tree tree = stout_tree(3);
+    const GrowthRecipe recipe = recipe_of(tree, "edges longest=0.06\nburl along=0.4 radius=0.1");
+    const GrownBark a = grow_bark(tree, recipe).bark, b = grow_bark(tree, recipe).bark;
+    ASSERT_EQ(a.vertices.size(), b.vertices.size());
+    EXPECT_EQ(a.indices, b.indices);
+    for (size_t i = 0; i < a.vertices.size(); i++)
+        ASSERT_EQ(a.vertices[i].position, b.vertices[i].position);
+}
+
+TEST(GrowthBark, TubesGoOnWhereItEnds) {
+    const Tree tree = stout_tree(5);
+    const GrownTree grown = grow_bark(tree, recipe_of(tree, "edges longest=0.05"));
+    TubeOptions options;
+    const Mesh tubes = build_branch_tubes(tree, options);
+    options.grown = &grown.bark;
+    const Mesh both = build_branch_tubes(tree, options);
+    ASSERT_GT(both.positions.size(), grown.bark.vertices.size());
+    EXPECT_EQ(both.positions.size(), both.normals.size());
+    EXPECT_EQ(both.positions.size(), both.wind.size());
+    EXPECT_EQ(both.triangle_count() >= grown.bark.indices.size() / 3, true);
+    // What is left of the tubes is less than they were.
+    EXPECT_LT(both.triangle_count() - grown.bark.indices.size() / 3, tubes.triangle_count() / 2);
+    Bounds bounds;
+    for (const Vec3& position : both.positions)
+        bounds.add(DVec3(position));
+    EXPECT_NEAR(bounds.max.y, tree.bounds().max.y, 0.1);
+    for (const Vec3& normal : both.normals)
+        ASSERT_NEAR(glm::length(normal), 1.0, 1e-3);
+}
+
+TEST(GrowthBark, TellsWhatItCannotDo) {
+    Tree thin;
+    NodeId last = thin.add_root(DVec3(0.0), 0.004, kTrunkFlag);
+    thin.add_child(last, DVec3(0.0, 1.0, 0.0), 0.003, kTrunkFlag);
+    EXPECT_THROW(grow_bark(thin, {}), Error);
+    EXPECT_THROW(grow_bark(Tree(), {}), Error);
+    const Tree tree = cylinder(0.1, 1.0);
+    const GrownTree grown = grow_bark(
+        tree, recipe_of(tree, "edges longest=0.06\nburl along=7 radius=0.1\nburl along=0.5 radius=0.1"));
+    ASSERT_EQ(grown.remarks.size(), 1U);
+    EXPECT_NE(grown.remarks[0].find("7 m along"), std::string::npos) << grown.remarks[0];
+}
+
+TEST(GrowthRecipe, KeepsWhatItWasTold) {
+    const Tree tree = cylinder(0.1, 1.0);
+    const GrowthRecipe recipe = recipe_of(
+        tree, "# lumps\nedges longest=0.05\n\nburl node=root along=0.5 around=90 radius=0.2 growth=0.7\n");
+    EXPECT_DOUBLE_EQ(recipe.longest, 0.05);
+    EXPECT_LE(recipe.shortest, 0.025);
+    ASSERT_EQ(recipe.features.size(), 1U);
+    EXPECT_DOUBLE_EQ(recipe.features[0].inner, 0.1);
+    const GrowthRecipe again = recipe_of(tree, recipe.text);
+    EXPECT_EQ(again.text, recipe.text);
+    ASSERT_EQ(again.features.size(), 1U);
+    EXPECT_DOUBLE_EQ(again.features[0].around, 90.0);
+}
+
+TEST(GrowthRecipe, RefusesNonsense) {
+    const Tree tree = cylinder(0.1, 1.0);
+    for (const char* text :
+         {"bulr along=1", "burl radius=nan", "burl radius=-1", "edges longest=0.02 shortest=0.015",
+          "burl radius=0.1 inner=0.2", "burl along", "steps count=1e9"})
+        EXPECT_THROW(recipe_of(tree, text), Error) << text;
+    try {
+        recipe_of(tree, "edges longest=0.05\nbulr along=1");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("Line 2"), std::string::npos) << error.what();
+    }
+}
