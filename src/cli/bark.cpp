@@ -17,10 +17,11 @@ void print_check(const GrowthStep& step) {
         "%s, "
         "\"outward\": %s, \"above_longest\": %zu, \"under_shortest\": {\"apical\": %zu, \"parting\": %zu, "
         "\"link\": %zu, \"fold\": %zu, \"contact\": %zu, \"unexplained\": %zu}, \"intersections\": %zu, "
-        "\"frozen\": %zu}\n",
+        "\"frozen\": %zu, \"frozen_away_from_contacts\": %zu}\n",
         step.step, step.vertices, step.edges, step.faces, step.chi, step.components,
         step.closed ? "true" : "false", step.outward ? "true" : "false", step.above_longest, step.apical,
-        step.parting, step.link, step.fold, step.contact, step.unexplained, step.intersections, step.frozen);
+        step.parting, step.link, step.fold, step.contact, step.unexplained, step.intersections, step.frozen,
+        step.frozen_free);
 }
 
 bool sound(const GrowthStep& step) {
@@ -40,6 +41,7 @@ const Command& bark_command() {
          {"--recipe", "FILE", "one command per line, # begins a comment"},
          {"--log", "FILE", "writes the recipe as it was found on this tree"},
          {"--check", "N", "judges the surface every N steps and prints what it is, a line of JSON each"},
+         {"--trace", "DIR", "writes what each vertex did in each step there, as CSV: docs/growth_trace.md"},
          {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
          {"--seed", "N", "of the leaves (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
@@ -79,6 +81,7 @@ void run_bark(const std::vector<std::string>& words) {
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     GrowOptions options;
+    options.trace = arguments.text("--trace", "");
     options.check_every = static_cast<int>(arguments.whole("--check", 0, 0, 100000));
 
     const Tree tree = skeleton_from(arguments, arguments.positional()[0]);
@@ -88,6 +91,7 @@ void run_bark(const std::vector<std::string>& words) {
         for (const std::string& line : arguments.all("-c"))
             text += "\n" + line;
     const GrowthRecipe recipe = read_growth_recipe(tree, text);
+    if (!options.trace.empty()) make_folder(options.trace);
     const GrownTree grown = grow_bark(tree, recipe, options, &progress);
     exports.grown = &grown.bark;
     TreeExporter exporter(tree, exports, &progress);

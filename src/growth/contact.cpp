@@ -1,8 +1,11 @@
 #include "growth/contact.h"
 
+#include <CGAL/boost/graph/iterator.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/parallel.h"
 #include "growth/triangle_tests.h"
 
 namespace treerec::growth {
@@ -14,10 +17,12 @@ constexpr double kReach = 0.5;     // of the longest edge
 constexpr double kMargin = 0.1;    // of the longest edge
 constexpr double kGap = 1e-3;      // of the longest edge
 constexpr double kTouch = 1e-9;    // metres between faces that share a corner
-constexpr double kGraph = 0.2;     // cosine to a patch's mean normal from which on it can't fold over
 constexpr double kFold = -0.9976;  // cosine between the normals of two faces 4 degrees apart
-// Of the longest edge, squared: twice the area of the least face.
+// Of the reach, squared: twice the area of the least face.
 constexpr double kLeastFace = 1e-7;
+constexpr double kSameSide =
+    0.5;  // cosine to a patch's normal up to which a face of its sheet need not look again
+constexpr size_t kGrain = 256;
 
 double volume(const DVec3& a, const DVec3& b, const DVec3& c, const DVec3& d) {
     return glm::dot(glm::cross(b - a, c - a), d - a);
@@ -31,34 +36,110 @@ Contact::Contact(Surface& surface, double longest, const Obstacles* obstacles)
       grid_(kCell * longest),
       reach_(kReach * longest),
       margin_(kMargin * longest),
-      gap_(kGap * longest) {}
+      gap_(kGap * longest),
+      outlook_(surface, grid_, obstacles_, reach_, kLeastFace * reach_ * reach_) {}
 
 void Contact::list_all() {
     for (const Face face : surface_.mesh.faces())
         list(face);
 }
 
-void Contact::list(Face face) {
+bool Contact::holds(Face face) const {
+    const FaceCell& cell = surface_.faces[face];
+    Vertex v[3];
+    surface_.corners(face, v);
+    return std::all_of(v, v + 3, [&](Vertex corner) {
+        const DVec3 off = surface_.place(corner) - cell.middle;
+        return glm::dot(off, off) <= cell.round * cell.round;
+    });
+}
+
+void Contact::list(Face face, const DVec3& normal) {
     FaceCell& cell = surface_.faces[face];
-    cell.normal = surface_.normal_of(face);
-    const Box box = surface_.box(face);
-    if (cell.listed && cell.fat.holds(box)) return;
-    if (cell.listed) grid_.remove(face, cell.fat);
-    cell.fat = box.grown(margin_);
+    cell.normal = normal;
+    if (cell.listed && holds(face)) return;
+    if (cell.listed) grid_.remove(face, cell.middle);
+    Vertex v[3];
+    surface_.corners(face, v);
+    cell.middle = (surface_.place(v[0]) + surface_.place(v[1]) + surface_.place(v[2])) / 3.0;
+    cell.round = 0.0;
+    for (const Vertex corner : v)
+        cell.round = std::max(cell.round, glm::distance(surface_.place(corner), cell.middle));
+    cell.round += margin_;
     cell.listed = true;
-    grid_.add(face, cell.fat);
+    grid_.add(face, cell.middle, cell.round);
 }
 
 void Contact::unlist(Face face) {
     FaceCell& cell = surface_.faces[face];
     if (!cell.listed) return;
-    grid_.remove(face, cell.fat);
+    grid_.remove(face, cell.middle);
     cell.listed = false;
 }
 
 void Contact::advance(double most) {
     most_ = most;
     odometer_ += most;
+}
+
+void Contact::look_ahead() {
+    const SurfaceMesh& mesh = surface_.mesh;
+    parallel_for(mesh.num_vertices(), kGrain, [&](size_t begin, size_t end) {
+        std::unique_ptr<Outlook::Scratch> scratch;
+        {
+            const std::lock_guard lock(scratches_mutex_);
+            if (!scratches_.empty()) {
+                scratch = std::move(scratches_.back());
+                scratches_.pop_back();
+            }
+        }
+        if (!scratch) scratch = std::make_unique<Outlook::Scratch>();
+        for (size_t i = begin; i < end; i++) {
+            const Vertex v(static_cast<uint32_t>(i));
+            if (mesh.is_removed(v)) continue;
+            Cell& cell = surface_.cells[v];
+            if (cell.tissue == Tissue::kApical || cell.velocity == DVec3(0.0)) continue;
+            if (cell.flat_until < odometer_) cell.flat_until = odometer_ - most_ + outlook_.flat(v, *scratch);
+            if (cell.safe_until < odometer_) cell.safe_until = until(outlook_.clear(v, *scratch));
+        }
+        const std::lock_guard lock(scratches_mutex_);
+        scratches_.push_back(std::move(scratch));
+    });
+    // Tips move by more than the odometer tells.
+    for (const Vertex v : mesh.vertices())
+        if (surface_.cells[v].tissue == Tissue::kApical)
+            for (const Vertex other : CGAL::vertices_around_target(mesh.halfedge(v), mesh))
+                for (const Vertex near : CGAL::vertices_around_target(mesh.halfedge(other), mesh))
+                    surface_.cells[near].flat_until = -1.0;
+}
+
+void Contact::follow() {
+    const SurfaceMesh& mesh = surface_.mesh;
+    std::vector<std::vector<Face>> gone((mesh.num_faces() + kGrain - 1) / kGrain);
+    parallel_for(mesh.num_faces(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            const Face face(static_cast<uint32_t>(i));
+            if (mesh.is_removed(face)) continue;
+            surface_.faces[face].normal = surface_.normal_of(face);
+            if (!holds(face)) gone[begin / kGrain].push_back(face);
+        }
+    });
+    for (const std::vector<Face>& faces : gone)
+        for (const Face face : faces)
+            list(face, surface_.faces[face].normal);
+}
+
+void Contact::look_again(Vertex vertex) {
+    surface_.cells[vertex].safe_until = -1.0;
+    surface_.cells[vertex].flat_until = -1.0;
+    for (const Vertex other : CGAL::vertices_around_target(surface_.mesh.halfedge(vertex), surface_.mesh))
+        surface_.cells[other].flat_until = -1.0;
+}
+
+void Contact::look_again_around(Vertex vertex) {
+    look_again(vertex);
+    for (const Vertex other : CGAL::vertices_around_target(surface_.mesh.halfedge(vertex), surface_.mesh))
+        look_again(other);
 }
 
 Hold Contact::move(Vertex vertex, const DVec3& to) {
@@ -78,8 +159,8 @@ Hold Contact::move(Vertex vertex, const DVec3& to) {
     const Hold hold = check(moving_);
     if (hold != Hold::kFree) return hold;
     mesh.point(vertex) = to;
-    for (const Face face : moving_.replaced)
-        list(face);
+    for (size_t i = 0; i < moving_.replaced.size(); i++)
+        list(moving_.replaced[i], normals_[i]);
     return Hold::kFree;
 }
 
@@ -99,7 +180,8 @@ Hold Contact::check(const Change& change) {
     const SurfaceMesh& mesh = surface_.mesh;
     for (const std::array<Vertex, 3>& made : change.made)
         for (const Vertex corner : made) {
-            if (corner == change.moved) continue;
+            // Of a vertex's own faces, each corner is the second of one.
+            if (corner == change.moved || (change.swept && corner != made[1])) continue;
             const Halfedge first = mesh.halfedge(corner);
             if (first == SurfaceMesh::null_halfedge()) continue;  // about to be put in
             Halfedge h = first;
@@ -116,7 +198,28 @@ Hold Contact::check(const Change& change) {
     if (hold != Hold::kFree) return hold;
     if (!change.sudden && change.swept && surface_.cells[change.moved].safe_until >= odometer_)
         return Hold::kFree;
-    return check_far(change);
+    const Hold far = check_far(change);
+    if (far == Hold::kFree && change.sudden) warn_others();
+    return far;
+}
+
+// Of a change that is to be made: who is near it may not be safe as long as it thought.
+void Contact::warn_others() {
+    DVec3 mean(0.0);
+    for (const DVec3& normal : normals_)
+        mean += normal;
+    mean = normalized_or(mean, DVec3(0.0));
+    for (size_t i = 0; i < found_.size(); i++) {
+        const FaceCell& cell = surface_.faces[found_[i]];
+        const bool sheet = cell.stamp == stamp_;
+        if (sheet && glm::dot(cell.normal, mean) > kSameSide) continue;
+        Vertex corners[3];
+        surface_.corners(found_[i], corners);
+        for (const Vertex corner : corners) {
+            double& safe = surface_.cells[corner].safe_until;
+            safe = std::min(safe, until(distances_[i]));
+        }
+    }
 }
 
 Hold Contact::check_near(const Change& change, const std::vector<DVec3>& normals) {
@@ -243,54 +346,38 @@ Hold Contact::check_far(const Change& change) {
         for (const Vertex corner : made)
             swept.take(place(change, corner));
     if (change.swept) swept.take(surface_.place(change.moved));
-    // Boxes of slanted faces side by side overlap, where balls about them don't.
     const DVec3 middle =
         change.moved == SurfaceMesh::null_vertex() ? 0.5 * (swept.low + swept.high) : change.to;
     double round = change.swept ? glm::distance(surface_.place(change.moved), middle) : 0.0;
     for (const std::array<Vertex, 3>& made : change.made)
         for (const Vertex corner : made)
             round = std::max(round, glm::distance(place(change, corner), middle));
-    const Box around = swept.grown(reach_);
     double nearest = reach_;
     found_.clear();
     distances_.clear();
     close_.clear();
     const uint32_t far = ++stamp_;
-    grid_.visit(around, [&](uint32_t item) {
+    grid_.visit(middle, round + reach_, [&](uint32_t item) {
         const Face face(item);
         FaceCell& cell = surface_.faces[face];
-        if (cell.stamp >= far - 1 || !cell.fat.meets(around)) return;
-        cell.stamp = far;
-        Vertex corners[3];
-        surface_.corners(face, corners);
-        const DVec3 p[3] = {surface_.place(corners[0]), surface_.place(corners[1]),
-                            surface_.place(corners[2])};
-        const DVec3 centre = (p[0] + p[1] + p[2]) / 3.0;
-        double radius = 0.0;
-        Box box;
-        for (const DVec3& corner : p) {
-            radius = std::max(radius, glm::distance(corner, centre));
-            box.take(corner);
-        }
-        const double distance = std::max(swept.distance(box), glm::distance(centre, middle) - radius - round);
+        if (cell.stamp >= far - 1) return;
+        const double distance = surface_.least_distance(face, swept, middle, round);
         if (distance >= reach_) return;
+        cell.stamp = far;
         found_.push_back(face);
         distances_.push_back(distance);
-        if (distance <= gap_) close_.push_back({box, {p[0], p[1], p[2]}});
+        if (distance > gap_) return;
+        Vertex corners[3];
+        surface_.corners(face, corners);
+        close_.push_back(
+            {surface_.box(face),
+             {surface_.place(corners[0]), surface_.place(corners[1]), surface_.place(corners[2])}});
     });
     leave_own_sheet();
     for (size_t i = 0; i < found_.size(); i++)
         if (surface_.faces[found_[i]].stamp == far) nearest = std::min(nearest, distances_[i]);
-    if (change.sudden)
-        for (const Face face : found_) {
-            Vertex corners[3];
-            surface_.corners(face, corners);
-            for (const Vertex corner : corners)
-                look_again(corner);
-        }
     if (obstacles_) nearest = std::min(nearest, obstacles_->distance(swept, reach_));
-    if (change.swept && !change.sudden)
-        surface_.cells[change.moved].safe_until = odometer_ + 0.5 * (nearest - most_ - gap_);
+    if (change.swept && !change.sudden) surface_.cells[change.moved].safe_until = until(nearest);
     if (!close_.empty() || obstacles_) return check_close(change);
     return Hold::kFree;
 }

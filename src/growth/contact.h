@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <vector>
 
-#include "growth/box_grid.h"
+#include "growth/face_grid.h"
 #include "growth/obstacles.h"
+#include "growth/outlook.h"
 #include "growth/surface.h"
 
 namespace treerec::growth {
@@ -35,22 +38,37 @@ class Contact {
     // All faces that there are.
     void list_all();
     // Call list() for a face that is new or has changed, unlist() before one goes or changes its corners.
-    void list(Face face);
+    void list(Face face) { list(face, surface_.normal_of(face)); }
+    void list(Face face, const DVec3& normal);  // unit, outwards
     void unlist(Face face);
 
     // At the start of a step, in which no vertex but apical ones moves by more than `most` metres.
     void advance(double most);
+    // Has all vertices that will move look around that must again; on several threads.
+    void look_ahead();
+    // Whether the vertex may go at once where it wants to in this step, whatever others do.
+    bool may_go(const Cell& cell) const {
+        return cell.safe_until >= odometer_ && cell.flat_until >= odometer_;
+    }
+    // After vertices that may were moved.
+    void follow();
     // Moves the vertex, if nothing is in its way all along.
     Hold move(Vertex vertex, const DVec3& to);
     // Whether the change leaves a surface without folds that meets nothing.
     Hold check(const Change& change);
-    // Of what changed its corners: its vertices must look around again.
-    void look_again(Vertex vertex) { surface_.cells[vertex].safe_until = 0.0; }
+    // Of what changed its corners: its vertices must look around again,
+    void look_again(Vertex vertex);
+    // and with them those around it.
+    void look_again_around(Vertex vertex);
 
   private:
     Hold check_near(const Change& change, const std::vector<DVec3>& normals);
     Hold check_far(const Change& change);
     Hold check_close(const Change& change);
+    void warn_others();
+    bool holds(Face face) const;
+    // Until when nothing meets that is so many metres apart and comes nearer from both sides.
+    double until(double distance) const { return odometer_ - most_ + 0.5 * (distance - gap_); }
     void leave_own_sheet();
     bool pair_meets(const Change& change, const std::array<Vertex, 3>& made, const DVec3& normal, Face face);
     bool made_meet(const Change& change, size_t a, size_t b, const std::vector<DVec3>& normals);
@@ -60,12 +78,15 @@ class Contact {
 
     Surface& surface_;
     const Obstacles* obstacles_;
-    BoxGrid grid_;
+    FaceGrid grid_;
     const double reach_;   // metres around a change within which others are told to look again
     const double margin_;  // of the listed boxes
     const double gap_;     // kept between surfaces
     double odometer_ = 0.0;
     double most_ = 0.0;
+    const Outlook outlook_;
+    std::vector<std::unique_ptr<Outlook::Scratch>> scratches_;  // that no thread has
+    std::mutex scratches_mutex_;
     uint32_t stamp_ = 0;
     Change moving_;
     std::vector<Face> near_, found_, sheet_;

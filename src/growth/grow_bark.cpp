@@ -6,6 +6,7 @@
 #include "growth/judge.h"
 #include "growth/run.h"
 #include "growth/texture.h"
+#include "growth/trace.h"
 #include "growth/tree_plan.h"
 
 namespace treerec {
@@ -103,6 +104,11 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
     result.steps = planned.plan.steps;
     Run run(planned.plan, features_of(tree, list, planned, recipe, result.remarks), recipe.longest,
             recipe.shortest);
+    std::function<void(const Surface&)> moved;
+    if (!options.trace.empty())
+        moved = [&](const Surface& surface) {
+            write_trace(options.trace, surface, run.step(), recipe.shortest);
+        };
     while (!run.done()) {
         if (progress) {
             progress->check();
@@ -110,7 +116,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
             const double done = static_cast<double>(run.step()) / planned.plan.steps;
             progress->update(done * done, "Growing bark");
         }
-        run.advance();
+        run.advance(moved);
         if (options.check_every > 0 && (run.done() || run.step() % options.check_every == 0))
             result.checks.push_back(judge(run, recipe.longest));
     }

@@ -21,13 +21,16 @@ struct GrowthStep {
     size_t above_longest = 0;                                                          // edges
     size_t apical = 0, parting = 0, link = 0, fold = 0, contact = 0, unexplained = 0;  // edges under T_m
     size_t intersections = 0;                                                          // pairs of faces
-    size_t frozen = 0;  // vertices that could not move
+    size_t frozen = 0;       // vertices that could not move,
+    size_t frozen_free = 0;  // and of them those away from other parts of the surface and obstacles
     bool closed = false, outward = false;
 };
 
 struct GrowOptions {
     // Every so many steps, and after the last, the surface is judged by CGAL; 0: never.
     int check_every = 0;
+    // A folder that each step's moves are written to (growth/trace.h); empty: none.
+    std::string trace{};
 };
 
 struct GrownTree {

@@ -30,6 +30,7 @@ GrowthStep judge(const Run& run, double longest) {
     step.chi =
         static_cast<long>(count.vertices) - static_cast<long>(count.edges) + static_cast<long>(count.faces);
     step.frozen = count.frozen;
+    step.frozen_free = count.folded;
     step.apical = count.short_edges.apical;
     step.parting = count.short_edges.parting;
     step.link = count.short_edges.link;

@@ -8,23 +8,29 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/parallel.h"
+
 namespace treerec::growth {
 
 namespace {
 
 constexpr double kNearer = 1.0 - 1e-9;  // equation 2: less than rounding is no coming nearer
 constexpr double kFlat = 0.94;          // cosine between faces (20 degrees) whose edge may be flipped
-constexpr double kBetter = 0.05;        // radians that a flip must win
-constexpr int kMostRounds = 20;         // of splits and merges in a step
-constexpr double kKeepsSide = 0.2;      // cosine between a face's normals before and after a merge
+constexpr double kBetter = 0.05;        // sine of what a flip must win at least
+constexpr size_t kGrain = 1024;
+constexpr int kMostRounds = 20;     // of splits and merges in a step
+constexpr double kKeepsSide = 0.2;  // cosine between a face's normals before and after a merge
 
-// At the corner opposite to the halfedge, radians.
-double corner_angle(const Surface& surface, Halfedge h) {
+// Sine and cosine of the angle at the corner opposite to the halfedge, each times `lengths`.
+struct Corner {
+    double sine, cosine, lengths;
+};
+
+Corner corner(const Surface& surface, Halfedge h) {
     const SurfaceMesh& mesh = surface.mesh;
     const DVec3 at = surface.place(mesh.target(mesh.next(h)));
-    const DVec3 a = normalized_or(surface.place(mesh.target(h)) - at, DVec3(0.0));
-    const DVec3 b = normalized_or(surface.place(mesh.source(h)) - at, DVec3(0.0));
-    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+    const DVec3 a = surface.place(mesh.target(h)) - at, b = surface.place(mesh.source(h)) - at;
+    return {glm::length(glm::cross(a, b)), glm::dot(a, b), std::sqrt(glm::dot(a, a) * glm::dot(b, b))};
 }
 
 }  // namespace
@@ -34,17 +40,49 @@ bool Optimiser::nearer_tip(int32_t a, int32_t b) const {
            plan_.branches[static_cast<size_t>(b)].first_step();
 }
 
-void Optimiser::look_again_around(Vertex vertex) {
-    contact_.look_again(vertex);
-    for (const Vertex other : CGAL::vertices_around_target(surface_.mesh.halfedge(vertex), surface_.mesh))
-        contact_.look_again(other);
+// Of a vertex whose edges are new or of another length.
+void Optimiser::changed_around(Vertex vertex) {
+    SurfaceMesh& mesh = surface_.mesh;
+    for (const Halfedge h : CGAL::halfedges_around_target(mesh.halfedge(vertex), mesh)) {
+        const Edge edge = mesh.edge(h);
+        const double length = surface_.length(edge);
+        if (length > longest_) long_.push_back(edge);
+        if (length < shortest_) short_.push_back(edge);
+    }
+    contact_.look_again_around(vertex);
 }
 
 void Optimiser::run() {
     merged_.clear();
+    scan();
     settle();
     flip_all();
     settle();
+}
+
+// Finds what is too long or short.
+void Optimiser::scan() {
+    const SurfaceMesh& mesh = surface_.mesh;
+    struct Found {
+        std::vector<Edge> too_long, too_short;
+    };
+    std::vector<Found> found((mesh.num_edges() + kGrain - 1) / kGrain);
+    parallel_for(mesh.num_edges(), kGrain, [&](size_t begin, size_t end) {
+        Found& own = found[begin / kGrain];
+        for (size_t i = begin; i < end; i++) {
+            const Edge edge(static_cast<uint32_t>(i));
+            if (mesh.is_removed(edge)) continue;
+            const double length = surface_.length(edge);
+            if (length > longest_) own.too_long.push_back(edge);
+            if (length < shortest_) own.too_short.push_back(edge);
+        }
+    });
+    long_.clear();
+    short_.clear();
+    for (const Found& some : found) {
+        long_.insert(long_.end(), some.too_long.begin(), some.too_long.end());
+        short_.insert(short_.end(), some.too_short.begin(), some.too_short.end());
+    }
 }
 
 // Until nothing is too long and nothing can be merged any more; then the last round's counts are final.
@@ -57,17 +95,19 @@ void Optimiser::settle() {
 }
 
 void Optimiser::split_long() {
-    std::vector<std::tuple<double, uint32_t, Edge>> queue;
-    for (bool more = true; more;) {
+    std::vector<std::pair<double, Edge>> queue;
+    while (!long_.empty()) {
         queue.clear();
-        for (const Edge edge : surface_.mesh.edges()) {
+        for (const Edge edge : long_) {
+            if (surface_.mesh.is_removed(edge)) continue;
             const double length = surface_.length(edge);
-            if (length > longest_) queue.emplace_back(-length, static_cast<uint32_t>(edge), edge);
+            if (length > longest_) queue.emplace_back(-length, edge);
         }
         std::sort(queue.begin(), queue.end());
-        for (const auto& [length, index, edge] : queue)
+        queue.erase(std::unique(queue.begin(), queue.end()), queue.end());
+        long_.clear();
+        for (const auto& [length, edge] : queue)
             split(edge);
-        more = !queue.empty();
     }
 }
 
@@ -111,16 +151,19 @@ void Optimiser::split(Edge edge) {
     surface_.cells[v] = cell;
     for (const Face face : CGAL::faces_around_target(mesh.halfedge(v), mesh))
         contact_.list(face);
-    look_again_around(v);
+    changed_around(v);
 }
 
 size_t Optimiser::merge_short() {
     SurfaceMesh& mesh = surface_.mesh;
     short_edges_ = {};
     std::vector<std::tuple<double, uint32_t, uint32_t, Edge>> queue;
-    for (const Edge edge : mesh.edges()) {
+    std::sort(short_.begin(), short_.end());
+    short_.erase(std::unique(short_.begin(), short_.end()), short_.end());
+    std::erase_if(short_,
+                  [&](Edge edge) { return mesh.is_removed(edge) || surface_.length(edge) >= shortest_; });
+    for (const Edge edge : short_) {
         const double length = surface_.length(edge);
-        if (length >= shortest_) continue;
         const uint32_t a = surface_.cells[mesh.vertex(edge, 0)].id,
                        b = surface_.cells[mesh.vertex(edge, 1)].id;
         queue.emplace_back(length, std::min(a, b), std::max(a, b), edge);
@@ -214,16 +257,35 @@ Hold Optimiser::try_merge(Edge edge) {
     surface_.links[mesh.edge(mesh.halfedge(kept, other_opposite))] = other_link;
     for (const Face face : CGAL::faces_around_target(mesh.halfedge(kept), mesh))
         contact_.list(face);
-    look_again_around(kept);
+    changed_around(kept);
     merged_.emplace_back(kept == j ? i : j, kept);
     return Hold::kFree;
 }
 
 void Optimiser::flip_all() {
-    SurfaceMesh& mesh = surface_.mesh;
-    std::vector<Edge> edges(mesh.edges().begin(), mesh.edges().end());
-    for (const Edge edge : edges)
-        if (!surface_.links[edge]) try_flip(edge);
+    const SurfaceMesh& mesh = surface_.mesh;
+    std::vector<std::vector<Edge>> found((mesh.num_edges() + kGrain - 1) / kGrain);
+    parallel_for(mesh.num_edges(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            const Edge edge(static_cast<uint32_t>(i));
+            if (!mesh.is_removed(edge) && may_flip(edge)) found[begin / kGrain].push_back(edge);
+        }
+    });
+    for (const std::vector<Edge>& edges : found)
+        for (const Edge edge : edges)
+            if (may_flip(edge)) try_flip(edge);
+}
+
+// Where the angles opposite to it are more than half a round together, and it lies in the plane.
+bool Optimiser::may_flip(Edge edge) const {
+    const SurfaceMesh& mesh = surface_.mesh;
+    if (surface_.links[edge]) return false;
+    const Halfedge h = mesh.halfedge(edge), o = mesh.opposite(h);
+    const Corner a = corner(surface_, h), b = corner(surface_, o);
+    if (a.cosine >= 0.0 && b.cosine >= 0.0) return false;
+    // The sine of the sum.
+    if (a.sine * b.cosine + a.cosine * b.sine >= -kBetter * a.lengths * b.lengths) return false;
+    return glm::dot(surface_.faces[mesh.face(h)].normal, surface_.faces[mesh.face(o)].normal) >= kFlat;
 }
 
 // Towards Delaunay, where it changes no shape.
@@ -231,8 +293,6 @@ bool Optimiser::try_flip(Edge edge) {
     SurfaceMesh& mesh = surface_.mesh;
     const Halfedge h = mesh.halfedge(edge), o = mesh.opposite(h);
     const Face f = mesh.face(h), g = mesh.face(o);
-    if (glm::dot(surface_.faces[f].normal, surface_.faces[g].normal) < kFlat) return false;
-    if (corner_angle(surface_, h) + corner_angle(surface_, o) <= kPi + kBetter) return false;
     const Vertex i = mesh.source(h), j = mesh.target(h);
     const Vertex x = mesh.target(mesh.next(h)), y = mesh.target(mesh.next(o));
     const double length = glm::distance(surface_.place(x), surface_.place(y));

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "growth/contact.h"
 #include "growth/plan.h"
@@ -32,6 +34,7 @@ class Optimiser {
     const std::vector<std::pair<Vertex, Vertex>>& merged() const { return merged_; }
 
   private:
+    void scan();
     void split_long();
     void split(Edge edge);
     void settle();
@@ -40,7 +43,8 @@ class Optimiser {
     void flip_all();
     bool try_flip(Edge edge);
     bool nearer_tip(int32_t a, int32_t b) const;
-    void look_again_around(Vertex vertex);
+    bool may_flip(Edge edge) const;
+    void changed_around(Vertex vertex);
 
     Surface& surface_;
     Contact& contact_;
@@ -48,6 +52,7 @@ class Optimiser {
     const double longest_, shortest_;
     ShortEdges short_edges_;
     Change change_;
+    std::vector<Edge> long_, short_;  // of which some may not be so any more
     std::vector<std::pair<Vertex, Vertex>> merged_;
 };
 

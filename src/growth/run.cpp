@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/parallel.h"
 #include "growth/velocity.h"
 
 namespace treerec::growth {
@@ -13,7 +14,8 @@ namespace {
 
 constexpr int kSides = 6;          // of the seed
 constexpr double kSeedEdge = 0.7;  // of the longest edge
-constexpr double kNear = 3.0;      // longest edges from the tip within which buds and features are set
+constexpr size_t kGrain = 512;
+constexpr double kNear = 3.0;  // longest edges from the tip within which buds and features are set
 
 }  // namespace
 
@@ -67,7 +69,7 @@ void Run::plant() {
     contact_.list_all();
 }
 
-void Run::advance() {
+void Run::advance(const std::function<void(const Surface&)>& moved) {
     sprout();
     choose_buds();
     place_features();
@@ -78,6 +80,7 @@ void Run::advance() {
     }
     contact_.advance(set_velocities(surface_, plan_, features_, step_));
     move_all();
+    if (moved) moved(surface_);
     optimiser_.run();
     follow_merges();
     step_++;
@@ -87,18 +90,40 @@ void Run::advance() {
     count_.short_edges = optimiser_.short_edges();
 }
 
-// Equation 1, in pieces of at most T_m / 4.
+// Equation 1. Most have nothing in their way and go at once; the others in pieces of at most T_m / 4, each of
+// which must be free.
 void Run::move_all() {
     const double piece = shortest_ / 4.0;
     count_.frozen = count_.folded = 0;
-    std::vector<Vertex> order(surface_.mesh.vertices().begin(), surface_.mesh.vertices().end());
+    contact_.look_ahead();
+    SurfaceMesh& mesh = surface_.mesh;
+    std::vector<std::vector<Vertex>> rest((mesh.num_vertices() + kGrain - 1) / kGrain);
+    parallel_for(mesh.num_vertices(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            const Vertex v(static_cast<uint32_t>(i));
+            if (mesh.is_removed(v)) continue;
+            Cell& cell = surface_.cells[v];
+            const double length = glm::length(cell.velocity);
+            if (!(length > 0.0)) continue;
+            if (cell.tissue == Tissue::kApical || length > piece || !contact_.may_go(cell)) {
+                rest[begin / kGrain].push_back(v);
+                continue;
+            }
+            mesh.point(v) += cell.velocity;
+            if (cell.tissue == Tissue::kCambium) cell.excess += std::max(length - cell.speed, 0.0);
+        }
+    });
+    contact_.follow();
+    std::vector<Vertex> order;
+    for (const std::vector<Vertex>& some : rest)
+        order.insert(order.end(), some.begin(), some.end());
     for (int part = 0; !order.empty(); part++) {
         std::vector<Vertex> later;
         for (const Vertex v : order) {
             Cell& cell = surface_.cells[v];
             const double length = glm::length(cell.velocity);
             if (!(length > 0.0)) continue;
-            const int parts = std::max(static_cast<int>(std::ceil(length / piece)), 1);
+            const int parts = pieces_of(cell, shortest_);
             cell.hold = contact_.move(v, surface_.place(v) + cell.velocity / static_cast<double>(parts));
             if (cell.hold != Hold::kFree) {
                 count_.frozen++;

@@ -1,6 +1,7 @@
 // The simulation: a seed grows into a tree's surface, step by step. Internal to growth/.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,8 +30,8 @@ class Run {
 
     int step() const { return step_; }
     bool done() const { return step_ >= plan_.steps; }
-    // From step() to step() + 1.
-    void advance();
+    // From step() to step() + 1. moved: called when all have moved, before the triangles are made even.
+    void advance(const std::function<void(const Surface&)>& moved = {});
     const Surface& surface() const { return surface_; }
     const std::vector<Feature>& features() const { return features_; }
     const StepCount& count() const { return count_; }

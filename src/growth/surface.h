@@ -3,6 +3,8 @@
 
 #include <CGAL/Surface_mesh.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -27,20 +29,26 @@ enum class Hold : uint8_t {
 
 // What is known of a vertex beside its place. Metres and steps.
 struct Cell {
-    DVec3 previous{0.0};      // where it was a step ago (equation 2)
-    DVec3 velocity{0.0};      // of this step (equation 1)
-    double along = 0.0;       // of its branch's axis
-    double speed = 0.0;       // S_c of this step
-    double excess = 0.0;      // what it has grown more than plain cambium, metres
-    double safe_until = 0.0;  // of Contact's odometer: until then nothing far can be in its way
-    uint32_t id = 0;          // never given out again
-    int32_t owner = 0;        // branch
-    int32_t bud = -1;         // the branch that sprouts here, while it is dormant
-    int32_t hollow = -1;      // the feature that makes it decay
+    DVec3 previous{0.0};  // where it was a step ago (equation 2)
+    DVec3 velocity{0.0};  // of this step (equation 1)
+    double along = 0.0;   // of its branch's axis
+    double speed = 0.0;   // S_c of this step
+    double excess = 0.0;  // what it has grown more than plain cambium, metres
+    // Of Contact's odometer: until then nothing far can be in its way, and nothing around it can fold over.
+    double safe_until = -1.0, flat_until = -1.0;
+    uint32_t id = 0;      // never given out again
+    int32_t owner = 0;    // branch
+    int32_t bud = -1;     // the branch that sprouts here, while it is dormant
+    int32_t hollow = -1;  // the feature that makes it decay
     Tissue tissue = Tissue::kCambium;
     Hold hold = Hold::kFree;
     bool centre = false;  // spheres of burls ride on it
 };
+
+// In how many pieces of at most T_m / 4 (`shortest`: T_m, metres) it goes in a step.
+inline int pieces_of(const Cell& cell, double shortest) {
+    return std::max(static_cast<int>(std::ceil(4.0 * glm::length(cell.velocity) / shortest)), 1);
+}
 
 // Axis-aligned, metres.
 struct Box {
@@ -70,8 +78,9 @@ struct Box {
 };
 
 struct FaceCell {
-    DVec3 normal{0.0};  // unit, outwards
-    Box fat;            // the cells that it is listed in
+    DVec3 normal{0.0};   // unit, outwards
+    DVec3 middle{0.0};   // of the ball that it is listed by,
+    double round = 0.0;  // and its radius, metres
     uint32_t stamp = 0;
     bool listed = false;
 };
@@ -105,6 +114,22 @@ class Surface {
         for (const Vertex corner : v)
             box.take(place(corner));
         return box;
+    }
+    // Metres from a face to what lies both in a box and in a ball; never more than it is. Boxes of slanted
+    // faces side by side overlap, where balls about them don't.
+    double least_distance(Face f, const Box& box, const DVec3& middle, double round) const {
+        Vertex v[3];
+        corners(f, v);
+        const DVec3 p[3] = {place(v[0]), place(v[1]), place(v[2])};
+        const DVec3 centre = (p[0] + p[1] + p[2]) / 3.0;
+        double radius = 0.0;
+        Box own;
+        for (const DVec3& corner : p) {
+            const DVec3 off = corner - centre;
+            radius = std::max(radius, glm::dot(off, off));
+            own.take(corner);
+        }
+        return std::max(box.distance(own), glm::distance(centre, middle) - std::sqrt(radius) - round);
     }
     // Unit; zero for a face without area.
     DVec3 normal_of(Face f) const {

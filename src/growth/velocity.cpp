@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/parallel.h"
+
 namespace treerec::growth {
 
 namespace {
@@ -47,26 +49,34 @@ double burl_growth(const BurlSphere& sphere, double distance) {
 
 double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
                       int step) {
-    double most = 0.0;
-    for (const Vertex v : surface.mesh.vertices()) {
-        Cell& cell = surface.cells[v];
-        const DVec3 place = surface.place(v);
-        if (cell.tissue == Tissue::kApical) {  // equation 3
-            const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
-            const AxisPlace tip = tip_at(branch, step + 1.0);
-            cell.along = tip.along;
-            const DVec3 way = tip.position - place;
-            // One that the bark has overtaken waits until its axis has come out of it.
-            const bool ahead = glm::dot(way, tip.direction) > 0.0;
-            cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
-            continue;
+    constexpr size_t kGrain = 512;
+    const size_t count = surface.mesh.num_vertices();
+    std::vector<double> fastest((count + kGrain - 1) / kGrain, 0.0);
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+        double most = 0.0;
+        for (size_t i = begin; i < end; i++) {
+            const Vertex v(static_cast<uint32_t>(i));
+            if (surface.mesh.is_removed(v)) continue;
+            Cell& cell = surface.cells[v];
+            const DVec3 place = surface.place(v);
+            if (cell.tissue == Tissue::kApical) {  // equation 3
+                const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
+                const AxisPlace tip = tip_at(branch, step + 1.0);
+                cell.along = tip.along;
+                const DVec3 way = tip.position - place;
+                // One that the bark has overtaken waits until its axis has come out of it.
+                const bool ahead = glm::dot(way, tip.direction) > 0.0;
+                cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
+                continue;
+            }
+            cell.speed = cambium_speed(cell, place, plan, step);
+            const double extra = extra_growth(surface, features, place) * cell.speed;
+            cell.velocity = (cell.speed + extra) * vertex_normal(surface, v);  // equations 4 and 6
+            most = std::max(most, cell.speed + extra);
         }
-        cell.speed = cambium_speed(cell, place, plan, step);
-        const double extra = extra_growth(surface, features, place) * cell.speed;
-        cell.velocity = (cell.speed + extra) * vertex_normal(surface, v);  // equations 4 and 6
-        most = std::max(most, cell.speed + extra);
-    }
-    return most;
+        fastest[begin / kGrain] = most;
+    });
+    return fastest.empty() ? 0.0 : *std::max_element(fastest.begin(), fastest.end());
 }
 
 }  // namespace treerec::growth

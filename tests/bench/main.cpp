@@ -30,6 +30,8 @@ const char* const kUsage =
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --sketch                     strokes to trees: time, and crowns against their outlines\n"
+    "       bench --growth                     bark of papers/001's sizes: seconds, and us per vertex and "
+    "step\n"
     "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
     "scans\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
@@ -75,7 +77,8 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
-            word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--help") {
+            word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
+            word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -136,6 +139,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--sketch") {
         bench_sketches(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--growth") {
+        bench_growth(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--limbs") {

@@ -1,0 +1,47 @@
+// How long nothing can come into a vertex's way, by how things lie now. Internal to growth/.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "growth/face_grid.h"
+#include "growth/obstacles.h"
+#include "growth/surface.h"
+
+namespace treerec::growth {
+
+// Cosine to a patch's mean normal from which on it can't fold over.
+inline constexpr double kGraph = 0.2;
+
+// Changes nothing, so that several threads may ask at once, each with a Scratch of its own.
+class Outlook {
+  public:
+    struct Scratch {
+        std::vector<uint32_t> stamps;  // by face
+        uint32_t stamp = 0;
+        std::vector<Face> ring, near, found, sheet;
+        std::vector<double> distances;  // metres, of those found
+    };
+
+    // reach: metres, what lies farther is not looked at; least: twice the area of the least face, square
+    // metres. obstacles may be null.
+    Outlook(const Surface& surface, const FaceGrid& grid, const Obstacles* obstacles, double reach,
+            double least)
+        : surface_(surface), grid_(grid), obstacles_(obstacles), reach_(reach), least_(least) {}
+
+    // Metres that all vertices may move, each its own way, until the faces around this one, and those that
+    // touch them, may fold over; negative where they may now.
+    double flat(Vertex vertex, Scratch& scratch) const;
+    // Metres to what is nearest to the faces around it without being their own sheet; at most reach.
+    double clear(Vertex vertex, Scratch& scratch) const;
+
+  private:
+    DVec3 gather(Vertex vertex, Scratch& scratch) const;
+
+    const Surface& surface_;
+    const FaceGrid& grid_;
+    const Obstacles* obstacles_;
+    const double reach_, least_;
+};
+
+}  // namespace treerec::growth
