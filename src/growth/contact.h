@@ -42,6 +42,8 @@ class Contact {
     void advance(double most);
     // Moves the vertex, if nothing is in its way all along.
     Hold move(Vertex vertex, const DVec3& to);
+    // Which obstacle was in the way when it was last told so.
+    int32_t touched() const { return touched_; }
     // Whether the change leaves a surface without folds that meets nothing.
     Hold check(const Change& change);
     // Of what changed its corners: its vertices must look around again.
@@ -51,6 +53,7 @@ class Contact {
     Hold check_near(const Change& change, const std::vector<DVec3>& normals);
     Hold check_far(const Change& change);
     Hold check_close(const Change& change);
+    bool meets_obstacle(const DVec3 (&triangle)[3]);
     void leave_own_sheet();
     bool pair_meets(const Change& change, const std::array<Vertex, 3>& made, const DVec3& normal, Face face);
     bool made_meet(const Change& change, size_t a, size_t b, const std::vector<DVec3>& normals);
@@ -67,6 +70,7 @@ class Contact {
     double odometer_ = 0.0;
     double most_ = 0.0;
     uint32_t stamp_ = 0;
+    int32_t touched_ = -1;
     Change moving_;
     std::vector<Face> near_, found_, sheet_;
     struct Close {
