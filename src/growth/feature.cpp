@@ -24,8 +24,8 @@ bool Region::holds(const DVec3& point) const {
     for (const std::array<DVec3, 3>& triangle : triangles_) {
         const DVec3 a = triangle[0] - point, b = triangle[1] - point, c = triangle[2] - point;
         const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
-        angle += portable::atan2(glm::dot(a, glm::cross(b, c)), x * y * z + glm::dot(a, b) * z +
-                                                                    glm::dot(b, c) * x + glm::dot(c, a) * y);
+        angle += portable::atan2(glm::dot(a, glm::cross(b, c)),
+                                 x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
     }
     return std::abs(angle) > kPi;  // 2 pi inside, 0 outside
 }

@@ -26,9 +26,9 @@ double along_of(const Tree& tree, const GrowthBranch& branch, NodeId node) {
 }
 
 struct Spot {
-    int32_t branch = 0;    // of the plan
-    AxisPlace axis;        // there
-    DVec3 out{0.0};        // unit, from the axis
+    int32_t branch = 0;  // of the plan
+    AxisPlace axis;      // there
+    DVec3 out{0.0};      // unit, from the axis
 };
 
 // what: "A burl", for the sentence that tells why there is none.
@@ -49,11 +49,10 @@ std::optional<Spot> find_spot(const Tree& tree, const BranchList& list, const Tr
     const double from = place.node == tree.root() ? 0.0 : along_of(tree, grown, place.node);
     const double along = from + place.along;
     if (along < grown.axis.front().along || along > grown.axis.back().along) {
-        remarks.push_back(std::string(what) + " lies " + number_text(along) +
-                          " m along its branch, which is grown from " +
-                          number_text(std::round(100.0 * grown.axis.front().along) / 100.0) + " to " +
-                          number_text(std::round(100.0 * grown.axis.back().along) / 100.0) +
-                          " m: it was left out.");
+        remarks.push_back(
+            std::string(what) + " lies " + number_text(along) + " m along its branch, which is grown from " +
+            number_text(std::round(100.0 * grown.axis.front().along) / 100.0) + " to " +
+            number_text(std::round(100.0 * grown.axis.back().along) / 100.0) + " m: it was left out.");
         return std::nullopt;
     }
     spot.axis = place_at(grown, along);
@@ -99,8 +98,7 @@ Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
     // Unless told: posts stand along the branch, wires run across it, sheets and boxes face it, rings go
     // around it.
     const bool along = wanted.shape == Shape::kPost || wanted.shape == Shape::kTorus;
-    const DVec3 standard =
-        along ? spot.axis.direction : wanted.shape == Shape::kWire ? across : spot.out;
+    const DVec3 standard = along ? spot.axis.direction : wanted.shape == Shape::kWire ? across : spot.out;
     const DVec3 z = wanted.direction ? *wanted.direction : standard;
     DVec3 y = spot.axis.direction - z * glm::dot(spot.axis.direction, z);
     y = normalized_or(y, any_perpendicular(z));
@@ -128,8 +126,8 @@ std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const
     std::vector<Feature> features;
     for (const GrowthFeature& wanted : recipe.features) {
         const bool hollow = wanted.kind == GrowthFeature::Kind::kHollow;
-        const std::optional<Spot> spot = find_spot(tree, list, planned, recipe, wanted,
-                                                   hollow ? "A hollow" : "A burl", remarks);
+        const std::optional<Spot> spot =
+            find_spot(tree, list, planned, recipe, wanted, hollow ? "A hollow" : "A burl", remarks);
         if (!spot) continue;
         Feature feature;
         feature.kind = hollow ? Feature::Kind::kHollow : Feature::Kind::kBurl;
@@ -172,8 +170,9 @@ void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& pla
     }
     const DVec3& foot = planned.plan.branches.front().axis.front().position;
     if (obstacles.distance(Box{foot, foot}, kSeed * recipe.longest) < kSeed * recipe.longest)
-        throw Error("An obstacle stands where the trunk begins, below the ground: nothing can grow there. "
-                    "Move it aside.");
+        throw Error(
+            "An obstacle stands where the trunk begins, below the ground: nothing can grow there. "
+            "Move it aside.");
 }
 
 }  // namespace treerec::growth

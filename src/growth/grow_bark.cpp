@@ -74,9 +74,9 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
     }
     for (const Feature& feature : run.features())
         if (!feature.placed)
-            result.remarks.push_back(std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
-                                     " found no bark " + number_text(feature.along) +
-                                     " m along its branch and was left out.");
+            result.remarks.push_back(
+                std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
+                " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
     result.bark = bark_of(run.surface(), list, planned);
     return result;
 }

@@ -7,6 +7,13 @@
 
 namespace treerec::growth {
 
+namespace {
+
+// Cosine to the normal: what lies farther behind the bark is grown over, and turns it no more.
+constexpr double kBehind = -0.7;
+
+}  // namespace
+
 void Lips::find(const Surface& surface, const std::vector<Feature>& features, const Obstacles* obstacles) {
     sources_.clear();
     grid_.reset();
@@ -24,8 +31,8 @@ void Lips::find(const Surface& surface, const std::vector<Feature>& features, co
                 }
             if (rim) sources_.push_back({surface.place(v), &lip, Kind::kWood});
         } else if (cell.touched >= 0 && cell.tissue == Tissue::kCambium) {
-            sources_.push_back({surface.place(v), &obstacles->lips()[static_cast<size_t>(cell.touched)],
-                                Kind::kContact});
+            sources_.push_back(
+                {surface.place(v), &obstacles->lips()[static_cast<size_t>(cell.touched)], Kind::kContact});
         }
     }
     for (const Source& source : sources_)
@@ -36,7 +43,7 @@ void Lips::find(const Surface& surface, const std::vector<Feature>& features, co
         grid_->add(static_cast<uint32_t>(i), Box{sources_[i].place, sources_[i].place});
 }
 
-Lips::Growth Lips::at(const DVec3& place) const {
+Lips::Growth Lips::at(const DVec3& place, const DVec3& normal) const {
     Growth growth;
     if (!grid_) return growth;
     // Of wood and of contacts: equation 9's and 10's sums, and the nearest's lip.
@@ -51,9 +58,9 @@ Lips::Growth Lips::at(const DVec3& place) const {
         const int which = source.kind == Kind::kContact ? 1 : 0;
         const Lip& lip = *source.lip;
         if (source.kind != Kind::kWood)
-            extra[which] =
-                std::max(extra[which], burl_growth(lip.radius, lip.inner, lip.growth, distance));
+            extra[which] = std::max(extra[which], burl_growth(lip.radius, lip.inner, lip.growth, distance));
         if (source.kind == Kind::kRim || distance > lip.band || !(distance > 0.0)) return;
+        if (glm::dot(way, normal) < kBehind * distance) return;
         sum[which] += way / distance;
         within[which] = true;
         if (distance >= nearest[which]) return;

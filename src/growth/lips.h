@@ -20,8 +20,8 @@ class Lips {
         double extra = 0.0;  // to equation 6's sum
         DVec3 wrap{0.0};     // A W + B W of equations 9 and 10
     };
-    // Of cambium at a place.
-    Growth at(const DVec3& place) const;
+    // Of cambium at a place, whose normal is unit or zero.
+    Growth at(const DVec3& place, const DVec3& normal) const;
 
   private:
     enum class Kind : uint8_t { kWood, kRim, kContact };  // of wood, of cambium beside it, of an obstacle

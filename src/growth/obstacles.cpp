@@ -15,8 +15,15 @@ void Obstacles::add(const DVec3& a, const DVec3& b, const DVec3& c) {
     const double ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
     const double longest = std::max({ab, bc, ca});
     if (longest > most_) {
-        const DVec3 &p = longest == ab ? a : longest == bc ? b : c, &q = longest == ab ? b : longest == bc ? c : a,
-                    &r = longest == ab ? c : longest == bc ? a : b;
+        const DVec3 &p = longest == ab   ? a
+                         : longest == bc ? b
+                                         : c,
+                    &q = longest == ab   ? b
+                         : longest == bc ? c
+                                         : a,
+                    &r = longest == ab   ? c
+                         : longest == bc ? a
+                                         : b;
         const DVec3 middle = 0.5 * (p + q);
         add(p, middle, r);
         add(middle, q, r);

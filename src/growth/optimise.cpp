@@ -137,8 +137,7 @@ void Optimiser::twist(Vertex vertex, Vertex apical, double since) {
     if (plan_.twist == 0.0) return;
     const Cell& tip = surface_.cells[apical];
     const double angle = plan_.twist * std::clamp(tip.along - since, 0.0, kMostAdvance * longest_);
-    const DVec3 axis =
-        place_at(plan_.branches[static_cast<size_t>(tip.owner)], tip.along).direction;
+    const DVec3 axis = place_at(plan_.branches[static_cast<size_t>(tip.owner)], tip.along).direction;
     const DVec3 off = surface_.place(vertex) - surface_.place(apical);
     const DVec3 high = axis * glm::dot(off, axis), flat = off - high;
     const SineCosine turn = portable_sine_cosine(angle);

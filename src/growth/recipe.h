@@ -43,19 +43,19 @@ struct GrowthFeature : GrowthPlace {
     // Of a burl along the grain, metres: how long, and from sphere to sphere; 0: one sphere.
     double length = 0.0, every = 0.0;
     // Of a hollow:
-    double until = 1.0;               // share of that age up to which bark decays there
-    double width = 0.0, height = 0.0; // metres, of its mouth
-    double depth = 0.0;               // metres below the bark of the end
-    double wall = 0.0;                // metres of sound wood that are left towards other sides
-    std::string region;               // a mesh in which bark decays, a file; else width and height tell
+    double until = 1.0;                // share of that age up to which bark decays there
+    double width = 0.0, height = 0.0;  // metres, of its mouth
+    double depth = 0.0;                // metres below the bark of the end
+    double wall = 0.0;                 // metres of sound wood that are left towards other sides
+    std::string region;                // a mesh in which bark decays, a file; else width and height tell
     GrowthLip lip;
 };
 
 struct GrowthObstacle : GrowthPlace {
     enum class Shape : uint8_t { kPost, kBox, kSheet, kWire, kTorus, kMesh };
     Shape shape = Shape::kPost;
-    double gap = 0.0;         // metres from the bark of the end to its middle; under 0: inside
-    std::optional<DVec3> at;  // instead: where its middle is, metres, tree space
+    double gap = 0.0;                // metres from the bark of the end to its middle; under 0: inside
+    std::optional<DVec3> at;         // instead: where its middle is, metres, tree space
     std::optional<DVec3> direction;  // unit, tree space: along a post or wire, across a sheet, a ring's axis
     double length = 0.0, radius = 0.0, width = 0.0, thickness = 0.0;  // metres
     std::string file;                                                 // of a mesh

@@ -120,10 +120,10 @@ std::vector<Parameter> with_place(double along, std::vector<Parameter> rest) {
     return all;
 }
 
-void add_lip(std::vector<Parameter>& parameters, double swell, double growth, double wrap) {
-    parameters.push_back(length_parameter("swell", swell, 0.0, kLargest,
-                                          "beside it in which bark grows faster")
-                             .slider(0.0, 0.5));
+void add_lip(std::vector<Parameter>& parameters, double swell, double growth, double wrap, double band) {
+    parameters.push_back(
+        length_parameter("swell", swell, 0.0, kLargest, "beside it in which bark grows faster")
+            .slider(0.0, 0.5));
     parameters.push_back(
         length_parameter("inner", NAN, 0.0, kLargest, "beside it in which all grows alike; half of swell")
             .optional());
@@ -132,43 +132,41 @@ void add_lip(std::vector<Parameter>& parameters, double swell, double growth, do
     parameters.push_back(
         number_parameter("wrap", wrap, 0.0, 20.0, "how much bark beside it turns over it").slider(0.0, 2.0));
     parameters.push_back(
-        length_parameter("band", 0.06, 0.0, kLargest, "beside it in which bark turns").slider(0.0, 0.3));
+        length_parameter("band", band, 0.0, kLargest, "beside it in which bark turns").slider(0.0, 0.3));
 }
 
 std::vector<Parameter> hollow_parameters() {
     std::vector<Parameter> parameters = with_place(
-        1.0, {length_parameter("width", 0.15, 0.001, kLargest, "of its mouth, across the branch"),
-              length_parameter("height", 0.3, 0.001, kLargest, "of its mouth, along the branch"),
-              length_parameter("depth", 0.15, 0.0, kLargest,
-                               "of its ground below the bark; 0: a wound that heals over"),
-              length_parameter("wall", 0.03, 0.0, kLargest, "of sound wood that is left on other sides"),
-              number_parameter("from", 0.4, 0.0, 1.0,
-                               "share of the age of the wood there after which it begins"),
-              number_parameter("until", 0.85, 0.0, 1.0,
-                               "share of that age after which no more bark decays"),
-              text_parameter("region", {"hole.obj"},
-                             "a closed mesh, OBJ file, in which bark decays instead of width and height")
-                  .optional()});
-    add_lip(parameters, 0.1, 0.3, 0.4);
+        1.0,
+        {length_parameter("width", 0.15, 0.001, kLargest, "of its mouth, across the branch"),
+         length_parameter("height", 0.3, 0.001, kLargest, "of its mouth, along the branch"),
+         length_parameter("depth", 0.15, 0.0, kLargest,
+                          "of its ground below the bark; 0: a wound that heals over"),
+         length_parameter("wall", 0.03, 0.0, kLargest, "of sound wood that is left on other sides"),
+         number_parameter("from", 0.4, 0.0, 1.0, "share of the age of the wood there after which it begins"),
+         number_parameter("until", 0.85, 0.0, 1.0, "share of that age after which no more bark decays"),
+         text_parameter("region", {"hole.obj"},
+                        "a closed mesh, OBJ file, in which bark decays instead of width and height")
+             .optional()});
+    add_lip(parameters, 0.1, 0.3, 0.4, 0.06);
     return parameters;
 }
 
 std::vector<Parameter> obstacle_parameters() {
     std::vector<Parameter> parameters = with_place(
-        1.0, {word_parameter("shape", {"post", "box", "sheet", "wire", "ring", "mesh"}, "what it is"),
-              length_parameter("gap", 0.0, -kFarthest, kFarthest,
-                               "from the bark of the end to its middle; under 0: inside"),
-              point_parameter("middle", "where its middle is instead; moves a mesh").optional(),
-              direction_parameter("direction",
-                                  "along a post or wire, across a sheet or box, or of a ring's axis")
-                  .optional(),
-              length_parameter("length", 2.0, 0.001, kFarthest, "of a post, wire, box or sheet"),
-              length_parameter("radius", 0.05, 0.0005, kFarthest, "of a post or ring"),
-              length_parameter("width", 0.1, 0.001, kFarthest, "of a box or sheet"),
-              length_parameter("thickness", 0.004, 0.0005, kFarthest, "of a box, wire or ring"),
-              text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres")
-                  .optional()});
-    add_lip(parameters, 0.1, 0.5, 1.0);
+        1.0,
+        {word_parameter("shape", {"post", "box", "sheet", "wire", "ring", "mesh"}, "what it is"),
+         length_parameter("gap", 0.0, -kFarthest, kFarthest,
+                          "from the bark of the end to its middle; under 0: inside"),
+         point_parameter("middle", "where its middle is instead; moves a mesh").optional(),
+         direction_parameter("direction", "along a post or wire, across a sheet or box, or of a ring's axis")
+             .optional(),
+         length_parameter("length", 2.0, 0.001, kFarthest, "of a post, wire, box or sheet"),
+         length_parameter("radius", 0.05, 0.0005, kFarthest, "of a post or ring"),
+         length_parameter("width", 0.1, 0.001, kFarthest, "of a box or sheet"),
+         length_parameter("thickness", 0.004, 0.0005, kFarthest, "of a box, wire or ring"),
+         text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres").optional()});
+    add_lip(parameters, 0.06, 0.4, 0.8, 0.03);
     return parameters;
 }
 
@@ -193,21 +191,21 @@ const std::vector<GrowthCommand>& growth_commands() {
          take_grain},
         {"burl", "A lump where cambium grows faster.",
          with_place(
-             1.3, {length_parameter("radius", 0.3, 0.001, kLargest,
-                                    "around its middle in which cambium grows faster")
-                       .slider(0.02, 1.0),
-                   length_parameter("inner", NAN, 0.0, kLargest,
-                                    "around its middle in which all grows alike; half of radius")
-                       .optional(),
-                   number_parameter("growth", 0.5, 0.0, 20.0, "how much faster, over the usual")
-                       .slider(0.0, 2.0),
-                   number_parameter("from", 0.0, 0.0, 1.0,
-                                    "share of the age of the wood there after which it begins"),
-                   switch_parameter("grain", false, "a ridge along the grain instead of a lump"),
-                   length_parameter("length", 1.0, 0.001, kFarthest, "of such a ridge"),
-                   length_parameter("every", NAN, 0.001, kLargest,
-                                    "from one lump of the ridge to the next; half of radius")
-                       .optional()}),
+             1.3,
+             {length_parameter("radius", 0.3, 0.001, kLargest,
+                               "around its middle in which cambium grows faster")
+                  .slider(0.02, 1.0),
+              length_parameter("inner", NAN, 0.0, kLargest,
+                               "around its middle in which all grows alike; half of radius")
+                  .optional(),
+              number_parameter("growth", 0.5, 0.0, 20.0, "how much faster, over the usual").slider(0.0, 2.0),
+              number_parameter("from", 0.0, 0.0, 1.0,
+                               "share of the age of the wood there after which it begins"),
+              switch_parameter("grain", false, "a ridge along the grain instead of a lump"),
+              length_parameter("length", 1.0, 0.001, kFarthest, "of such a ridge"),
+              length_parameter("every", NAN, 0.001, kLargest,
+                               "from one lump of the ridge to the next; half of radius")
+                  .optional()}),
          take_burl},
         {"hollow", "Bark that dies and wood that decays below it, with lips that grow over it.",
          hollow_parameters(), take_hollow},

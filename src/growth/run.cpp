@@ -55,7 +55,8 @@ void Run::plant() {
                     Tissue::kCambium, foot.along + edge * row);
         }
     const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
-    const Vertex above = add(foot.position + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
+    const Vertex above =
+        add(foot.position + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
     for (int side = 0; side < kSides; side++) {
         const int next = (side + 1) % kSides;
         mesh.add_face(below, ring[0][next], ring[0][side]);

@@ -108,8 +108,7 @@ Triangles read_triangles(const std::string& path) {
                 triangles.push_back({corners[0], corners[i - 1], corners[i]});
         }
     }
-    if (triangles.empty())
-        throw Error("'" + path + "' has no faces: give a mesh as a Wavefront OBJ file.");
+    if (triangles.empty()) throw Error("'" + path + "' has no faces: give a mesh as a Wavefront OBJ file.");
     return triangles;
 }
 

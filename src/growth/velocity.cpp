@@ -81,12 +81,15 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                                            bark_radius(plan, axis, step));
         } else {
             cell.speed = cambium_speed(cell, axis, distance, plan, step);
-            const Lips::Growth lip = lips.at(place);
+            const DVec3 normal = vertex_normal(surface, v);
+            const Lips::Growth lip = lips.at(place, normal);
             const double extra = extra_growth(surface, features, place) + lip.extra;
             // Equations 4, 6, 9 and 10.
-            cell.velocity = (1.0 + extra) * cell.speed * (vertex_normal(surface, v) + lip.wrap);
-            const double aside = distance > 0.0 ? glm::dot(lip.wrap, from_axis) / distance : 0.0;
-            cell.extra = cell.speed * (extra + (1.0 + extra) * std::max(aside, 0.0));
+            cell.velocity = (1.0 + extra) * cell.speed * (normal + lip.wrap);
+            // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
+            const DVec3 more = extra * normal + (1.0 + extra) * lip.wrap;
+            const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
+            cell.extra = cell.speed * std::max(away, 0.0);
         }
         most = std::max(most, glm::length(cell.velocity));
     }

@@ -132,13 +132,15 @@ TEST(GrowthHollow, IsAsDeepAsAskedAndLeavesTheRest) {
 
 TEST(GrowthHollow, LipsGrowOverIt) {
     const std::string mouth = "hollow along=0.6 width=0.16 height=0.3 depth=0.06 from=0.4 until=0.5 ";
-    const GrownBark open = grow(mouth + "growth=0 wrap=0").bark, closing = grow(mouth + "growth=0 wrap=1").bark,
+    const GrownBark open = grow(mouth + "growth=0 wrap=0").bark,
+                    closing = grow(mouth + "growth=0 wrap=1").bark,
                     swollen = grow(mouth + "growth=1 swell=0.1 wrap=0").bark;
     EXPECT_LT(static_cast<double>(decayed(closing)), 0.8 * static_cast<double>(decayed(open)));
     const auto highest = [](const GrownBark& bark) {
         double most = 0.0;
         for (const GrownBark::Vertex& vertex : bark.vertices)
-            if (vertex.position.y > 0.3f && vertex.position.y < 0.9f) most = std::max(most, from_axis(vertex));
+            if (vertex.position.y > 0.3f && vertex.position.y < 0.9f)
+                most = std::max(most, from_axis(vertex));
         return most;
     };
     // k of the S_c steps that are left when it begins.
@@ -179,13 +181,12 @@ TEST(GrowthObstacle, NothingGoesThroughIt) {
         // As it was written, for the test to see it as the surface does.
         const DVec3 middle(std::stod(std::to_string(x)), std::stod(std::to_string(y)),
                            std::stod(std::to_string(z)));
-        const DVec3 direction = glm::normalize(DVec3(std::stod(std::to_string(d.x)),
-                                                     std::stod(std::to_string(d.y)),
-                                                     std::stod(std::to_string(d.z))));
-        const GrownTree grown =
-            grow(std::string("obstacle shape=") + shape + " middle=" + vector(x, y, z) +
-                     " direction=" + vector(d.x, d.y, d.z) + " length=0.3 width=0.2 radius=0.1 thickness=0.004",
-                 10);
+        const DVec3 direction = glm::normalize(DVec3(
+            std::stod(std::to_string(d.x)), std::stod(std::to_string(d.y)), std::stod(std::to_string(d.z))));
+        const GrownTree grown = grow(std::string("obstacle shape=") + shape + " middle=" + vector(x, y, z) +
+                                         " direction=" + vector(d.x, d.y, d.z) +
+                                         " length=0.3 width=0.2 radius=0.1 thickness=0.004",
+                                     10);
         ASSERT_GE(grown.checks.size(), 3U);
         for (const GrowthStep& step : grown.checks)
             EXPECT_EQ(step.intersections, 0U) << shape << " step " << step.step;
@@ -206,9 +207,10 @@ TEST(GrowthObstacle, NothingGoesThroughIt) {
 
 TEST(GrowthObstacle, IsSwallowedTheMoreTheLongerAndByWrap) {
     const auto share = [](const std::string& more, double x) {
-        const GrownTree grown = grow("obstacle shape=post middle=" + std::to_string(x) +
-                                         ",0.6,0 direction=0,1,0 radius=0.03 length=3 swell=0.08 " + more,
-                                     20);
+        const GrownTree grown =
+            grow("obstacle shape=post middle=" + std::to_string(x) +
+                     ",0.6,0 direction=0,1,0 radius=0.03 length=3 swell=0.08 band=0.03 " + more,
+                 20);
         EXPECT_EQ(grown.checks.back().intersections, 0U);
         return swallowed(grown.bark, x, 0.03);
     };
@@ -240,7 +242,8 @@ TEST(GrowthObstacle, ComesFromFiles) {
     EXPECT_THROW(grow(line), Error);
     std::filesystem::remove(path);
     EXPECT_THROW(grow(line), Error);
-    EXPECT_THROW(grow("obstacle shape=box middle=0,-0.19,0 direction=0,1,0 width=2 length=2 thickness=0.1"), Error);
+    EXPECT_THROW(grow("obstacle shape=box middle=0,-0.19,0 direction=0,1,0 width=2 length=2 thickness=0.1"),
+                 Error);
 }
 
 // Equation 7: a ridge on the sap links, and the bark's picture, go around with the grain.
@@ -290,9 +293,8 @@ TEST(GrowthFeatures, AreTheSameEachTime) {
 
 TEST(GrowthFeatures, RefuseNonsense) {
     const Tree tree = trunk();
-    for (const char* text :
-         {"hollow from=0.8 until=0.5", "hollow depth=-1", "hollow swell=0.1 inner=0.2", "obstacle shape=moon",
-          "obstacle shape=mesh", "obstacle shape=post file=a.obj", "obstacle direction=0,0,0",
-          "grain twist=1e9", "burl grain=perhaps"})
+    for (const char* text : {"hollow from=0.8 until=0.5", "hollow depth=-1", "hollow swell=0.1 inner=0.2",
+                             "obstacle shape=moon", "obstacle shape=mesh", "obstacle shape=post file=a.obj",
+                             "obstacle direction=0,0,0", "grain twist=1e9", "burl grain=perhaps"})
         EXPECT_THROW(read_growth_recipe(tree, text), Error) << text;
 }
