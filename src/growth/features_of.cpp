@@ -60,8 +60,9 @@ std::optional<Spot> find_spot(const Tree& tree, const BranchList& list, const Tr
     return spot;
 }
 
-Lip lip_of(const GrowthLip& lip) {
-    return {lip.radius, lip.inner, lip.growth, lip.wrap, lip.band};
+// The band holds the next vertices at least.
+Lip lip_of(const GrowthLip& lip, double longest) {
+    return {lip.radius, lip.inner, lip.growth, lip.wrap, std::max(lip.band, longest)};
 }
 
 // An elliptic mouth through which bark of any age comes.
@@ -146,7 +147,7 @@ std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const
             feature.last_step = spot->axis.step + wanted.until * age;
             feature.deepest = wanted.depth;
             feature.wall = wanted.wall;
-            feature.lip = lip_of(wanted.lip);
+            feature.lip = lip_of(wanted.lip, recipe.longest);
         }
         features.push_back(std::move(feature));
     }
@@ -164,7 +165,7 @@ void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& pla
             if (!found) continue;
             spot = *found;
         }
-        obstacles.begin(lip_of(wanted.lip));
+        obstacles.begin(lip_of(wanted.lip, recipe.longest));
         for (const std::array<DVec3, 3>& triangle : triangles_of(wanted, spot))
             obstacles.add(triangle[0], triangle[1], triangle[2]);
     }

@@ -1,5 +1,8 @@
 #include "growth/grow_bark.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "growth/features_of.h"
 #include "growth/judge.h"
 #include "growth/run.h"
@@ -13,14 +16,34 @@ namespace {
 using namespace growth;
 
 constexpr double kObstacleCell = 1.5;  // of the longest edge
+constexpr double kThrough = 3.0;       // longest edges from its axis's end within which a tip is through
 
-GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned) {
+// Metres along its axis that a branch has come, whose tip may have met what it could not pass; infinite where
+// it is through, nothing where it never sprouted.
+double reached(const Surface& surface, const GrowthBranch& branch, int32_t index, double longest) {
+    for (const Vertex v : surface.mesh.vertices()) {
+        const Cell& cell = surface.cells[v];
+        if (cell.tissue != Tissue::kApical || cell.owner != index) continue;
+        const AxisPlace* nearest = &branch.axis.front();
+        for (const AxisPlace& at : branch.axis)
+            if (glm::distance(at.position, surface.place(v)) <
+                glm::distance(nearest->position, surface.place(v)))
+                nearest = &at;
+        if (branch.axis.back().along - nearest->along < kThrough * longest)
+            return std::numeric_limits<double>::infinity();
+        return std::max(nearest->along - longest, 0.0);
+    }
+    return 0.0;
+}
+
+GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned, double longest) {
     GrownBark bark;
     std::vector<BranchCoordinates> coordinates;
     for (size_t b = 0; b < planned.plan.branches.size(); b++) {
         const size_t own = static_cast<size_t>(planned.branch_of[b]);
-        bark.branches.push_back(
-            {list.nodes[static_cast<size_t>(list.branches[own].begin)], planned.covered[own]});
+        bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)],
+                                 std::min(planned.covered[own], reached(surface, planned.plan.branches[b],
+                                                                        static_cast<int32_t>(b), longest))});
         coordinates.emplace_back(planned.plan.branches[b], planned.plan.twist);
     }
     std::vector<uint32_t> vertex_of(surface.mesh.num_vertices());
@@ -77,7 +100,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
             result.remarks.push_back(
                 std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
                 " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
-    result.bark = bark_of(run.surface(), list, planned);
+    result.bark = bark_of(run.surface(), list, planned, recipe.longest);
     return result;
 }
 
