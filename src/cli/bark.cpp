@@ -5,7 +5,9 @@
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
 #include "growth/grow_bark.h"
+#include "growth/presets.h"
 #include "pipeline/export.h"
+#include "tree/measure.h"
 
 namespace treerec {
 
@@ -24,6 +26,12 @@ void print_check(const GrowthStep& step) {
         step.frozen_free);
 }
 
+// Metres, at breast height; of lower trees at the foot.
+double trunk_radius(const Tree& tree) {
+    const double dbh = measure(tree).dbh;
+    return dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius;
+}
+
 bool sound(const GrowthStep& step) {
     return step.closed && step.outward && step.above_longest == 0 && step.unexplained == 0 &&
            step.intersections == 0;
@@ -35,10 +43,13 @@ const Command& bark_command() {
     static const Command command{
         "bark",
         "bark TREE -o FILE [-c COMMAND] [--recipe FILE] [options]",
-        "Grows bark around a tree, with burls, as one closed surface.",
+        "Grows bark around a tree as one closed surface, with burls, hollows, obstacles and winding grain.",
         {{"-o", "FILE", "what to write: .glb .gltf .obj; again for more", true},
          {"-c", "COMMAND", "one line of the recipe; after the recipe's own, in the order given", true},
          {"--recipe", "FILE", "one command per line, # begins a comment"},
+         {"--preset", "NAME",
+          "begins with a recipe that ships with us, scaled to the trunk: fence_post_swallowed "
+          "hollow_refuge old_oak spiral_grain"},
          {"--log", "FILE", "writes the recipe as it was found on this tree"},
          {"--check", "N", "judges the surface every N steps and prints what it is, a line of JSON each"},
          {"--trace", "DIR", "writes what each vertex did in each step there, as CSV: docs/growth_trace.md"},
@@ -86,7 +97,16 @@ void run_bark(const std::vector<std::string>& words) {
 
     const Tree tree = skeleton_from(arguments, arguments.positional()[0]);
     std::string text;
-    if (arguments.has("--recipe")) text = read_file(arguments.text("--recipe", "")).view();
+    if (arguments.has("--preset")) {
+        const GrowthPreset* preset = nullptr;
+        try {
+            preset = &find_growth_preset(arguments.text("--preset", ""));
+        } catch (const Error& error) {
+            throw UsageError(error.what());
+        }
+        text = scale_recipe(preset->recipe, trunk_radius(tree) / kPresetRadius);
+    }
+    if (arguments.has("--recipe")) text += read_file(arguments.text("--recipe", "")).view();
     if (arguments.has("-c"))
         for (const std::string& line : arguments.all("-c"))
             text += "\n" + line;

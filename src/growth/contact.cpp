@@ -142,13 +142,13 @@ void Contact::look_again_around(Vertex vertex) {
         look_again(other);
 }
 
-Hold Contact::move(Vertex vertex, const DVec3& to) {
+Hold Contact::move(Vertex vertex, const DVec3& to, bool sudden) {
     SurfaceMesh& mesh = surface_.mesh;
     moving_.clear();
     moving_.moved = vertex;
     moving_.to = to;
     moving_.swept = true;
-    moving_.sudden = surface_.cells[vertex].tissue == Tissue::kApical;
+    moving_.sudden = sudden || surface_.cells[vertex].tissue == Tissue::kApical;
     const Halfedge first = mesh.halfedge(vertex);
     Halfedge h = first;
     do {
@@ -382,6 +382,13 @@ Hold Contact::check_far(const Change& change) {
     return Hold::kFree;
 }
 
+bool Contact::meets_obstacle(const DVec3 (&triangle)[3]) {
+    if (!obstacles_) return false;
+    const int32_t met = obstacles_->meets(triangle, gap_);
+    if (met >= 0) touched_ = met;
+    return met >= 0;
+}
+
 // Exactly, for what may lie as near as that.
 Hold Contact::check_close(const Change& change) {
     const auto meets = [&](const DVec3(&p)[3]) {
@@ -397,12 +404,12 @@ Hold Contact::check_close(const Change& change) {
     for (const std::array<Vertex, 3>& made : change.made) {
         const DVec3 p[3] = {place(change, made[0]), place(change, made[1]), place(change, made[2])};
         if (meets(p)) return Hold::kSurface;
-        if (obstacles_ && obstacles_->meets(p, gap_)) return Hold::kObstacle;
+        if (meets_obstacle(p)) return Hold::kObstacle;
         if (!change.swept) continue;
         // Walls of what the face sweeps: between its place now and then.
         const DVec3 wall[3] = {before, change.to, p[1]};
         if (meets(wall)) return Hold::kSurface;
-        if (obstacles_ && obstacles_->meets(wall, gap_)) return Hold::kObstacle;
+        if (meets_obstacle(wall)) return Hold::kObstacle;
     }
     return Hold::kFree;
 }

@@ -52,8 +52,10 @@ class Contact {
     }
     // After vertices that may were moved.
     void follow();
-    // Moves the vertex, if nothing is in its way all along.
-    Hold move(Vertex vertex, const DVec3& to);
+    // Moves the vertex, if nothing is in its way all along. sudden: by more than the odometer tells of.
+    Hold move(Vertex vertex, const DVec3& to, bool sudden = false);
+    // Which obstacle was in the way when it was last told so.
+    int32_t touched() const { return touched_; }
     // Whether the change leaves a surface without folds that meets nothing.
     Hold check(const Change& change);
     // Of what changed its corners: its vertices must look around again,
@@ -65,6 +67,7 @@ class Contact {
     Hold check_near(const Change& change, const std::vector<DVec3>& normals);
     Hold check_far(const Change& change);
     Hold check_close(const Change& change);
+    bool meets_obstacle(const DVec3 (&triangle)[3]);
     void warn_others();
     bool holds(Face face) const;
     // Until when nothing meets that is so many metres apart and comes nearer from both sides.
@@ -88,6 +91,7 @@ class Contact {
     std::vector<std::unique_ptr<Outlook::Scratch>> scratches_;  // that no thread has
     std::mutex scratches_mutex_;
     uint32_t stamp_ = 0;
+    int32_t touched_ = -1;
     Change moving_;
     std::vector<Face> near_, found_, sheet_;
     struct Close {

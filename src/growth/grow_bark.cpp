@@ -1,8 +1,9 @@
 #include "growth/grow_bark.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
+#include "growth/features_of.h"
 #include "growth/judge.h"
 #include "growth/run.h"
 #include "growth/texture.h"
@@ -15,59 +16,36 @@ namespace {
 
 using namespace growth;
 
-// Metres along its branch's axis where a node is.
-double along_of(const Tree& tree, const GrowthBranch& branch, NodeId node) {
-    const DVec3 place = tree.node(node).position;
-    const AxisPlace* nearest = &branch.axis.front();
-    for (const AxisPlace& at : branch.axis)
-        if (glm::distance(at.position, place) < glm::distance(nearest->position, place)) nearest = &at;
-    return nearest->along;
-}
+constexpr double kObstacleCell = 1.5;  // of the longest edge
+constexpr double kThrough = 3.0;       // longest edges from its axis's end within which a tip is through
 
-std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const TreePlan& planned,
-                                 const GrowthRecipe& recipe, std::vector<std::string>& remarks) {
-    std::vector<Feature> features;
-    for (const GrowthFeature& wanted : recipe.features) {
-        const int32_t branch = list.branch_of[wanted.node];
-        const auto at = std::find(planned.branch_of.begin(), planned.branch_of.end(), branch);
-        if (at == planned.branch_of.end()) {
-            remarks.push_back("A burl was left out: its branch is thinner than " +
-                              std::to_string(static_cast<int>(std::lround(1000.0 * recipe.shortest))) +
-                              " mm and stays a tube. Give it a thicker branch, or shorter edges.");
-            continue;
-        }
-        Feature feature;
-        feature.branch = static_cast<int32_t>(at - planned.branch_of.begin());
-        const GrowthBranch& grown = planned.plan.branches[static_cast<size_t>(feature.branch)];
-        const double from = wanted.node == tree.root() ? 0.0 : along_of(tree, grown, wanted.node);
-        feature.along = from + wanted.along;
-        if (feature.along < grown.axis.front().along || feature.along > grown.axis.back().along) {
-            remarks.push_back(
-                "A burl lies " + number_text(feature.along) + " m along its branch, which is grown from " +
-                number_text(std::round(100.0 * grown.axis.front().along) / 100.0) + " to " +
-                number_text(std::round(100.0 * grown.axis.back().along) / 100.0) + " m: it was left out.");
-            continue;
-        }
-        const BranchCoordinates coordinates(grown);
-        feature.direction = coordinates.direction(feature.along, wanted.around / 360.0);
-        const double born = place_at(grown, feature.along).step;
-        feature.first_step = born + wanted.from * (planned.plan.steps - born);
-        feature.radius = wanted.radius;
-        feature.inner = wanted.inner;
-        feature.growth = wanted.growth;
-        features.push_back(feature);
+// Metres along its axis that a branch has come, whose tip may have met what it could not pass; infinite where
+// it is through, nothing where it never sprouted.
+double reached(const Surface& surface, const GrowthBranch& branch, int32_t index, double longest) {
+    for (const Vertex v : surface.mesh.vertices()) {
+        const Cell& cell = surface.cells[v];
+        if (cell.tissue != Tissue::kApical || cell.owner != index) continue;
+        const AxisPlace* nearest = &branch.axis.front();
+        for (const AxisPlace& at : branch.axis)
+            if (glm::distance(at.position, surface.place(v)) <
+                glm::distance(nearest->position, surface.place(v)))
+                nearest = &at;
+        if (branch.axis.back().along - nearest->along < kThrough * longest)
+            return std::numeric_limits<double>::infinity();
+        return std::max(nearest->along - longest, 0.0);
     }
-    return features;
+    return 0.0;
 }
 
-GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned) {
+GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned, double longest) {
     GrownBark bark;
     std::vector<BranchCoordinates> coordinates;
     for (size_t b = 0; b < planned.plan.branches.size(); b++) {
         const size_t own = static_cast<size_t>(planned.branch_of[b]);
-        bark.branches.push_back(
-            {list.nodes[static_cast<size_t>(list.branches[own].begin)], planned.covered[own]});
-        coordinates.emplace_back(planned.plan.branches[b]);
+        bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)],
+                                 std::min(planned.covered[own], reached(surface, planned.plan.branches[b],
+                                                                        static_cast<int32_t>(b), longest))});
+        coordinates.emplace_back(planned.plan.branches[b], planned.plan.twist);
     }
     std::vector<uint32_t> vertex_of(surface.mesh.num_vertices());
     for (const Vertex v : surface.mesh.vertices()) {
@@ -100,10 +78,13 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
     if (tree.size() < 2) throw Error("The tree has no wood that bark could grow on.");
     GrownTree result;
     const BranchList list = list_branches(tree);
-    const TreePlan planned = plan_tree(tree, list, recipe.longest, recipe.shortest, recipe.steps);
+    TreePlan planned = plan_tree(tree, list, recipe.longest, recipe.shortest, recipe.steps);
+    planned.plan.twist = recipe.twist;
     result.steps = planned.plan.steps;
+    Obstacles obstacles(kObstacleCell * recipe.longest);
+    add_obstacles(tree, list, planned, recipe, result.remarks, obstacles);
     Run run(planned.plan, features_of(tree, list, planned, recipe, result.remarks), recipe.longest,
-            recipe.shortest);
+            recipe.shortest, &obstacles);
     std::function<void(const Surface&)> moved;
     if (!options.trace.empty())
         moved = [&](const Surface& surface) {
@@ -122,9 +103,10 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
     }
     for (const Feature& feature : run.features())
         if (!feature.placed)
-            result.remarks.push_back("A burl found no bark " + number_text(feature.along) +
-                                     " m along its branch and was left out.");
-    result.bark = bark_of(run.surface(), list, planned);
+            result.remarks.push_back(
+                std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
+                " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
+    result.bark = bark_of(run.surface(), list, planned, recipe.longest);
     return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "geometry/vec.h"
 #include "growth/box_grid.h"
+#include "growth/feature.h"
 
 namespace treerec::growth {
 
@@ -14,17 +15,23 @@ namespace treerec::growth {
 class Obstacles {
   public:
     // cell: metres, about as large as the triangles that are asked with.
-    explicit Obstacles(double cell) : grid_(cell) {}
+    explicit Obstacles(double cell) : most_(4.0 * cell), grid_(cell) {}
 
+    // What follows belongs to an obstacle of its own, beside which bark swells so. Returns its index.
+    int32_t begin(const Lip& lip);
     void add(const DVec3& a, const DVec3& b, const DVec3& c);
     bool empty() const { return triangles_.empty(); }
     const std::vector<std::array<DVec3, 3>>& triangles() const { return triangles_; }
-    // Whether a triangle comes nearer than `gap` metres.
-    bool meets(const DVec3 (&triangle)[3], double gap) const;
+    const std::vector<Lip>& lips() const { return lips_; }
+    // The obstacle that a triangle comes nearer to than `gap` metres; -1: none.
+    int32_t meets(const DVec3 (&triangle)[3], double gap) const;
     // Metres to what is nearest to the box, at most `reach`; never more than the true distance.
     double distance(const Box& box, double reach) const;
 
   private:
+    const double most_;  // metres: longer edges are cut for the grid
+    std::vector<Lip> lips_;
+    std::vector<int32_t> owners_;  // by triangle
     std::vector<std::array<DVec3, 3>> triangles_;
     std::vector<Box> boxes_;
     BoxGrid grid_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "geometry/portable_math.h"
 
 namespace treerec::growth {
 
@@ -18,8 +19,9 @@ constexpr double kNearer = 1.0 - 1e-9;  // equation 2: less than rounding is no 
 constexpr double kFlat = 0.94;          // cosine between faces (20 degrees) whose edge may be flipped
 constexpr double kBetter = 0.05;        // sine of what a flip must win at least
 constexpr size_t kGrain = 1024;
-constexpr int kMostRounds = 20;     // of splits and merges in a step
-constexpr double kKeepsSide = 0.2;  // cosine between a face's normals before and after a merge
+constexpr double kMostAdvance = 2.0;  // longest edges for which one split turns the grain at most
+constexpr int kMostRounds = 20;       // of splits and merges in a step
+constexpr double kKeepsSide = 0.2;    // cosine between a face's normals before and after a merge
 
 // Sine and cosine of the angle at the corner opposite to the halfedge, each times `lengths`.
 struct Corner {
@@ -50,6 +52,12 @@ void Optimiser::changed_around(Vertex vertex) {
         if (length < shortest_) short_.push_back(edge);
     }
     contact_.look_again_around(vertex);
+}
+
+bool Optimiser::linked(Vertex vertex) const {
+    for (const Halfedge h : CGAL::halfedges_around_target(surface_.mesh.halfedge(vertex), surface_.mesh))
+        if (surface_.links[surface_.mesh.edge(h)]) return true;
+    return false;
 }
 
 void Optimiser::run() {
@@ -118,7 +126,10 @@ void Optimiser::split(Edge edge) {
     const Vertex i = mesh.source(h), j = mesh.target(h);
     const Cell a = surface_.cells[i], b = surface_.cells[j];
     const DVec3 place = 0.5 * (surface_.place(i) + surface_.place(j));
-    const bool link = surface_.links[edge];
+    // From an apical vertex to a linked one the new one is linked, too (papers/001, 6.3).
+    const bool link = surface_.links[edge] ||
+                      (a.tissue == Tissue::kApical && b.tissue == Tissue::kCambium && linked(j)) ||
+                      (b.tissue == Tissue::kApical && a.tissue == Tissue::kCambium && linked(i));
     const Halfedge made = CGAL::Euler::split_edge(h, mesh);
     const Vertex v = mesh.target(made);
     mesh.point(v) = place;
@@ -148,10 +159,29 @@ void Optimiser::split(Edge edge) {
         const double back = tip ? 0.5 * glm::distance(surface_.place(i), surface_.place(j)) : 0.0;
         cell.along = std::max(by.along - back, begin);
     }
+    cell.sunk = 0.5 * (a.sunk + b.sunk);
+    // Where the link goes on from an apical vertex, its other end tells since when.
+    const Cell& last = a.tissue == Tissue::kApical ? b : a;
+    const double since = last.owner == by.owner ? last.tip_along : by.along - surface_.length(edge) * 2.0;
+    cell.tip_along = apical ? by.along : 0.5 * (a.tip_along + b.tip_along);
     surface_.cells[v] = cell;
     for (const Face face : CGAL::faces_around_target(mesh.halfedge(v), mesh))
         contact_.list(face);
     changed_around(v);
+    if (apical && a.tissue != b.tissue) twist(v, a.tissue == Tissue::kApical ? i : j, since);
+}
+
+// Equation 7: by what the tip has advanced since the link was last split. Where there is no room, not.
+void Optimiser::twist(Vertex vertex, Vertex apical, double since) {
+    if (plan_.twist == 0.0) return;
+    const Cell& tip = surface_.cells[apical];
+    const double angle = plan_.twist * std::clamp(tip.along - since, 0.0, kMostAdvance * longest_);
+    const DVec3 axis = place_at(plan_.branches[static_cast<size_t>(tip.owner)], tip.along).direction;
+    const DVec3 off = surface_.place(vertex) - surface_.place(apical);
+    const DVec3 high = axis * glm::dot(off, axis), flat = off - high;
+    const SineCosine turn = portable_sine_cosine(angle);
+    const DVec3 to = surface_.place(apical) + high + flat * turn.cosine + glm::cross(axis, flat) * turn.sine;
+    if (contact_.move(vertex, to, true) == Hold::kFree) changed_around(vertex);
 }
 
 size_t Optimiser::merge_short() {
@@ -213,10 +243,12 @@ Hold Optimiser::try_merge(Edge edge) {
         cell = nearer_tip(a.owner, b.owner) ? a : b;
         if (a.owner == b.owner) cell.along = 0.5 * (a.along + b.along);
         cell.excess = 0.5 * (a.excess + b.excess);
+        cell.sunk = 0.5 * (a.sunk + b.sunk);
         cell.previous = 0.5 * (a.previous + b.previous);
         cell.id = std::min(a.id, b.id);
     }
     cell.centre = a.centre || b.centre;
+    cell.touched = std::max(a.touched, b.touched);
     change_.clear();
     change_.moved = j;
     change_.to = place;

@@ -37,6 +37,8 @@ class Optimiser {
     void scan();
     void split_long();
     void split(Edge edge);
+    void twist(Vertex vertex, Vertex apical, double since);
+    bool linked(Vertex vertex) const;
     void settle();
     size_t merge_short();  // how many
     Hold try_merge(Edge edge);

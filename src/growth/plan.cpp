@@ -39,4 +39,11 @@ AxisPlace tip_at(const GrowthBranch& branch, double step) {
     return find(branch, step, [](const AxisPlace& place) { return place.step; });
 }
 
+double bark_radius(const GrowthPlan& plan, const AxisPlace& place, double step) {
+    const double age = std::max(step - place.step, 0.0);
+    if (!plan.follow) return age * place.speed;
+    const double whole = std::max(plan.steps - place.step, 1.0);
+    return glm::mix(std::min(plan.young, place.radius), place.radius, std::min(age / whole, 1.0));
+}
+
 }  // namespace treerec::growth

@@ -34,6 +34,7 @@ struct GrowthPlan {
     // Cambium keeps to the axis's radii, by age, instead of to S_c alone: what it grows more than plain
     // cambium, as burls, comes on top.
     bool follow = false;
+    double twist = 0.0;  // theta_p of equation 7, radians a metre: how the grain winds about its branch
     double young = 0.0;  // metres: of the axes' radii, what their tips have at once where `follow` is on
 };
 
@@ -41,5 +42,7 @@ struct GrowthPlan {
 AxisPlace place_at(const GrowthBranch& branch, double along);
 // Where the tip stands at a step.
 AxisPlace tip_at(const GrowthBranch& branch, double step);
+// Metres: how thick plain wood at `place` of a branch is at a step.
+double bark_radius(const GrowthPlan& plan, const AxisPlace& place, double step);
 
 }  // namespace treerec::growth

@@ -3,9 +3,13 @@
 //
 //     edges longest=0.035 shortest=0.015
 //     burl along=1.3 around=90 radius=0.3 inner=0.16 growth=0.5
+//     hollow along=0.9 width=0.2 height=0.5 depth=0.15
+//     obstacle shape=post around=180 gap=-0.02 radius=0.05
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,23 +19,56 @@
 
 namespace treerec {
 
-struct GrowthFeature {
-    enum class Kind : uint8_t { kBurl };
-    Kind kind = Kind::kBurl;
-    NodeId node = kNoNode;  // on whose branch it is
+// Where on the bark something is.
+struct GrowthPlace {
+    NodeId node = kNoNode;  // on whose branch
     double along = 0.0;     // metres from that node along its branch; of the trunk: from the ground
     double around = 0.0;    // degrees about the axis, from +X by way of -Z, seen from above
-    double radius = 0.3;    // R, metres
-    double inner = 0.16;    // R', metres
-    double growth = 0.5;    // k: how much faster than S_c
-    double from = 0.0;      // share of its wood's age after which it begins
+};
+
+// What bark does beside decayed wood and obstacles: metres, and k, A and B of papers/001.
+struct GrowthLip {
+    double radius = 0.0, inner = 0.0, growth = 0.0;  // of the swelling
+    double wrap = 0.0;                               // how it turns there
+    double band = 0.0;                               // within which it does
+};
+
+struct GrowthFeature : GrowthPlace {
+    enum class Kind : uint8_t { kBurl, kHollow };
+    Kind kind = Kind::kBurl;
+    double radius = 0.3;  // R, metres
+    double inner = 0.16;  // R', metres
+    double growth = 0.5;  // k: how much faster than S_c
+    double from = 0.0;    // share of its wood's age after which it begins,
+    // Of a burl along the grain, metres: how long, and from sphere to sphere; 0: one sphere.
+    double length = 0.0, every = 0.0;
+    // Of a hollow:
+    double until = 1.0;                // share of that age up to which bark decays there
+    double width = 0.0, height = 0.0;  // metres, of its mouth
+    double depth = 0.0;                // metres below the bark of the end
+    double wall = 0.0;                 // metres of sound wood that are left towards other sides
+    std::string region;                // a mesh in which bark decays, a file; else width and height tell
+    GrowthLip lip;
+};
+
+struct GrowthObstacle : GrowthPlace {
+    enum class Shape : uint8_t { kPost, kBox, kSheet, kWire, kTorus, kMesh };
+    Shape shape = Shape::kPost;
+    double gap = 0.0;                // metres from the bark of the end to its middle; under 0: inside
+    std::optional<DVec3> at;         // instead: where its middle is, metres, tree space
+    std::optional<DVec3> direction;  // unit, tree space: along a post or wire, across a sheet, a ring's axis
+    double length = 0.0, radius = 0.0, width = 0.0, thickness = 0.0;  // metres
+    std::string file;                                                 // of a mesh
+    GrowthLip lip;
 };
 
 struct GrowthRecipe {
     double longest = 0.035;   // T_s, metres
     double shortest = 0.015;  // T_m, metres
     int steps = 0;            // 0: as many as the tree needs
+    double twist = 0.0;       // theta_p, radians a metre
     std::vector<GrowthFeature> features;
+    std::vector<GrowthObstacle> obstacles;
     std::string text;  // its lines as found on this tree
 };
 

@@ -15,7 +15,7 @@ namespace {
 constexpr int kSides = 6;          // of the seed
 constexpr double kSeedEdge = 0.7;  // of the longest edge
 constexpr size_t kGrain = 512;
-constexpr double kNear = 3.0;  // longest edges from the tip within which buds and features are set
+constexpr double kSeedTip = 1.7;  // such edges above its foot
 
 }  // namespace
 
@@ -23,6 +23,7 @@ Run::Run(const GrowthPlan& plan, std::vector<Feature> features, double longest, 
          const Obstacles* obstacles)
     : plan_(plan),
       features_(std::move(features)),
+      obstacles_(obstacles),
       longest_(longest),
       shortest_(shortest),
       contact_(surface_, longest, obstacles),
@@ -44,6 +45,7 @@ void Run::plant() {
         cell.previous = place;
         cell.tissue = tissue;
         cell.along = along;
+        cell.tip_along = foot.along + kSeedTip * edge;
         return v;
     };
     Vertex ring[2][kSides];
@@ -55,7 +57,8 @@ void Run::plant() {
                     Tissue::kCambium, foot.along + edge * row);
         }
     const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
-    const Vertex above = add(foot.position + up * (1.7 * edge), Tissue::kApical, foot.along + 1.7 * edge);
+    const Vertex above =
+        add(foot.position + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
     for (int side = 0; side < kSides; side++) {
         const int next = (side + 1) % kSides;
         mesh.add_face(below, ring[0][next], ring[0][side]);
@@ -72,13 +75,16 @@ void Run::plant() {
 void Run::advance(const std::function<void(const Surface&)>& moved) {
     sprout();
     choose_buds();
-    place_features();
+    for (Feature& feature : features_)
+        place_feature(surface_, plan_, apex_[static_cast<size_t>(feature.branch)], longest_, step_, feature);
+    decay(surface_, features_, step_);
+    lips_.find(surface_, features_, obstacles_);
     for (const Vertex v : surface_.mesh.vertices()) {
         Cell& cell = surface_.cells[v];
         cell.previous = surface_.place(v);
         cell.hold = Hold::kFree;
     }
-    contact_.advance(set_velocities(surface_, plan_, features_, step_));
+    contact_.advance(set_velocities(surface_, plan_, features_, lips_, step_));
     move_all();
     if (moved) moved(surface_);
     optimiser_.run();
@@ -110,7 +116,9 @@ void Run::move_all() {
                 continue;
             }
             mesh.point(v) += cell.velocity;
-            if (cell.tissue == Tissue::kCambium) cell.excess += std::max(length - cell.speed, 0.0);
+            cell.touched = -1;
+            cell.excess += cell.extra;
+            if (cell.tissue == Tissue::kDecayed) cell.sunk += length;
         }
     });
     contact_.follow();
@@ -125,12 +133,15 @@ void Run::move_all() {
             if (!(length > 0.0)) continue;
             const int parts = pieces_of(cell, shortest_);
             cell.hold = contact_.move(v, surface_.place(v) + cell.velocity / static_cast<double>(parts));
-            if (cell.hold != Hold::kFree) {
+            if (cell.hold == Hold::kFree) {
+                cell.touched = -1;
+                cell.excess += cell.extra / parts;
+                if (cell.tissue == Tissue::kDecayed) cell.sunk += length / parts;
+            } else {
+                if (cell.hold == Hold::kObstacle) cell.touched = contact_.touched();
                 count_.frozen++;
                 if (cell.hold == Hold::kFold) count_.folded++;
             }
-            const double excess = cell.tissue == Tissue::kCambium ? length - cell.speed : 0.0;
-            if (cell.hold == Hold::kFree) cell.excess += std::max(excess, 0.0) / parts;
             if (part + 1 < parts && cell.hold == Hold::kFree) later.push_back(v);
         }
         order = std::move(later);
@@ -180,34 +191,10 @@ void Run::sprout() {
         cell.tissue = Tissue::kApical;
         cell.owner = static_cast<int32_t>(b);
         cell.along = plan_.branches[b].axis.front().along;
-    }
-}
-
-void Run::place_features() {
-    for (Feature& feature : features_) {
-        if (feature.placed || step_ < feature.first_step) continue;
-        const Vertex tip = apex_[static_cast<size_t>(feature.branch)];
-        if (tip == SurfaceMesh::null_vertex()) continue;
-        const Cell& leader = surface_.cells[tip];
-        if (leader.tissue != Tissue::kApical || leader.along < feature.along + longest_) continue;
-        const AxisPlace base = place_at(plan_.branches[static_cast<size_t>(feature.branch)], feature.along);
-        Vertex best = SurfaceMesh::null_vertex();
-        double least = 1e300;
-        for (const Vertex v : surface_.mesh.vertices()) {
-            const Cell& cell = surface_.cells[v];
-            if (cell.tissue != Tissue::kCambium || cell.owner != feature.branch) continue;
-            const DVec3 off = surface_.place(v) - base.position;
-            const double out = glm::dot(off, feature.direction);
-            if (out <= 0.0) continue;
-            const double beside = glm::length(off - feature.direction * out);
-            if (beside >= least) continue;
-            least = beside;
-            best = v;
-        }
-        if (best == SurfaceMesh::null_vertex() || least > kNear * longest_) continue;
-        feature.spheres.push_back({best, feature.radius, feature.inner, feature.growth});
-        surface_.cells[best].centre = true;
-        feature.placed = true;
+        // Its own sap links begin around it.
+        const SurfaceMesh& mesh = surface_.mesh;
+        for (const Halfedge h : CGAL::halfedges_around_target(mesh.halfedge(apex_[b]), mesh))
+            surface_.links[mesh.edge(h)] = true;
     }
 }
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "growth/contact.h"
-#include "growth/feature.h"
+#include "growth/features.h"
+#include "growth/lips.h"
 #include "growth/obstacles.h"
 #include "growth/optimise.h"
 #include "growth/plan.h"
@@ -40,12 +41,13 @@ class Run {
     void plant();
     void choose_buds();
     void sprout();
-    void place_features();
     void move_all();
     void follow_merges();
 
     const GrowthPlan plan_;
     std::vector<Feature> features_;
+    const Obstacles* obstacles_;
+    Lips lips_;
     const double longest_, shortest_;
     Surface surface_;
     Contact contact_;

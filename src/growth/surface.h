@@ -29,17 +29,21 @@ enum class Hold : uint8_t {
 
 // What is known of a vertex beside its place. Metres and steps.
 struct Cell {
-    DVec3 previous{0.0};  // where it was a step ago (equation 2)
-    DVec3 velocity{0.0};  // of this step (equation 1)
-    double along = 0.0;   // of its branch's axis
-    double speed = 0.0;   // S_c of this step
-    double excess = 0.0;  // what it has grown more than plain cambium, metres
+    DVec3 previous{0.0};     // where it was a step ago (equation 2)
+    DVec3 velocity{0.0};     // of this step (equation 1)
+    double along = 0.0;      // of its branch's axis
+    double speed = 0.0;      // S_c of this step
+    double extra = 0.0;      // of this step, metres: what it grows away from its axis beside S_c,
+    double excess = 0.0;     // and what it has so far
+    double sunk = 0.0;       // metres that decayed wood has sunk in
+    double tip_along = 0.0;  // of its branch's tip when the vertex was made (equation 7)
     // Of Contact's odometer: until then nothing far can be in its way, and nothing around it can fold over.
     double safe_until = -1.0, flat_until = -1.0;
-    uint32_t id = 0;      // never given out again
-    int32_t owner = 0;    // branch
-    int32_t bud = -1;     // the branch that sprouts here, while it is dormant
-    int32_t hollow = -1;  // the feature that makes it decay
+    uint32_t id = 0;       // never given out again
+    int32_t owner = 0;     // branch
+    int32_t bud = -1;      // the branch that sprouts here, while it is dormant
+    int32_t hollow = -1;   // the feature that makes it decay
+    int32_t touched = -1;  // the obstacle that it stands against
     Tissue tissue = Tissue::kCambium;
     Hold hold = Hold::kFree;
     bool centre = false;  // spheres of burls ride on it

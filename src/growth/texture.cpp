@@ -7,7 +7,8 @@
 
 namespace treerec::growth {
 
-BranchCoordinates::BranchCoordinates(const GrowthBranch& branch) : branch_(branch) {
+BranchCoordinates::BranchCoordinates(const GrowthBranch& branch, double twist)
+    : branch_(branch), twist_(twist) {
     // From +X, of what stands upright.
     DVec3 x(1.0, 0.0, 0.0);
     if (std::abs(branch.axis.front().direction.x) > 0.9) x = DVec3(0.0, 0.0, 1.0);
@@ -32,8 +33,8 @@ double BranchCoordinates::around(const DVec3& place, double along) const {
     DVec3 centre, x, y;
     frame(along, centre, x, y);
     const DVec3 off = place - centre;
-    const double turn = portable::atan2(glm::dot(off, y), glm::dot(off, x)) / (2.0 * kPi);
-    return turn < 0.0 ? turn + 1.0 : turn;
+    const double turn = (portable::atan2(glm::dot(off, y), glm::dot(off, x)) - twist_ * along) / (2.0 * kPi);
+    return turn - std::floor(turn);
 }
 
 DVec3 BranchCoordinates::direction(double along, double round) const {

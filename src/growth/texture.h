@@ -12,17 +12,19 @@ namespace treerec::growth {
 // transport).
 class BranchCoordinates {
   public:
-    explicit BranchCoordinates(const GrowthBranch& branch);
+    // twist: radians a metre, by which the grain winds about it.
+    explicit BranchCoordinates(const GrowthBranch& branch, double twist = 0.0);
 
-    // 0..1 of a round about the axis at `along` metres.
+    // 0..1 of a round about the axis at `along` metres, from where the grain that began at 0 has come to.
     double around(const DVec3& place, double along) const;
-    // Unit: from the axis at `along` metres to where around() is `round`.
+    // Unit: from the axis at `along` metres `round` rounds on, whatever the grain.
     DVec3 direction(double along, double round) const;
 
   private:
     void frame(double along, DVec3& centre, DVec3& x, DVec3& y) const;
 
     const GrowthBranch& branch_;
+    const double twist_;
     std::vector<DVec3> x_;  // by place of the axis: unit, across it
 };
 

@@ -13,16 +13,12 @@ namespace {
 constexpr double kCatchUp = 2.0;
 
 // S_c: what cambium of this age has to grow to come to its axis's radius in the end.
-double cambium_speed(const Cell& cell, const DVec3& place, const GrowthPlan& plan, int step) {
-    const AxisPlace axis = place_at(plan.branches[static_cast<size_t>(cell.owner)], cell.along);
+double cambium_speed(const Cell& cell, const AxisPlace& axis, double from_axis, const GrowthPlan& plan,
+                     int step) {
     if (!plan.follow) return axis.speed;
-    const DVec3 off = place - axis.position;
-    const double radius = glm::length(off - axis.direction * glm::dot(off, axis.direction)) - cell.excess;
-    const double age = std::max(step + 1.0 - axis.step, 0.0);
-    const double whole = std::max(plan.steps - axis.step, 1.0);
+    const double usual = axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
-    const double usual = axis.radius / whole;
-    return std::clamp(glm::mix(young, axis.radius, std::min(age / whole, 1.0)) - radius, 0.0,
+    return std::clamp(bark_radius(plan, axis, step + 1.0) - (from_axis - cell.excess), 0.0,
                       std::max(kCatchUp * usual, 0.5 * young));
 }
 
@@ -30,25 +26,38 @@ double cambium_speed(const Cell& cell, const DVec3& place, const GrowthPlan& pla
 double extra_growth(const Surface& surface, const std::vector<Feature>& features, const DVec3& place) {
     double sum = 0.0;
     for (const Feature& feature : features) {
+        if (!feature.reach.holds(Box{place, place})) continue;
         double most = 0.0;
         for (const BurlSphere& sphere : feature.spheres)
-            most = std::max(most, burl_growth(sphere, glm::distance(place, surface.place(sphere.centre))));
+            most = std::max(most, burl_growth(sphere.radius, sphere.inner, sphere.growth,
+                                              glm::distance(place, surface.place(sphere.centre))));
         sum += most;
     }
     return sum;
 }
 
-}  // namespace
-
-double burl_growth(const BurlSphere& sphere, double distance) {
-    if (distance >= sphere.radius) return 0.0;
-    if (distance <= sphere.inner) return sphere.growth;
-    const double t = (sphere.radius - distance) / (sphere.radius - sphere.inner);
-    return sphere.growth * t * t * (3.0 - 2.0 * t);
+// Equation 8, as far as the hollow may reach.
+DVec3 decay_velocity(const Surface& surface, Vertex v, const Feature& hollow, const DVec3& from_axis,
+                     double bark) {
+    const double sinks = std::min(hollow.rate, hollow.deepest - surface.cells[v].sunk);
+    if (!(sinks > 0.0)) return DVec3(0.0);
+    const DVec3 velocity = -sinks * vertex_normal(surface, v);
+    // What goes away from the axis comes nearer to the bark on another side.
+    const bool outwards = glm::dot(velocity, from_axis) > 0.0;
+    return outwards && glm::length(from_axis + velocity) > bark - hollow.wall ? DVec3(0.0) : velocity;
 }
 
-double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
-                      int step) {
+}  // namespace
+
+double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feature>& features,
+                      const Lips& lips, int step) {
+    for (Feature& feature : features) {
+        feature.reach = Box();
+        for (const BurlSphere& sphere : feature.spheres) {
+            const DVec3& centre = surface.place(sphere.centre);
+            feature.reach.take(Box{centre, centre}.grown(sphere.radius));
+        }
+    }
     constexpr size_t kGrain = 512;
     const size_t count = surface.mesh.num_vertices();
     std::vector<double> fastest((count + kGrain - 1) / kGrain, 0.0);
@@ -59,8 +68,8 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vecto
             if (surface.mesh.is_removed(v)) continue;
             Cell& cell = surface.cells[v];
             const DVec3 place = surface.place(v);
+            const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
             if (cell.tissue == Tissue::kApical) {  // equation 3
-                const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
                 const AxisPlace tip = tip_at(branch, step + 1.0);
                 cell.along = tip.along;
                 const DVec3 way = tip.position - place;
@@ -69,10 +78,28 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vecto
                 cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
                 continue;
             }
-            cell.speed = cambium_speed(cell, place, plan, step);
-            const double extra = extra_growth(surface, features, place) * cell.speed;
-            cell.velocity = (cell.speed + extra) * vertex_normal(surface, v);  // equations 4 and 6
-            most = std::max(most, cell.speed + extra);
+            const AxisPlace axis = place_at(branch, cell.along);
+            const DVec3 off = place - axis.position;
+            const DVec3 from_axis = off - axis.direction * glm::dot(off, axis.direction);
+            const double distance = glm::length(from_axis);
+            cell.extra = 0.0;
+            if (cell.tissue == Tissue::kDecayed) {
+                cell.speed = 0.0;
+                cell.velocity = decay_velocity(surface, v, features[static_cast<size_t>(cell.hollow)],
+                                               from_axis, bark_radius(plan, axis, step));
+            } else {
+                cell.speed = cambium_speed(cell, axis, distance, plan, step);
+                const DVec3 normal = vertex_normal(surface, v);
+                const Lips::Growth lip = lips.at(place, normal);
+                const double extra = extra_growth(surface, features, place) + lip.extra;
+                // Equations 4, 6, 9 and 10.
+                cell.velocity = (1.0 + extra) * cell.speed * (normal + lip.wrap);
+                // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
+                const DVec3 more = extra * normal + (1.0 + extra) * lip.wrap;
+                const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
+                cell.extra = cell.speed * std::max(away, 0.0);
+            }
+            most = std::max(most, glm::length(cell.velocity));
         }
         fastest[begin / kGrain] = most;
     });

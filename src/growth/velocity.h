@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "growth/feature.h"
+#include "growth/lips.h"
 #include "growth/plan.h"
 #include "growth/surface.h"
 
 namespace treerec::growth {
 
-// Fills Cell::velocity and Cell::speed for the step from `step` to step + 1. Returns the largest velocity of
-// all that are not apical, metres a step.
-double set_velocities(Surface& surface, const GrowthPlan& plan, const std::vector<Feature>& features,
-                      int step);
+// Fills Cell::velocity, speed and extra for the step from `step` to step + 1, and Feature::reach. Returns the
+// largest velocity of all that are not apical, metres a step.
+double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feature>& features,
+                      const Lips& lips, int step);
 
 }  // namespace treerec::growth

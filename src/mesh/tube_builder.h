@@ -23,6 +23,7 @@ constexpr double kLargestTree = 1e6;      // metres from the origin
 constexpr double kLeastShare = 1e-5;      // of the coordinates: thinner wood would vanish in floats
 constexpr double kCollarRadius = 0.012;   // metres; thinner branches come out of the bark as they are,
 constexpr double kWebRadius = 0.02;       // and from here on they have a collar of their own
+constexpr double kHeartwood = 0.008;      // metres: bare wood looks like wood so thin, without bark
 constexpr size_t kBranchesPerChunk = 32;  // of parallel work
 
 // Of a tube about wood of such a radius in metres.

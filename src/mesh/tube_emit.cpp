@@ -9,8 +9,7 @@ namespace treerec::tubes {
 
 namespace {
 
-constexpr double kCrease = 0.2;       // of the light: how much darker it is halfway up a collar
-constexpr double kHeartwood = 0.008;  // metres: cut faces look like wood so thin, without bark
+constexpr double kCrease = 0.2;  // of the light: how much darker it is halfway up a collar
 
 }  // namespace
 

@@ -7,6 +7,12 @@
 
 namespace treerec::tubes {
 
+namespace {
+
+constexpr double kDepths = 0.25;  // of the light: what reaches the bottom of a hollow
+
+}  // namespace
+
 void Builder::take_grown() {
     covered.assign(list.branches.size(), 0.0);
     if (!options.grown) return;
@@ -50,11 +56,11 @@ void Builder::add_grown(Mesh& mesh) const {
         for (int k = 0; k < 3; k++)
             meets[corner[k]] = true;
     }
-    std::vector<uint32_t> known[2];  // by round, by vertex
-    for (std::vector<uint32_t>& round : known)
-        round.assign(grown.vertices.size(), UINT32_MAX);
-    const auto vertex_at = [&](uint32_t at, int round) {
-        uint32_t& entry = known[round][at];
+    std::vector<uint32_t> known[4];  // by round and whether it is bare wood, by vertex
+    for (std::vector<uint32_t>& one : known)
+        one.assign(grown.vertices.size(), UINT32_MAX);
+    const auto vertex_at = [&](uint32_t at, int round, bool wood) {
+        uint32_t& entry = known[round + (wood ? 2 : 0)][at];
         if (entry != UINT32_MAX) return entry;
         entry = static_cast<uint32_t>(mesh.positions.size());
         const GrownBark::Vertex& vertex = grown.vertices[at];
@@ -68,13 +74,17 @@ void Builder::add_grown(Mesh& mesh) const {
         else
             centre.position = DVec3(vertex.position);
         const double length = axis.size() >= 2 ? axis.back().along : 1.0;
-        const double repeats = repeats_of(own, static_cast<double>(vertex.radius));
+        const double repeats = repeats_of(own, wood ? kHeartwood : static_cast<double>(vertex.radius));
         mesh.positions.push_back(vertex.position);
         mesh.normals.push_back(vertex.normal);
         mesh.uvs.push_back(
             {static_cast<float>((static_cast<double>(vertex.around) + round) * repeats), vertex.along});
-        const double light =
+        double light =
             light_at(tubes[own], axis.empty() ? 1.0 : axis.front().radius, centre.position, along, 1.0);
+        if (wood && vertex.radius > 0.0f) {
+            const double out = glm::distance(DVec3(vertex.position), centre.position) / vertex.radius;
+            light *= glm::mix(kDepths, 1.0, std::clamp(out, 0.0, 1.0));
+        }
         mesh.colors.push_back({static_cast<float>(crown.sway(centre.position)),
                                static_cast<float>(std::clamp(along / length, 0.0, 1.0)), phase_of(own),
                                static_cast<float>(light)});
@@ -84,7 +94,9 @@ void Builder::add_grown(Mesh& mesh) const {
         if (options.pivots) {
             const DVec3 pivot = axis.empty() ? centre.position : axis.front().position;
             mesh.custom0.push_back(Vec4(Vec3(pivot), static_cast<float>(list.branches[own].order)));
-            mesh.radii.push_back(meets[at] ? -vertex.radius : vertex.radius);
+            mesh.radii.push_back(wood        ? static_cast<float>(kHeartwood)
+                                 : meets[at] ? -vertex.radius
+                                             : vertex.radius);
             mesh.wind.push_back(wind.codes(own, centre.way, DVec3(vertex.position) - centre.position));
         }
         return entry;
@@ -92,13 +104,15 @@ void Builder::add_grown(Mesh& mesh) const {
     for (size_t i = 0; i < grown.indices.size(); i += 3) {
         const uint32_t* const corner = &grown.indices[i];
         float low = 2.0f, high = -2.0f;
+        bool wood = false;  // papers/001, 9: with one decayed corner
         for (int k = 0; k < 3; k++) {
             low = std::min(low, grown.vertices[corner[k]].around);
             high = std::max(high, grown.vertices[corner[k]].around);
+            wood |= grown.vertices[corner[k]].decayed;
         }
         for (int k = 0; k < 3; k++) {
             const bool over = high - low > 0.5f && grown.vertices[corner[k]].around < 0.5f;
-            mesh.indices.push_back(vertex_at(corner[k], over ? 1 : 0));
+            mesh.indices.push_back(vertex_at(corner[k], over ? 1 : 0, wood));
         }
     }
 }

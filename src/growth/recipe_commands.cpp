@@ -1,0 +1,218 @@
+// What a recipe's lines are.
+#include <cmath>
+
+#include "edit/command_text.h"
+#include "growth/recipe.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLeastEdge = 0.002, kLargestEdge = 1.0;  // metres
+constexpr double kFarthest = 1000.0;                      // metres
+constexpr double kLargest = 10.0;                         // metres, of lumps and mouths
+
+void take_edges(GrowthRecipe& recipe, const EditArguments& arguments) {
+    recipe.longest = arguments.number("longest");
+    recipe.shortest = arguments.has("shortest") ? arguments.number("shortest") : recipe.longest * 15.0 / 35.0;
+    if (recipe.shortest > 0.5 * recipe.longest)
+        throw Error("The shortest edge must be at most half of the longest (papers/001, 4.3): with longest=" +
+                    number_text(recipe.longest) + " give shortest=" + number_text(0.5 * recipe.longest) +
+                    " or less.");
+}
+
+void take_steps(GrowthRecipe& recipe, const EditArguments& arguments) {
+    recipe.steps = static_cast<int>(arguments.whole("count"));
+}
+
+void take_grain(GrowthRecipe& recipe, const EditArguments& arguments) {
+    recipe.twist = arguments.number("twist");
+}
+
+GrowthPlace place_of(const EditArguments& arguments) {
+    return {arguments.node("node"), arguments.number("along"), arguments.number("around")};
+}
+
+// inner: where it is not given, half of the radius.
+double inner_of(const EditArguments& arguments, const char* name, const char* radius_name) {
+    const double radius = arguments.number(radius_name);
+    const double inner = arguments.has(name) ? arguments.number(name) : 0.5 * radius;
+    if (inner > radius)
+        throw Error(std::string(name) + "=" + number_text(inner) + " is larger than " + radius_name + "=" +
+                    number_text(radius) + ": make it smaller.");
+    return inner;
+}
+
+GrowthLip lip_of(const EditArguments& arguments) {
+    return {arguments.number("swell"), inner_of(arguments, "inner", "swell"), arguments.number("growth"),
+            arguments.number("wrap"), arguments.number("band")};
+}
+
+void take_burl(GrowthRecipe& recipe, const EditArguments& arguments) {
+    GrowthFeature feature;
+    feature.kind = GrowthFeature::Kind::kBurl;
+    static_cast<GrowthPlace&>(feature) = place_of(arguments);
+    feature.radius = arguments.number("radius");
+    feature.inner = inner_of(arguments, "inner", "radius");
+    feature.growth = arguments.number("growth");
+    feature.from = arguments.number("from");
+    if (arguments.on("grain")) {
+        feature.length = arguments.number("length");
+        feature.every = arguments.has("every") ? arguments.number("every") : 0.5 * feature.radius;
+    }
+    recipe.features.push_back(feature);
+}
+
+void take_hollow(GrowthRecipe& recipe, const EditArguments& arguments) {
+    GrowthFeature feature;
+    feature.kind = GrowthFeature::Kind::kHollow;
+    static_cast<GrowthPlace&>(feature) = place_of(arguments);
+    feature.width = arguments.number("width");
+    feature.height = arguments.number("height");
+    feature.depth = arguments.number("depth");
+    feature.wall = arguments.number("wall");
+    feature.from = arguments.number("from");
+    feature.until = arguments.number("until");
+    if (arguments.has("region")) feature.region = arguments.text("region");
+    feature.lip = lip_of(arguments);
+    if (feature.until <= feature.from)
+        throw Error("A hollow that begins at from=" + number_text(feature.from) +
+                    " must end later: give until= more than that.");
+    recipe.features.push_back(feature);
+}
+
+void take_obstacle(GrowthRecipe& recipe, const EditArguments& arguments) {
+    using Shape = GrowthObstacle::Shape;
+    GrowthObstacle obstacle;
+    const std::string& shape = arguments.text("shape");
+    obstacle.shape = shape == "post"    ? Shape::kPost
+                     : shape == "box"   ? Shape::kBox
+                     : shape == "sheet" ? Shape::kSheet
+                     : shape == "wire"  ? Shape::kWire
+                     : shape == "ring"  ? Shape::kTorus
+                                        : Shape::kMesh;
+    static_cast<GrowthPlace&>(obstacle) = place_of(arguments);
+    obstacle.gap = arguments.number("gap");
+    if (arguments.has("middle")) obstacle.at = arguments.vector("middle");
+    if (arguments.has("direction")) obstacle.direction = arguments.vector("direction");
+    obstacle.length = arguments.number("length");
+    obstacle.radius = arguments.number("radius");
+    obstacle.width = arguments.number("width");
+    obstacle.thickness = arguments.number("thickness");
+    if (arguments.has("file")) obstacle.file = arguments.text("file");
+    if ((obstacle.shape == Shape::kMesh) == obstacle.file.empty())
+        throw Error(obstacle.file.empty() ? "An obstacle with shape=mesh needs file=, a Wavefront OBJ file."
+                                          : "An obstacle with file= needs shape=mesh.");
+    obstacle.lip = lip_of(arguments);
+    recipe.obstacles.push_back(obstacle);
+}
+
+std::vector<Parameter> with_place(double along, std::vector<Parameter> rest) {
+    Parameter node = node_parameter("node", "on whose branch it is");
+    node.standard = "root";
+    node.required = false;
+    std::vector<Parameter> all{
+        node,
+        length_parameter("along", along, -kFarthest, kFarthest,
+                         "from the node along its branch; of the trunk from its foot"),
+        number_parameter("around", 0.0, -3600.0, 3600.0, "degrees about the branch").slider(0.0, 360.0)};
+    all.insert(all.end(), rest.begin(), rest.end());
+    return all;
+}
+
+void add_lip(std::vector<Parameter>& parameters, double swell, double growth, double wrap, double band) {
+    parameters.push_back(
+        length_parameter("swell", swell, 0.0, kLargest, "beside it in which bark grows faster")
+            .slider(0.0, 0.5));
+    parameters.push_back(
+        length_parameter("inner", NAN, 0.0, kLargest, "beside it in which all grows alike; half of swell")
+            .optional());
+    parameters.push_back(
+        number_parameter("growth", growth, 0.0, 20.0, "how much faster, over the usual").slider(0.0, 3.0));
+    parameters.push_back(
+        number_parameter("wrap", wrap, 0.0, 20.0, "how much bark beside it turns over it").slider(0.0, 2.0));
+    parameters.push_back(
+        length_parameter("band", band, 0.0, kLargest, "beside it in which bark turns").slider(0.0, 0.3));
+}
+
+std::vector<Parameter> hollow_parameters() {
+    std::vector<Parameter> parameters = with_place(
+        1.0,
+        {length_parameter("width", 0.15, 0.001, kLargest, "of its mouth, across the branch"),
+         length_parameter("height", 0.3, 0.001, kLargest, "of its mouth, along the branch"),
+         length_parameter("depth", 0.15, 0.0, kLargest,
+                          "of its ground below the bark; 0: a wound that heals over"),
+         length_parameter("wall", 0.03, 0.0, kLargest, "of sound wood that is left on other sides"),
+         number_parameter("from", 0.4, 0.0, 1.0, "share of the age of the wood there after which it begins"),
+         number_parameter("until", 0.85, 0.0, 1.0, "share of that age after which no more bark decays"),
+         text_parameter("region", {"hole.obj"},
+                        "a closed mesh, OBJ file, in which bark decays instead of width and height")
+             .optional()});
+    add_lip(parameters, 0.1, 0.3, 0.4, 0.06);
+    return parameters;
+}
+
+std::vector<Parameter> obstacle_parameters() {
+    std::vector<Parameter> parameters = with_place(
+        1.0,
+        {word_parameter("shape", {"post", "box", "sheet", "wire", "ring", "mesh"}, "what it is"),
+         length_parameter("gap", 0.0, -kFarthest, kFarthest,
+                          "from the bark of the end to its middle; under 0: inside"),
+         point_parameter("middle", "where its middle is instead; moves a mesh").optional(),
+         direction_parameter("direction", "along a post or wire, across a sheet or box, or of a ring's axis")
+             .optional(),
+         length_parameter("length", 2.0, 0.001, kFarthest, "of a post, wire, box or sheet"),
+         length_parameter("radius", 0.05, 0.0005, kFarthest, "of a post or ring"),
+         length_parameter("width", 0.1, 0.001, kFarthest, "of a box or sheet"),
+         length_parameter("thickness", 0.004, 0.0005, kFarthest, "of a box, wire or ring"),
+         text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres").optional()});
+    add_lip(parameters, 0.06, 0.4, 0.8, 0.03);
+    return parameters;
+}
+
+}  // namespace
+
+const std::vector<GrowthCommand>& growth_commands() {
+    static const std::vector<GrowthCommand> commands{
+        {"edges",
+         "How fine the surface is.",
+         {length_parameter("longest", 0.035, kLeastEdge, kLargestEdge, "edges are split above it"),
+          length_parameter("shortest", NAN, kLeastEdge / 4.0, kLargestEdge,
+                           "edges that become shorter are merged; at most half of longest")
+              .optional()},
+         take_edges},
+        {"steps",
+         "How many steps it grows.",
+         {whole_parameter("count", 0, 0, 5000, "0: as many as the tree needs")},
+         take_steps},
+        {"grain",
+         "How the grain winds about trunk and branches.",
+         {number_parameter("twist", 2.0, -20.0, 20.0, "radians a metre").slider(-6.0, 6.0)},
+         take_grain},
+        {"burl", "A lump where cambium grows faster.",
+         with_place(
+             1.3,
+             {length_parameter("radius", 0.3, 0.001, kLargest,
+                               "around its middle in which cambium grows faster")
+                  .slider(0.02, 1.0),
+              length_parameter("inner", NAN, 0.0, kLargest,
+                               "around its middle in which all grows alike; half of radius")
+                  .optional(),
+              number_parameter("growth", 0.5, 0.0, 20.0, "how much faster, over the usual").slider(0.0, 2.0),
+              number_parameter("from", 0.0, 0.0, 1.0,
+                               "share of the age of the wood there after which it begins"),
+              switch_parameter("grain", false, "a ridge along the grain instead of a lump"),
+              length_parameter("length", 1.0, 0.001, kFarthest, "of such a ridge"),
+              length_parameter("every", NAN, 0.001, kLargest,
+                               "from one lump of the ridge to the next; half of radius")
+                  .optional()}),
+         take_burl},
+        {"hollow", "Bark that dies and wood that decays below it, with lips that grow over it.",
+         hollow_parameters(), take_hollow},
+        {"obstacle", "Something that does not yield; bark stops at it, swells and grows over it.",
+         obstacle_parameters(), take_obstacle},
+    };
+    return commands;
+}
+
+}  // namespace treerec
