@@ -15,7 +15,8 @@ namespace {
 constexpr int kSides = 6;          // of the seed
 constexpr double kSeedEdge = 0.7;  // of the longest edge
 constexpr size_t kGrain = 512;
-constexpr double kSeedTip = 1.7;  // such edges above its foot
+constexpr double kTurned = 0.999;  // cosine between a velocity and the normal, from which on they are alike
+constexpr double kSeedTip = 1.7;   // such edges above its foot
 
 }  // namespace
 
@@ -133,12 +134,20 @@ void Run::move_all() {
             if (!(length > 0.0)) continue;
             const int parts = pieces_of(cell, shortest_);
             cell.hold = contact_.move(v, surface_.place(v) + cell.velocity / static_cast<double>(parts));
+            const bool blocked = cell.hold == Hold::kObstacle;
+            if (blocked) {
+                // What turns towards an obstacle and is at it still grows along it (papers/001, 8).
+                cell.touched = contact_.touched();
+                const DVec3 normal = vertex_normal(surface_, v);
+                const double up = glm::dot(cell.velocity, normal) / parts;
+                if (up < kTurned * length / parts)
+                    cell.hold = contact_.move(v, surface_.place(v) + up * normal);
+            }
             if (cell.hold == Hold::kFree) {
-                cell.touched = -1;
+                if (!blocked) cell.touched = -1;
                 cell.excess += cell.extra / parts;
                 if (cell.tissue == Tissue::kDecayed) cell.sunk += length / parts;
             } else {
-                if (cell.hold == Hold::kObstacle) cell.touched = contact_.touched();
                 count_.frozen++;
                 if (cell.hold == Hold::kFold) count_.folded++;
             }

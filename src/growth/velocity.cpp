@@ -90,7 +90,8 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             } else {
                 cell.speed = cambium_speed(cell, axis, distance, plan, step);
                 const DVec3 normal = vertex_normal(surface, v);
-                const Lips::Growth lip = lips.at(place, normal);
+                Lips::Growth lip = lips.at(place, normal);
+                lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
                 // Equations 4, 6, 9 and 10.
                 cell.velocity = (1.0 + extra) * cell.speed * (normal + lip.wrap);
