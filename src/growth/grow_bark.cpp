@@ -119,6 +119,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
             result.remarks.push_back("A burl found no bark " + number_text(feature.along) +
                                      " m along its branch and was left out.");
     result.bark = bark_of(run.surface(), list, planned);
+    result.bark.digest = covered_wood_digest(tree, result.bark.branches);
     return result;
 }
 

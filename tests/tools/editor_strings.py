@@ -115,7 +115,7 @@ def find_words():
 
 def sentences():
     """The entries of PATTERNS: what the library says."""
-    for path in (SENTENCES, SENTENCES.with_name("twig_sentences.gd"), SENTENCES.with_name("sketch_sentences.gd")):
+    for path in (SENTENCES, *(SENTENCES.with_name(topic + "_sentences.gd") for topic in ("twig", "sketch", "growth"))):
         source = without_comments(path.read_text(encoding="utf-8"))
         table = source[source.index("const PATTERNS") :]
         table = table[table.index("[") + 1 : table.index("\n]\n")]

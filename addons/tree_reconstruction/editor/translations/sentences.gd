@@ -414,7 +414,10 @@ const PATTERNS: PackedStringArray = [
 ]
 const TwigSentences := preload("twig_sentences.gd")
 const SketchSentences := preload("sketch_sentences.gd")
-const _ALL: PackedStringArray = PATTERNS + TwigSentences.PATTERNS + SketchSentences.PATTERNS
+const GrowthSentences := preload("growth_sentences.gd")
+const _ALL: PackedStringArray = (
+	PATTERNS + TwigSentences.PATTERNS + SketchSentences.PATTERNS + GrowthSentences.PATTERNS
+)
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.
 ## tests/tools/editor_strings.py checks that there are no others.
