@@ -50,9 +50,12 @@ func run() -> void:
 	@warning_ignore("unsafe_method_access")
 	session().run("Thicken", "thicken nodes=trunk factor=1.2")
 	await until(func() -> bool: return _of.is_bark_stale(), "it is stale")
-	var again: Button = find_control("Button", "Grow Again", _dock)
-	if not check(again != null, "There is no Grow Again."):
+	if not await until(
+		func() -> bool: return find_control("Button", "Grow Again", _dock) != null,
+		"it can be grown again"
+	):
 		return
+	var again: Button = find_control("Button", "Grow Again", _dock)
 	await picture("bark-is-stale")
 	await press(again)
 	await until(func() -> bool: return not _of.is_bark_stale(), "it has grown again")
