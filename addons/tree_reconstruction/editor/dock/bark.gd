@@ -141,7 +141,7 @@ func start() -> void:
 	var of: TreeReconstruction = TreeReconstruction.new()
 	of.take_tree_of(session.tree)
 	_job = session.jobs.start(
-		tr("Growing bark"),
+		tr("Bark of %s") % session.node.name,
 		_grow.bind(worker, of, _recipe.get_text()),
 		_on_grown.bind(worker, session.node.get_instance_id()),
 		worker
@@ -280,7 +280,10 @@ func _words_of(parameter: Dictionary) -> PackedStringArray:
 		"along":
 			return [tr("Along"), tr("Along its branch: of the trunk from the ground.")]
 		"around":
-			return [tr("Around"), tr("About its branch, counter-clockwise as seen from above; 0° is towards +X.")]
+			return [
+				tr("Around"),
+				tr("About its branch, counter-clockwise as seen from above; 0° is towards +X.")
+			]
 		"radius":
 			return [tr("Radius"), tr("How far from its middle the burl reaches.")]
 		"growth":

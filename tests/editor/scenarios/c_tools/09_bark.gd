@@ -23,7 +23,7 @@ func run() -> void:
 		return
 	await _type("radius", "0.4")
 	await _type("growth", "1")
-	await _type_into(_section().get(&"edge") as SpinBox, "0.05")
+	await _type_into(_section().get(&"edge") as SpinBox, "0.09")
 	await picture("bark-a-burl-to-grow")
 
 	await step("Grow makes a surface of it, as one step")
