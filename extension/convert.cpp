@@ -60,6 +60,29 @@ PackedInt32Array to_godot(const std::vector<NodeId>& p_ids) {
     return copy_values<PackedInt32Array>(p_ids);
 }
 
+TypedArray<Dictionary> to_godot(const std::vector<treerec::Parameter>& p_parameters) {
+    TypedArray<Dictionary> parameters;
+    for (const treerec::Parameter& parameter : p_parameters) {
+        PackedStringArray words;
+        for (const std::string& word : parameter.words) {
+            words.push_back(to_godot(word));
+        }
+        Dictionary entry;
+        entry["name"] = to_godot(parameter.name);
+        entry["type"] = treerec::parameter_type_name(parameter.type);
+        entry["description"] = to_godot(parameter.help);
+        entry["default"] = to_godot(parameter.standard);
+        entry["required"] = parameter.required;
+        entry["minimum"] = parameter.least;
+        entry["maximum"] = parameter.most;
+        entry["slider_minimum"] = parameter.from;
+        entry["slider_maximum"] = parameter.to;
+        entry["words"] = words;
+        parameters.push_back(entry);
+    }
+    return parameters;
+}
+
 Array to_surface_arrays(const treerec::Mesh& p_mesh) {
     Array arrays;
     if (p_mesh.indices.empty()) {

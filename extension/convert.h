@@ -4,9 +4,11 @@
 #include <godot_cpp/core/class_db.hpp>
 #include <godot_cpp/variant/packed_float32_array.hpp>
 #include <godot_cpp/variant/packed_int32_array.hpp>
+#include <godot_cpp/variant/typed_array.hpp>
 #include <string>
 #include <vector>
 
+#include "edit/arguments.h"
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "geometry/vec.h"
@@ -36,6 +38,8 @@ std::string to_std(const godot::String& p_text);
 
 godot::PackedFloat32Array to_godot(const std::vector<float>& p_values);
 godot::PackedInt32Array to_godot(const std::vector<treerec::NodeId>& p_ids);
+// What a command takes, as TreeReconstruction.get_edit_commands() tells it.
+godot::TypedArray<godot::Dictionary> to_godot(const std::vector<treerec::Parameter>& p_parameters);
 
 // Arguments for ArrayMesh::add_surface_from_arrays(), with kSurfaceFlags where there are CUSTOM values;
 // empty for an empty mesh. Turns the triangles, since the engine's front faces are clockwise.

@@ -45,9 +45,10 @@ int64_t TreeReconstruction::get_bark_revision() const {
     });
     const std::lock_guard lock(mutex_);
     if (revision_ == 0 || revised_tree_.lock() != tree_ || revised_foliage_.lock() != foliage_ ||
-        revised_followed_ != followed) {
+        revised_bark_.lock() != bark_ || revised_followed_ != followed) {
         revised_tree_ = tree_;
         revised_foliage_ = foliage_;
+        revised_bark_ = bark_;
         revised_followed_ = std::move(followed);
         revision_++;
     }
@@ -278,8 +279,10 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) con
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
         const std::shared_ptr<const Tree> tree = get_tree();
-        return to_surface_arrays(treerec::build_level_bark(
-            treerec::leafy_tree(*tree, make_leaf_kinds(*tree), *get_leaf_density()), p_lod, p_whole_repeats));
+        const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
+        return to_surface_arrays(
+            treerec::build_level_bark(treerec::leafy_tree(*tree, make_leaf_kinds(*tree), *get_leaf_density()),
+                                      p_lod, p_whole_repeats, nullptr, bark.get()));
     });
 }
 

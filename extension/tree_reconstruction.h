@@ -16,6 +16,7 @@
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "leaf_rule.h"
+#include "mesh/grown_bark.h"
 #include "mesh/mesh.h"
 #include "tree/tree.h"
 
@@ -53,6 +54,10 @@ class TreeReconstruction : public godot::Resource {
     void set_leaf_setting(const LeafSetting& p_setting);
     // With the season in them. Throws treerec::Error.
     std::vector<treerec::LeafKind> make_leaf_kinds(const treerec::Tree& p_tree) const;
+    // The grown bark that is drawn on such a tree; null where there is none, or the wood beneath is another.
+    std::shared_ptr<const treerec::GrownBark> get_bark_on(
+        const std::shared_ptr<const treerec::Tree>& p_tree) const;
+    void set_bark(const treerec::GrownBark& p_bark, const godot::String& p_recipe);
     void set_leaf_density(treerec::Foliage p_foliage);
     std::shared_ptr<const treerec::Foliage> get_leaf_density() const;
 
@@ -63,6 +68,10 @@ class TreeReconstruction : public godot::Resource {
     godot::Dictionary get_foliage() const;
     void set_provenance(const godot::Dictionary& p_provenance);
     godot::Dictionary get_provenance() const { return provenance_; }
+    void set_growth_recipe(const godot::String& p_recipe);
+    godot::String get_growth_recipe() const { return growth_recipe_; }
+    void set_grown_bark(const godot::PackedByteArray& p_bark);
+    godot::PackedByteArray get_grown_bark() const { return packed_bark_; }
     void set_seed(int64_t p_seed);
     int64_t get_seed() const;
     void set_leaf_preset(const godot::String& p_name);
@@ -144,6 +153,10 @@ class TreeReconstruction : public godot::Resource {
     godot::TypedArray<godot::Dictionary> build_foliage(int p_lod) const;
     godot::TypedArray<godot::Dictionary> build_joined_foliage(int p_lod) const;
 
+    // tree_reconstruction_bark.cpp
+    bool has_grown_bark() const;
+    bool is_bark_stale() const;
+
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
                                                       const godot::PackedInt32Array& p_budgets,
@@ -221,6 +234,7 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_viewing();
     static void _bind_variants();
     static void _bind_levels();
+    static void _bind_bark();
     static void _bind_leaf_kinds();
     std::shared_ptr<const treerec::VariantMaker> _get_variant_maker() const;
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
@@ -233,6 +247,11 @@ class TreeReconstruction : public godot::Resource {
     mutable std::mutex mutex_;
     std::shared_ptr<const treerec::Tree> tree_ = std::make_shared<treerec::Tree>();
     std::shared_ptr<const treerec::Foliage> foliage_ = std::make_shared<treerec::Foliage>();
+    std::shared_ptr<const treerec::GrownBark> bark_ = std::make_shared<treerec::GrownBark>();
+    // Whether the bark fits the tree that was asked about last.
+    mutable std::weak_ptr<const treerec::GrownBark> judged_bark_;
+    mutable std::weak_ptr<const treerec::Tree> judged_tree_;
+    mutable bool bark_fits_ = false;
     treerec::LeafRules leaf_rules_;  // where there is no leaf_rule_
     bool foliage_followed_ = true;
     godot::Ref<LeafRule> leaf_rule_;
@@ -240,6 +259,7 @@ class TreeReconstruction : public godot::Resource {
     // What the bark of revision_ is built of.
     mutable std::weak_ptr<const treerec::Tree> revised_tree_;
     mutable std::weak_ptr<const treerec::Foliage> revised_foliage_;
+    mutable std::weak_ptr<const treerec::GrownBark> revised_bark_;
     mutable std::vector<bool> revised_followed_;  // by kind of leaves
     mutable int64_t revision_ = 0;
 
@@ -251,7 +271,9 @@ class TreeReconstruction : public godot::Resource {
     treerec::EditLog edit_log_;
     godot::String leaf_preset_ = "generic";
     godot::Dictionary provenance_;
-    godot::Dictionary newer_foliage_;  // likewise
+    godot::String growth_recipe_;
+    godot::PackedByteArray packed_bark_;  // as it was given, also where this version can't read it
+    godot::Dictionary newer_foliage_;     // likewise
     godot::Dictionary
         newer_skeleton_;  // of a version that this one can't read; kept so that saving loses nothing
 };

@@ -229,30 +229,11 @@ String TreeReconstruction::check_selection(const String& p_selection) const {
 TypedArray<Dictionary> TreeReconstruction::get_edit_commands() {
     TypedArray<Dictionary> list;
     for (const treerec::EditCommand& command : treerec::edit_commands()) {
-        TypedArray<Dictionary> parameters;
-        for (const treerec::Parameter& parameter : command.parameters) {
-            PackedStringArray words;
-            for (const std::string& word : parameter.words) {
-                words.push_back(to_godot(word));
-            }
-            Dictionary entry;
-            entry["name"] = to_godot(parameter.name);
-            entry["type"] = treerec::parameter_type_name(parameter.type);
-            entry["description"] = to_godot(parameter.help);
-            entry["default"] = to_godot(parameter.standard);
-            entry["required"] = parameter.required;
-            entry["minimum"] = parameter.least;
-            entry["maximum"] = parameter.most;
-            entry["slider_minimum"] = parameter.from;
-            entry["slider_maximum"] = parameter.to;
-            entry["words"] = words;
-            parameters.push_back(entry);
-        }
         Dictionary entry;
         entry["name"] = to_godot(command.name);
         entry["group"] = to_godot(command.group);
         entry["description"] = to_godot(command.summary);
-        entry["parameters"] = parameters;
+        entry["parameters"] = to_godot(command.parameters);
         list.push_back(entry);
     }
     return list;

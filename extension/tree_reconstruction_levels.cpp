@@ -25,7 +25,9 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
         const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
-        const treerec::LevelBuilder builder(*tree, kinds, uint64_t(get_seed()), *foliage);
+        const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
+        const treerec::LevelBuilder builder(*tree, kinds, uint64_t(get_seed()), *foliage, nullptr,
+                                            bark.get());
         const treerec::Bounds& box = builder.box();
         TypedArray<Dictionary> levels;
         for (int64_t i = 0; i < p_levels.size(); i++) {

@@ -225,6 +225,7 @@ void TreeReconstruction::_bind_methods() {
     _bind_viewing();
     _bind_variants();
     _bind_levels();
+    _bind_bark();
     _bind_leaf_kinds();
 
     ClassDB::bind_method(D_METHOD("is_empty"), &TreeReconstruction::is_empty);

@@ -222,9 +222,11 @@ Error TreeReconstructor::export_file(const Ref<TreeReconstruction>& p_tree, cons
     try {
         const Listener listener(this);
         listener.check();
-        treerec::export_tree(file_path(p_path), *p_tree->get_tree(), p_tree->get_leaf_rules(),
-                             uint64_t(p_tree->get_seed()), to_std(p_tree->get_leaf_look()), &listener,
-                             *p_tree->get_leaf_density(), p_levels, p_pictures_beside);
+        const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+        const std::shared_ptr<const treerec::GrownBark> bark = p_tree->get_bark_on(tree);
+        treerec::export_tree(file_path(p_path), *tree, p_tree->get_leaf_rules(), uint64_t(p_tree->get_seed()),
+                             to_std(p_tree->get_leaf_look()), &listener, *p_tree->get_leaf_density(),
+                             p_levels, p_pictures_beside, bark.get());
         return OK;
     } catch (const std::exception& error) {
         _fail(error.what());
@@ -318,6 +320,9 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::save_html_report, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("save_marker", "path", "id", "side"), &TreeReconstructor::save_marker,
                          DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
+    ClassDB::bind_method(D_METHOD("grow_bark", "tree", "recipe"), &TreeReconstructor::grow_bark);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_commands"),
+                                &TreeReconstructor::get_growth_commands);
     ClassDB::bind_method(D_METHOD("sketch_tree", "sketch", "twigs_of"), &TreeReconstructor::sketch_tree,
                          DEFVAL(Variant()));
     ClassDB::bind_method(D_METHOD("sketch_with_twigs", "sketch", "from", "title"),

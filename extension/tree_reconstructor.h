@@ -23,8 +23,8 @@
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
 // export_file(), save_html_report(), save_marker(), sketch_tree(), sketch_with_twigs(), load_sketch(),
-// save_sketch() and draw_limb() may run on any thread, one at a time; the other methods may be called from
-// any other thread meanwhile.
+// save_sketch(), draw_limb() and grow_bark() may run on any thread, one at a time; the other methods may be
+// called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -43,6 +43,10 @@ class TreeReconstructor : public godot::RefCounted {
                                                    LSystem::Dialect p_dialect);
     godot::Error export_file(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_path,
                              int p_levels = 1, bool p_pictures_beside = false);
+    // tree_reconstructor_growth.cpp
+    godot::Ref<TreeReconstruction> grow_bark(const godot::Ref<TreeReconstruction>& p_tree,
+                                             const godot::String& p_recipe);
+    static godot::TypedArray<godot::Dictionary> get_growth_commands();
     godot::Ref<TreeReconstruction> sketch_tree(const godot::Ref<TreeSketch>& p_sketch,
                                                const godot::Ref<godot::Resource>& p_twigs_of);
     godot::Ref<TreeSketch> sketch_with_twigs(const godot::Ref<TreeSketch>& p_sketch,

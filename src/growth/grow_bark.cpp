@@ -107,6 +107,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOpti
                 std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
                 " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
     result.bark = bark_of(run.surface(), list, planned, recipe.longest);
+    result.bark.digest = covered_wood_digest(tree, result.bark.branches);
     return result;
 }
 

@@ -16,7 +16,7 @@ void take_edges(GrowthRecipe& recipe, const EditArguments& arguments) {
     recipe.longest = arguments.number("longest");
     recipe.shortest = arguments.has("shortest") ? arguments.number("shortest") : recipe.longest * 15.0 / 35.0;
     if (recipe.shortest > 0.5 * recipe.longest)
-        throw Error("The shortest edge must be at most half of the longest (papers/001, 4.3): with longest=" +
+        throw Error("The shortest edge must be at most half of the longest: with longest=" +
                     number_text(recipe.longest) + " give shortest=" + number_text(0.5 * recipe.longest) +
                     " or less.");
 }

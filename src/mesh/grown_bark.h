@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -30,8 +32,26 @@ struct GrownBark {
     std::vector<Branch> branches;
     std::vector<Vertex> vertices;
     std::vector<uint32_t> indices;
+    uint64_t digest = 0;  // covered_wood_digest() of the tree that it grew on
 
     bool empty() const { return indices.empty(); }
 };
+
+// One number for the wood beneath: the covered branches' nodes, as far as they are covered, with their places
+// and radii. Other wood may change. 0 where one of the branches is not there. Linear in the tree's nodes.
+uint64_t covered_wood_digest(const Tree& tree, const std::vector<GrownBark::Branch>& branches);
+
+// Whether the wood beneath is still as it was when the bark grew.
+bool fits(const GrownBark& bark, const Tree& tree);
+
+// Bytes for a file, some 30 a vertex and 4 a triangle; normals are kept to 1e-4. The same bytes on every
+// machine.
+std::string pack_grown_bark(const GrownBark& bark);
+
+inline constexpr uint32_t kGrownBarkVersion = 1;
+// Of packed bark: 0 for what is none.
+uint32_t packed_bark_version(std::string_view packed);
+// Throws Error for what is no such bark, damaged, or of a newer version.
+GrownBark unpack_grown_bark(std::string_view packed);
 
 }  // namespace treerec

@@ -31,11 +31,13 @@ double level_width(double height, double level) {
     return kWidth * height * portable::pow(2.0, level);
 }
 
-Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const Progress* progress) {
+Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const Progress* progress,
+                      const GrownBark* grown) {
     TubeOptions options;
     options.level = whole(level);
     options.twig_level = level;
     options.whole_repeats = whole_repeats;
+    if (level == 0.0) options.grown = grown;
     return build_branch_tubes(wood, options, progress);
 }
 
@@ -44,10 +46,11 @@ LevelBuilder::LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t se
     : LevelBuilder(tree, leaf_kinds(tree, rules), seed, foliage, progress) {}
 
 LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64_t seed,
-                           const Foliage& foliage, const Progress* progress)
+                           const Foliage& foliage, const Progress* progress, const GrownBark* grown)
     : wood_(leafy_tree(tree, kinds, foliage)),
       kinds_(std::move(kinds)),
-      leaves_(place_foliage(tree, kinds_, seed, foliage)) {
+      leaves_(place_foliage(tree, kinds_, seed, foliage)),
+      grown_(grown) {
     if (progress) progress->check();
     // Collars, and wood that stands for others, are wider than the skeleton says; the trunk goes on below it.
     for (NodeId id = 0; id < wood_.id_end(); id++)
@@ -59,6 +62,9 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
         const Node& root = wood_.node(wood_.root());
         box_.add(root.position - DVec3(0.0, kDeepestFoot + root.radius, 0.0), kFoot * root.radius);
     }
+    if (grown_)
+        for (const GrownBark::Vertex& vertex : grown_->vertices)
+            box_.add(DVec3(vertex.position));
     for (const std::vector<LeafPlacement>& leaves : leaves_)
         add_leaves(box_, leaves, leaf_growth(kMostLevels - 1));
 }
@@ -66,7 +72,7 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
 TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
-    made.bark = build_level_bark(wood_, level, false, progress);
+    made.bark = build_level_bark(wood_, level, false, progress, grown_);
     for (size_t kind = 0; kind < kinds_.size(); kind++) {
         LevelLeaves& part = made.foliage.emplace_back();
         part.leaves = thin_leaves(leaves_[kind], level);

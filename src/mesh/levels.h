@@ -19,6 +19,7 @@
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "geometry/bounds.h"
+#include "mesh/grown_bark.h"
 #include "mesh/mesh.h"
 #include "progress.h"
 #include "tree/tree.h"
@@ -56,8 +57,9 @@ struct TreeLevel {
 class LevelBuilder {
   public:
     // Throws Error for rules that check_leaf_rules() refuses, or Cancelled.
+    // grown: drawn at level 0 instead of the tubes that it covers; it must outlive it; null: tubes alone.
     LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64_t seed, const Foliage& foliage = {},
-                 const Progress* progress = nullptr);
+                 const Progress* progress = nullptr, const GrownBark* grown = nullptr);
     LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},
                  const Progress* progress = nullptr);
 
@@ -74,12 +76,13 @@ class LevelBuilder {
     const Tree wood_;
     const std::vector<LeafKind> kinds_;
     const std::vector<std::vector<LeafPlacement>> leaves_;  // by kind
+    const GrownBark* const grown_;
     Bounds box_;
 };
 
 // The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree. whole_repeats: see
-// TubeOptions.
+// TubeOptions. grown: see LevelBuilder.
 Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats = false,
-                      const Progress* progress = nullptr);
+                      const Progress* progress = nullptr, const GrownBark* grown = nullptr);
 
 }  // namespace treerec

@@ -284,8 +284,10 @@ void TreeExporter::write(const std::string& path) {
 
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
                  const std::string& textures, const Progress* progress, const Foliage& foliage, int levels,
-                 bool pictures_beside) {
-    TreeExporter(tree, {leaves, textures, seed, foliage, levels, pictures_beside}, progress).write(path);
+                 bool pictures_beside, const GrownBark* grown) {
+    ExportOptions options{leaves, textures, seed, foliage, levels, pictures_beside};
+    options.grown = grown;
+    TreeExporter(tree, options, progress).write(path);
 }
 
 }  // namespace treerec

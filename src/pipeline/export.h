@@ -87,6 +87,7 @@ void require_writable_format(const std::string& path);
 // One file: TreeExporter in one call.
 void export_tree(const std::string& path, const Tree& tree, const LeafRules& leaves, uint64_t seed,
                  const std::string& textures = "generic", const Progress* progress = nullptr,
-                 const Foliage& foliage = {}, int levels = 1, bool pictures_beside = false);
+                 const Foliage& foliage = {}, int levels = 1, bool pictures_beside = false,
+                 const GrownBark* grown = nullptr);
 
 }  // namespace treerec

@@ -248,6 +248,16 @@ std::string skeleton_report_json(const SkeletonReport& report) {
     return dump(json);
 }
 
+std::string growth_report_json(const GrownTree& grown) {
+    Json json;
+    json["steps"] = grown.steps;
+    json["branches"] = grown.bark.branches.size();
+    json["vertices"] = grown.bark.vertices.size();
+    json["triangles"] = grown.bark.indices.size() / 3;
+    json["warnings"] = grown.remarks;
+    return dump(json);
+}
+
 std::string report_json(const Reconstruction& result, const ReportDetails& details) {
     Json json;
     json["format_version"] = 1;

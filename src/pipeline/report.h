@@ -6,6 +6,7 @@
 #include <string>
 
 #include "exchange/tree_files.h"
+#include "growth/grow_bark.h"
 #include "photos/bark_picture.h"
 #include "photos/leaf_colours.h"
 #include "photos/marker_scale.h"
@@ -81,6 +82,9 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
 
 // Of a skeleton file that was read: trees, tree_taken (from 1), warnings [sentence].
 std::string skeleton_report_json(const SkeletonReport& report);
+
+// Of bark that was grown: steps, branches (that it covers), vertices, triangles, warnings [sentence].
+std::string growth_report_json(const GrownTree& grown);
 
 // The measurements alone, with the keys above.
 std::string measurements_json(const Tree& tree);

@@ -63,6 +63,7 @@ for kind in release debug; do
     (cd "$work/out" && timeout 120 "./$kind.x86_64" --headless) >"$work/$kind.log" 2>&1
     check "the $kind game runs" grep -q '^digest ' "$work/$kind.log"
     check "the $kind game makes the same bytes as the editor" grep -q "^digest $wanted\$" "$work/$kind.log"
+    check "the $kind game shows the bark that grew" grep -q '^grown true$' "$work/$kind.log"
     check "the $kind game grows the same forest as the editor" grep -q "^forest $forest\$" "$work/$kind.log"
     check "the $kind game knows its scan's name, not on whose disk it lay" grep -q '^source scan.ply$' "$work/$kind.log"
     check "the $kind game has no class of the editor's" grep -q '^editor false$' "$work/$kind.log"

@@ -39,7 +39,9 @@ const UndoStatus := preload("undo_status.gd")
 const ViewState := preload("view_state.gd")
 const Consent := preload("sharing/consent.gd")
 # What a reconstruction makes of a tree; all else is how it looks.
-const _MADE: Array[StringName] = [&"skeleton", &"foliage", &"provenance", &"edit_log"]
+const _MADE: Array[StringName] = [
+	&"skeleton", &"foliage", &"provenance", &"edit_log", &"growth_recipe", &"grown_bark"
+]
 # So many branches that were picked are remembered.
 const _MOST_PICKED: int = 4
 
@@ -374,6 +376,23 @@ func replace_tree(
 		history.add_properties(edited, _stored(edited), before)
 	if place is Transform3D:
 		history.add_property(node, &"transform", place, node.transform)
+	history.commit()
+
+
+## Gives the edited tree the bark and the recipe of [param made]; with [code]null[/code], tubes.
+func set_bark(title: String, made: TreeReconstruction) -> void:
+	if tree == null:
+		return
+	cancel_drag()
+	var imported: TreeReconstruction = tree
+	var edited: TreeReconstruction = _editable(set_bark.bind(title, made))
+	if edited == null:
+		return
+	var with: TreeReconstruction = made if made != null else TreeReconstruction.new()
+	begin_step(title, edited, imported)
+	_add_local(edited, imported)
+	for property: StringName in [&"growth_recipe", &"grown_bark"]:
+		history.add_property(edited, property, with.get(property), edited.get(property))
 	history.commit()
 
 

@@ -40,6 +40,8 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 	var top: TreeReconstruction = tree.reconstruction.duplicate() as TreeReconstruction
 	top.skeleton = _lying((edit.get_removed_wood()[0] as TreeReconstruction).skeleton)
 	top.edit_log = ""
+	top.growth_recipe = ""
+	top.grown_bark = []
 	var fallen: TreeInstance3D = TreeInstance3D.new()
 	for property: String in _COPIED:
 		if property in tree:

@@ -14,6 +14,9 @@ func _ready() -> void:
 	await forest.finished
 	print("forest ", forest.get_tree_count(), " ", Digest.of_forest(forest))
 	print("source ", tree.reconstruction.provenance.get("source"))
+	print(
+		"grown ", tree.reconstruction.has_grown_bark() and not tree.reconstruction.is_bark_stale()
+	)
 	print("triangles ", tree.get_triangle_count())
 	print("editor ", ClassDB.class_exists(&"TreeReconstructor"))
 	var arguments: PackedStringArray = OS.get_cmdline_user_args()

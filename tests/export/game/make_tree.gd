@@ -17,6 +17,12 @@ func _run() -> void:
 		printerr(maker.get_error_message())
 		quit(1)
 		return
+	# The bark that grew is part of what the game makes of the tree.
+	made = maker.grow_bark(made, "edges longest=0.08\nburl along=1.2 radius=0.3 growth=0.8")
+	if made == null:
+		printerr(maker.get_error_message())
+		quit(1)
+		return
 	ResourceSaver.save(made, "res://tree.res", ResourceSaver.FLAG_COMPRESS)
 	print("digest ", Digest.of(made))
 	var forest: TreeVariantSpawner3D = Digest.make_forest(made)

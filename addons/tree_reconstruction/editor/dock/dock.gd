@@ -14,6 +14,7 @@ const Fidelity := preload("fidelity.gd")
 const LString := preload("lstring.gd")
 const Twigs := preload("twigs.gd")
 const Leaves := preload("leaf_rule.gd")
+const Bark := preload("bark.gd")
 const Variants := preload("variants.gd")
 const Export := preload("export.gd")
 
@@ -100,6 +101,7 @@ func _init(session: Session) -> void:
 		Measurements.new(session),
 		Fidelity.new(session),
 		Leaves.new(session),
+		Bark.new(session),
 		Twigs.new(session),
 		LString.new(session),
 		Variants.new(session),

@@ -10,7 +10,14 @@ const Session := preload("../session.gd")
 const Jobs := preload("../jobs.gd")
 # What is the scan's, not the user's, and what is no property of the tree.
 const _NOT_KEPT: Array[StringName] = [
-	&"skeleton", &"foliage", &"provenance", &"edit_log", &"script", &"leaf_preset"
+	&"skeleton",
+	&"foliage",
+	&"provenance",
+	&"edit_log",
+	&"growth_recipe",
+	&"grown_bark",
+	&"script",
+	&"leaf_preset"
 ]
 # Workers keep what stays valid of their last run, so that the next one is quick.
 const _KEPT_WORKERS: int = 2

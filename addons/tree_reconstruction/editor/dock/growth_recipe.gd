@@ -1,0 +1,68 @@
+@tool
+extends RefCounted
+## A recipe of growth (see [method TreeReconstructor.grow_bark]) as lines that can be edited one by
+## one.
+
+
+## A command of the recipe. What is no command, such as a remark, stays as it is.
+class Line:
+	extends RefCounted
+
+	var command: String
+	## What is given, by names, in its order.
+	var values: Dictionary[String, String] = {}
+
+	func _init(text: String) -> void:
+		var words: PackedStringArray = text.strip_edges().split(" ", false)
+		# A value between quotes may have blanks.
+		if text.contains('"') or text.strip_edges().begins_with("#") or words.is_empty():
+			command = text
+			return
+		command = words[0]
+		for word: String in words.slice(1):
+			values[word.get_slice("=", 0)] = word.substr(word.find("=") + 1)
+
+	func get_text() -> String:
+		var text: String = command
+		for key: String in values:
+			text += " %s=%s" % [key, values[key]]
+		return text
+
+
+var lines: Array[Line] = []
+
+
+func _init(text: String = "") -> void:
+	for line: String in text.split("\n", false):
+		if not line.strip_edges().is_empty():
+			lines.append(Line.new(line))
+
+
+func get_text() -> String:
+	var text: String = ""
+	for line: Line in lines:
+		text += line.get_text() + "\n"
+	return text
+
+
+## The first line of a command; it is made where there is none and it is [param wanted].
+func find(command: String, wanted: bool = false) -> Line:
+	for line: Line in lines:
+		if line.command == command:
+			return line
+	if not wanted:
+		return null
+	var made: Line = Line.new(command)
+	lines.insert(0, made)
+	return made
+
+
+## The lines that say what grows where, such as burls: all but those about the surface.
+func get_features() -> Array[Line]:
+	return lines.filter(
+		func(line: Line) -> bool:
+			return (
+				line.command not in ["edges", "steps"]
+				and not line.command.strip_edges().begins_with("#")
+			)
+	)

@@ -1,0 +1,43 @@
+@tool
+extends RefCounted
+## What the library says of bark that grows: patterns as those of sentences.gd.
+
+const PATTERNS: PackedStringArray = [
+	"The tree has no wood that bark could grow on.",
+	(
+		"Nothing of this tree is thick enough for bark with edges of %s mm: make them shorter, or check"
+		+ " the tree's units."
+	),
+	(
+		"%s was left out: its branch is thinner than %s mm and stays a tube. Give it a thicker branch,"
+		+ " or shorter edges."
+	),
+	"%s lies %s m along its branch, which is grown from %s to %s m: it was left out.",
+	"%s found no bark %s m along its branch and was left out.",
+	"A burl",
+	"A hollow",
+	"An obstacle",
+	(
+		"An obstacle stands where the trunk begins, below the ground: nothing can grow there. Move it"
+		+ " aside."
+	),
+	"%s=%s is larger than %s=%s: make it smaller.",
+	"A hollow that begins at from=%s must end later: give until= more than that.",
+	"An obstacle with shape=mesh needs file=, a Wavefront OBJ file.",
+	"An obstacle with file= needs shape=mesh.",
+	"There is no recipe %s; there are %s.",
+	"'%s' has no faces: give a mesh as a Wavefront OBJ file.",
+	"This build was made without CGAL and can't grow bark; get one that has it.",
+	"The saved bark is damaged. Grow it again.",
+	# Of a recipe.
+	"Line %s of the recipe: %s",
+	(
+		"The shortest edge must be at most half of the longest: with longest=%s give shortest=%s or"
+		+ " less."
+	),
+	"There is no %s; a recipe has %s.",
+	"'%s' takes no '%s'; it takes %s.",
+	"'%s' must be %s, not %s.",
+	"a number from %s to %s",
+	"a whole number from %s to %s",
+]

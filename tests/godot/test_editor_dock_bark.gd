@@ -1,0 +1,152 @@
+extends "./dock_suite.gd"
+## The dock "Tree": bark that grows.
+
+const Bark := preload("res://addons/tree_reconstruction/editor/dock/bark.gd")
+const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
+const GrownBark := preload("./test_grown_bark.gd")
+
+
+func _bark() -> Bark:
+	return _dock.sections[&"bark"] as Bark
+
+
+# Coarse, so that it is quick.
+func _grow() -> void:
+	_bark().edge.value = 0.08
+	_bark().grow.pressed.emit()
+	await _finish()
+	_frame()
+
+
+func test_a_burl_is_added_and_grown_as_one_step() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	check(shown.remove.disabled and shown.back.disabled, "There is something to take away.")
+	check("tubes" in shown._notice.text, shown._notice.text)
+	shown.add.pressed.emit()
+	check_equal(shown.list.item_count, 1, "burls")
+	check_near(shown.fields["radius"].value, 0.32, 1e-6, "the radius: twice the trunk's")
+	shown.fields["along"].value = 0.8
+	shown.fields["around"].value = 45.0
+	check("0.80" in shown.list.get_item_text(0), shown.list.get_item_text(0))
+	check_equal(_undo.get_history_count(), 0, "steps before it grows")
+	await _grow()
+	check(of.has_grown_bark() and not of.is_bark_stale(), "No bark has grown: %s" % _said)
+	check("burl along=0.8 around=45 radius=0.32" in of.growth_recipe, of.growth_recipe)
+	check_equal(_undo.get_history_count(), 1, "steps")
+	check_equal(_undo.get_action_name(0), "Grow Bark", "the step")
+	check("as this recipe" in shown._notice.text, shown._notice.text)
+	check_equal(shown.list.item_count, 1, "burls of the tree's own recipe")
+	_undo.undo()
+	_frame()
+	check(not of.has_grown_bark() and of.growth_recipe.is_empty(), "Undo leaves something.")
+	check_equal(shown.list.item_count, 0, "burls after undo")
+	_undo.redo()
+	_frame()
+	check(of.has_grown_bark(), "Redo has no bark.")
+	check_equal(shown.list.item_count, 1, "burls after redo")
+	shown.back.pressed.emit()
+	_frame()
+	check(not of.has_grown_bark() and of.growth_recipe.is_empty(), "It is no tube again.")
+	_undo.undo()
+	check(of.has_grown_bark(), "It does not come back.")
+	_end()
+
+
+func test_a_stale_surface_says_so_and_grows_again() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	await _grow()
+	var shown: Bark = _bark()
+	check_equal(shown.grow.text, "Grow", "the button")
+	_said.clear()
+	_session.run("Cut", "cut node=13")
+	_frame()
+	check(of.is_bark_stale(), "It is not stale.")
+	check("wood beneath" in str(_said), str(_said))
+	check("wood beneath" in shown._notice.text, shown._notice.text)
+	check_equal(shown.grow.text, "Grow Again", "the button")
+	_undo.undo()
+	_frame()
+	check(not of.is_bark_stale(), "It is stale after undo.")
+	check_equal(shown.grow.text, "Grow", "the button after undo")
+	_undo.redo()
+	_frame()
+	shown.grow.pressed.emit()
+	await _finish()
+	_frame()
+	check(not of.is_bark_stale(), "It has not grown again: %s" % _said)
+	_end()
+
+
+func test_a_burl_goes_to_the_selected_branch_and_away() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	_session.select([12])
+	shown.add.pressed.emit()
+	_session.select([])
+	shown.add.pressed.emit()
+	check("node 12" in shown.list.get_item_text(0), shown.list.get_item_text(0))
+	check("trunk" in shown.list.get_item_text(1), shown.list.get_item_text(1))
+	await _grow()
+	# With its place, so that it is found on a tree that was made anew.
+	check("node=12@" in of.growth_recipe, of.growth_recipe)
+	check("node 12" in shown.list.get_item_text(0), shown.list.get_item_text(0))
+	shown.list.select(0)
+	shown.list.item_selected.emit(0)
+	shown.remove.pressed.emit()
+	check_equal(shown.list.item_count, 1, "burls")
+	check("another recipe" in shown._notice.text, shown._notice.text)
+	await _grow()
+	check(not "node=12" in of.growth_recipe, of.growth_recipe)
+	_end()
+
+
+func test_what_is_edited_meanwhile_is_told() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	_bark().edge.value = 0.08
+	_bark().grow.pressed.emit()
+	check(_bark().grow.disabled, "It can be grown twice at once.")
+	_session.run("Cut", "cut node=13")
+	await _finish()
+	_frame()
+	check(of.is_bark_stale(), "The bark fits wood that it did not grow on.")
+	check("edited while" in str(_said), str(_said))
+	_end()
+
+
+func test_it_is_cancelled_and_a_bad_recipe_is_told() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	shown.edge.value = 0.012
+	shown.grow.pressed.emit()
+	await tree.process_frame
+	_session.jobs.cancel(_session.jobs.get_running()[0])
+	await _finish()
+	_frame()
+	check(not of.has_grown_bark(), "It has grown all the same.")
+	check(not shown.grow.disabled, "It can't be grown any more.")
+	check_equal(_undo.get_history_count(), 0, "steps")
+	_said.clear()
+	shown.edge.value = 1.0
+	shown.grow.pressed.emit()
+	await _finish()
+	check("thick enough" in str(_said), str(_said))
+	check_equal(_undo.get_history_count(), 0, "steps of what failed")
+	_end()
+
+
+func test_a_recipe_keeps_what_the_dock_does_not_know() -> void:
+	var text: String = (
+		"# by hand\nedges longest=0.05 shortest=0.02\nburl along=1 growth=2 from=0.3\n"
+		+ 'wire file="a b.obj"\n'
+	)
+	var recipe: Recipe = Recipe.new(text)
+	check_equal(recipe.get_text(), text, "the text")
+	check_equal(recipe.get_features().size(), 2, "features")
+	recipe.get_features()[0].values["along"] = "1.5"
+	check_equal(recipe.get_text(), text.replace("along=1", "along=1.5"), "the text that was edited")
