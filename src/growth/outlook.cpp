@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "growth/triangle_tests.h"
+
 namespace treerec::growth {
 
 namespace {
@@ -72,6 +74,22 @@ double Outlook::flat(Vertex vertex, Scratch& scratch) const {
     return room;
 }
 
+// Metres from the ring to a face, where that is less than `most`. Boxes say little of thin wood, round which
+// a ring reaches.
+double Outlook::apart(const Scratch& scratch, Face face, double most) const {
+    Vertex v[3];
+    surface_.corners(face, v);
+    const DVec3 q[3] = {surface_.place(v[0]), surface_.place(v[1]), surface_.place(v[2])};
+    const Box box = surface_.box(face);
+    for (const Face own : scratch.ring) {
+        if (surface_.box(own).distance(box) >= most) continue;
+        surface_.corners(own, v);
+        const DVec3 p[3] = {surface_.place(v[0]), surface_.place(v[1]), surface_.place(v[2])};
+        most = std::min(most, triangles_apart(p, q));
+    }
+    return most;
+}
+
 double Outlook::clear(Vertex vertex, Scratch& scratch) const {
     const DVec3 mean = gather(vertex, scratch);
     const DVec3 middle = surface_.place(vertex);
@@ -116,7 +134,9 @@ double Outlook::clear(Vertex vertex, Scratch& scratch) const {
     }
     double nearest = reach_;
     for (size_t i = 0; i < scratch.found.size(); i++)
-        if (scratch.stamps[scratch.found[i]] == found) nearest = std::min(nearest, scratch.distances[i]);
+        if (scratch.stamps[scratch.found[i]] == found && scratch.distances[i] < nearest)
+            nearest =
+                std::min(nearest, std::max(scratch.distances[i], apart(scratch, scratch.found[i], nearest)));
     if (obstacles_) nearest = std::min(nearest, obstacles_->distance(patch, reach_));
     return nearest;
 }

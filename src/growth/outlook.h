@@ -36,6 +36,7 @@ class Outlook {
     double clear(Vertex vertex, Scratch& scratch) const;
 
   private:
+    double apart(const Scratch& scratch, Face face, double most) const;
     DVec3 gather(Vertex vertex, Scratch& scratch) const;
 
     const Surface& surface_;

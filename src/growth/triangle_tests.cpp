@@ -1,6 +1,7 @@
 #include "growth/triangle_tests.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace treerec::growth {
 
@@ -26,7 +27,34 @@ bool separates(const DVec3& axis, const DVec3 (&p)[N], const DVec3 (&q)[M], doub
     return between > 0.0 && between * between > gap * gap * squared;
 }
 
+// Metres between the two sets along the axis; negative where they overlap, and for no axis.
+double gap_along(const DVec3& axis, const DVec3 (&p)[3], const DVec3 (&q)[3]) {
+    const double squared = glm::dot(axis, axis);
+    if (!(squared > 0.0)) return -1.0;
+    const double a[3] = {glm::dot(axis, p[0]), glm::dot(axis, p[1]), glm::dot(axis, p[2])};
+    const double b[3] = {glm::dot(axis, q[0]), glm::dot(axis, q[1]), glm::dot(axis, q[2])};
+    const double between = std::max(std::min({a[0], a[1], a[2]}) - std::max({b[0], b[1], b[2]}),
+                                    std::min({b[0], b[1], b[2]}) - std::max({a[0], a[1], a[2]}));
+    return between > 0.0 ? between / std::sqrt(squared) : -1.0;
+}
+
 }  // namespace
+
+double triangles_apart(const DVec3 (&p_in)[3], const DVec3 (&q_in)[3]) {
+    const DVec3 p[3] = {DVec3(0.0), p_in[1] - p_in[0], p_in[2] - p_in[0]};
+    const DVec3 q[3] = {q_in[0] - p_in[0], q_in[1] - p_in[0], q_in[2] - p_in[0]};
+    const DVec3 pe[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
+    const DVec3 qe[3] = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
+    const DVec3 pn = glm::cross(pe[0], pe[1]), qn = glm::cross(qe[0], qe[1]);
+    double widest = std::max({0.0, gap_along(pn, p, q), gap_along(qn, p, q)});
+    for (int i = 0; i < 3; i++) {
+        widest = std::max(
+            {widest, gap_along(glm::cross(pn, pe[i]), p, q), gap_along(glm::cross(qn, qe[i]), p, q)});
+        for (const DVec3& b : qe)
+            widest = std::max(widest, gap_along(glm::cross(pe[i], b), p, q));
+    }
+    return widest;
+}
 
 bool triangles_meet(const DVec3 (&p_in)[3], const DVec3 (&q_in)[3], double gap) {
     // About one of the corners: products of large coordinates would lose the digits that count.

@@ -72,7 +72,7 @@ void bench_limbs(const Settings& settings);
 // Strokes to trees of every species: time, and how well crowns fill their outlines. repetitions: sketches.
 void bench_sketches(const Settings& settings);
 
-// Bark that grows from papers/001's seed, with its parameters and to its sizes, and how time grows with vertices.
+// Bark that grows from papers/001's seed, with its parameters and to its sizes; how time grows with vertices.
 void bench_growth(const Settings& settings);
 
 // Time to write and read L-strings of 10 MB, and to rewrite a grammar.
