@@ -91,7 +91,7 @@ void run_bark(const std::vector<std::string>& words) {
     }
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
-    GrowOptions options;
+    GrowBarkOptions options;
     options.trace = arguments.text("--trace", "");
     options.check_every = static_cast<int>(arguments.whole("--check", 0, 0, 100000));
 

@@ -73,7 +73,7 @@ GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan
 
 }  // namespace
 
-GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOptions& options,
+GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBarkOptions& options,
                     Progress* progress) {
     if (tree.size() < 2) throw Error("The tree has no wood that bark could grow on.");
     GrownTree result;

@@ -26,7 +26,7 @@ struct GrowthStep {
     bool closed = false, outward = false;
 };
 
-struct GrowOptions {
+struct GrowBarkOptions {
     // Every so many steps, and after the last, the surface is judged by CGAL; 0: never.
     int check_every = 0;
     // A folder that each step's moves are written to (growth/trace.h); empty: none.
@@ -42,7 +42,7 @@ struct GrownTree {
 
 // The same tree and recipe give the same bytes. Throws Error for a tree without wood that is thick enough,
 // and in a build without CGAL; Cancelled.
-GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowOptions& options = {},
+GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBarkOptions& options = {},
                     Progress* progress = nullptr);
 
 }  // namespace treerec

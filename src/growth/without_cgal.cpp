@@ -4,7 +4,7 @@
 
 namespace treerec {
 
-GrownTree grow_bark(const Tree&, const GrowthRecipe&, const GrowOptions&, Progress*) {
+GrownTree grow_bark(const Tree&, const GrowthRecipe&, const GrowBarkOptions&, Progress*) {
     throw Error("This build was made without CGAL and can't grow bark; get one that has it.");
 }
 
