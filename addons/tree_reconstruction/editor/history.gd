@@ -11,6 +11,11 @@ extends RefCounted
 ## Actions name resources and nodes of the user's alone, nothing of the plugin: so they outlive it
 ## being switched off, and its scripts being loaded again.
 
+# What a reconstruction makes of a tree; all else is how it looks.
+const _MADE: Array[StringName] = [
+	&"skeleton", &"foliage", &"provenance", &"edit_log", &"growth_recipe", &"grown_bark"
+]
+
 # EditorUndoRedoManager or UndoRedo.
 var _undo: Object
 # The version of each history, by its id, when it was looked at last.
@@ -123,3 +128,14 @@ func _get_plain(context: Object) -> UndoRedo:
 		var id: int = _undo.call(&"get_object_history_id", context)
 		plain = _undo.call(&"get_history_undo_redo", id)
 	return plain
+
+
+## By name, what is saved of [param object] but what was made of it at large, as a skeleton.
+static func stored_values(object: Object) -> Dictionary:
+	var values: Dictionary = {}
+	for property: Dictionary in object.get_property_list():
+		var name: StringName = property.name
+		# What is large is not set by a property of the leaves.
+		if property.usage & PROPERTY_USAGE_STORAGE and name not in _MADE and name != &"script":
+			values[name] = object.get(name)
+	return values

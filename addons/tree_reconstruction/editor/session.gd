@@ -38,10 +38,6 @@ const Sentences := preload("translations/sentences.gd")
 const UndoStatus := preload("undo_status.gd")
 const ViewState := preload("view_state.gd")
 const Consent := preload("sharing/consent.gd")
-# What a reconstruction makes of a tree; all else is how it looks.
-const _MADE: Array[StringName] = [
-	&"skeleton", &"foliage", &"provenance", &"edit_log", &"growth_recipe", &"grown_bark"
-]
 # So many branches that were picked are remembered.
 const _MOST_PICKED: int = 4
 
@@ -333,9 +329,9 @@ func set_value(
 		edited.leaf_rule = own
 	var target: Object = own if of_rule else edited
 	# A property may set others with it, as a preset does: so all are set again.
-	var before: Dictionary = _stored(target)
+	var before: Dictionary = History.stored_values(target)
 	target.set(property, value)
-	var after: Dictionary = _stored(target)
+	var after: Dictionary = History.stored_values(target)
 	begin_step(title, edited, imported, [target.get_instance_id(), property] if merged else [])
 	_add_local(edited, imported)
 	if merged and edited == imported:
@@ -370,10 +366,10 @@ func replace_tree(
 	_add_local(edited, imported)
 	add_replacement(edited, made)
 	if not preset.is_empty():
-		var before: Dictionary = _stored(edited)
+		var before: Dictionary = History.stored_values(edited)
 		edited.leaf_rule = rule
 		edited.leaf_preset = preset
-		history.add_properties(edited, _stored(edited), before)
+		history.add_properties(edited, History.stored_values(edited), before)
 	if place is Transform3D:
 		history.add_property(node, &"transform", place, node.transform)
 	history.commit()
@@ -490,16 +486,6 @@ func _add_local(edited: TreeReconstruction, imported: TreeReconstruction) -> voi
 		),
 		Kind.WARNING
 	)
-
-
-static func _stored(object: Object) -> Dictionary:
-	var values: Dictionary = {}
-	for property: Dictionary in object.get_property_list():
-		var name: StringName = property.name
-		# What is large is not set by a property of the leaves.
-		if property.usage & PROPERTY_USAGE_STORAGE and name not in _MADE and name != &"script":
-			values[name] = object.get(name)
-	return values
 
 
 func _get_tree() -> TreeReconstruction:
