@@ -83,7 +83,8 @@ TEST(SketchLimb, LimbsRemovedFromScansComeBack) {
     std::vector<double> unseen;
     int count = 0;
     for (const Habit habit : {Habit::kBroadleaf, Habit::kBirch, Habit::kConifer})
-        for (uint64_t seed = 21; seed < 21 + static_cast<uint64_t>(test::cases(3)); seed++) {
+        // With sanitizers, too: a mean of fewer says little.
+        for (uint64_t seed = 21; seed < 24; seed++) {
             SCOPED_TRACE(habit_name(habit) + " " + std::to_string(seed));
             const auto trial = make_trial(habit, seed);
             ASSERT_TRUE(trial);
