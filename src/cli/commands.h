@@ -10,6 +10,7 @@
 #include "cli/arguments.h"
 #include "geometry/scan_frame.h"
 #include "lsystem/lstring.h"
+#include "pipeline/export.h"
 #include "scan/read_cloud.h"
 #include "tree/tree.h"
 
@@ -25,6 +26,9 @@ Tree skeleton_from(const Arguments& arguments, const std::string& path, const st
                    std::optional<LStringDialect> dialect = std::nullopt);
 // "--levels" of a model.
 int levels_from(const Arguments& arguments);
+// How a model is to be: "--leaves birch" (or what else names a kind of leaves), "--seed", "--levels" and
+// "--pictures-beside", of those that the command has. Throws UsageError.
+ExportOptions exports_from(const Arguments& arguments, const std::string& leaves = "--leaves");
 // "--dialect paper" (default turtle). Throws UsageError.
 LStringDialect dialect_from(const Arguments& arguments);
 // The same of a command that reads an L-string; nothing without it.

@@ -45,6 +45,20 @@ int levels_from(const Arguments& arguments) {
     return static_cast<int>(arguments.whole("--levels", 1, 1, kMostLevels));
 }
 
+ExportOptions exports_from(const Arguments& arguments, const std::string& leaves) {
+    ExportOptions exports;
+    exports.textures = arguments.text(leaves, exports.textures);
+    exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
+    exports.levels = levels_from(arguments);
+    exports.pictures_beside = arguments.has("--pictures-beside");
+    try {
+        exports.leaves = leaf_preset(exports.textures);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+    return exports;
+}
+
 void require_own(const std::string& path, std::string_view mark, const std::string& what) {
     std::error_code failure;
     if (!std::filesystem::is_regular_file(path_of(path), failure)) return;

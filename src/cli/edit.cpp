@@ -61,16 +61,7 @@ void run_edit(const std::vector<std::string>& words) {
         require_writable_format(out);
     if (arguments.has("--log"))
         require_own(arguments.text("--log", ""), "# treerec edit log ", "no log of edits");
-    ExportOptions exports;
-    exports.textures = arguments.text("--leaves", exports.textures);
-    exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
-    exports.levels = levels_from(arguments);
-    exports.pictures_beside = arguments.has("--pictures-beside");
-    try {
-        exports.leaves = leaf_preset(exports.textures);
-    } catch (const Error& error) {
-        throw UsageError(error.what());
-    }
+    const ExportOptions exports = exports_from(arguments);
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     ScriptOptions options;

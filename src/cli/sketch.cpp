@@ -114,10 +114,12 @@ void run_sketch(const std::vector<std::string>& words) {
     if (positional.size() > 1)
         throw UsageError("'" + positional[1] + "' is too much; name files to write with -o.");
     if (!arguments.has("--onto"))
-        for (const char* name : {"--scan", "--log", "--up", "--tree"})
-            if (arguments.has(name) && !(arguments.has("--twigs-of") && name[2] != 's' && name[2] != 'l'))
-                throw UsageError(std::string(name) +
-                                 " is for limbs: name the tree that gets them with --onto.");
+        for (const char* option : {"--scan", "--log", "--up", "--tree"}) {
+            const std::string name = option;
+            const bool of_twigs = arguments.has("--twigs-of") && (name == "--up" || name == "--tree");
+            if (arguments.has(name) && !of_twigs)
+                throw UsageError(name + " is for limbs: name the tree that gets them with --onto.");
+        }
     const std::vector<std::string>& outs = arguments.all("-o");
     const bool report = arguments.has("--report");
     if (outs.empty() && !report)

@@ -75,13 +75,8 @@ void run_sketch_onto(const Arguments& arguments) {
          {"--height", "--trunk-radius", "--depth", "--crown", "--density", "--twigs-of", "--twigs"})
         if (arguments.has(name))
             throw UsageError(std::string(name) + " is for a sketch of a whole tree, not for --onto.");
-    ExportOptions exports;
-    exports.textures = arguments.text("--species", exports.textures);
-    exports.seed = arguments.whole("--seed", 1, 0, UINT64_MAX);
-    exports.levels = levels_from(arguments);
-    exports.pictures_beside = arguments.has("--pictures-beside");
+    const ExportOptions exports = exports_from(arguments, "--species");
     try {
-        exports.leaves = leaf_preset(exports.textures);
         for (const std::string& out : outs)
             require_writable_format(out);
         if (arguments.has("--log"))

@@ -5,6 +5,7 @@ extends SceneTree
 ##
 ## FOLDER gets one picture for each step, 0000.png and so on; make_captures.sh makes a film of them.
 
+const Stage := preload("sketch_stage.gd")
 const _PART: Vector2i = Vector2i(320, 320)
 const _SUPERSAMPLING: int = 1
 const _STEPS: int = 40
@@ -21,10 +22,8 @@ var _count: int = 0
 var _sketch: TreeSketch
 var _scale: float = 1.0
 var _foot: Vector2
-var _stage: SubViewport = SubViewport.new()
+var _stage: Stage = Stage.new(_PART * _SUPERSAMPLING, 200.0)
 var _paper: SubViewport = SubViewport.new()
-var _camera: Camera3D = Camera3D.new()
-var _shown: TreeInstance3D = TreeInstance3D.new()
 
 
 func _initialize() -> void:
@@ -112,8 +111,8 @@ func _draw(points: int) -> void:
 	# What makes no tree yet leaves the last one, as the editor does.
 	if tree != null:
 		_read_place(maker)
-		_shown.reconstruction = tree
-		await _shown.rebuilt
+		_stage.shown.reconstruction = tree
+		await _stage.shown.rebuilt
 
 
 func _read_place(maker: TreeReconstructor) -> void:
@@ -125,11 +124,13 @@ func _read_place(maker: TreeReconstructor) -> void:
 # As large as it was drawn, and where it was drawn: the tree stands under the pen.
 func _look(turn: float) -> void:
 	var size: float = _scale * _sketch.canvas_size.y
-	_camera.size = size
+	_stage.camera.size = size
 	var off: Vector2 = (0.5 * _sketch.canvas_size - _foot) * _scale
 	var middle: Vector3 = Vector3(off.x, -off.y, 0.0)
-	_camera.look_at_from_position(middle + 100.0 * Vector3(0.0, 0.1, 1.0).normalized(), middle)
-	_shown.rotation.y = turn
+	_stage.camera.look_at_from_position(
+		middle + 100.0 * Vector3(0.0, 0.1, 1.0).normalized(), middle
+	)
+	_stage.shown.rotation.y = turn
 
 
 func _open_stage() -> void:
@@ -141,37 +142,4 @@ func _open_stage() -> void:
 	sheet.color = Color(0.98, 0.97, 0.93)
 	sheet.size = _paper.size
 	_paper.add_child(sheet)
-	_stage.own_world_3d = true
-	_stage.msaa_3d = Viewport.MSAA_4X
-	# Each picture takes long without a graphics card: only those that are kept are drawn.
-	_stage.render_target_update_mode = SubViewport.UPDATE_DISABLED
-	var environment: Environment = Environment.new()
-	environment.background_mode = Environment.BG_COLOR
-	environment.background_color = Color(0.87, 0.9, 0.93)
-	environment.sky = Sky.new()
-	environment.sky.sky_material = ProceduralSkyMaterial.new()
-	environment.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
-	environment.ambient_light_energy = 0.7
-	environment.tonemap_mode = Environment.TONE_MAPPER_FILMIC
-	var world: WorldEnvironment = WorldEnvironment.new()
-	world.environment = environment
-	_stage.add_child(world)
-	var sun: DirectionalLight3D = DirectionalLight3D.new()
-	sun.rotation_degrees = Vector3(-48.0, -35.0, 0.0)
-	sun.shadow_enabled = true
-	sun.directional_shadow_max_distance = 80.0
-	_stage.add_child(sun)
-	var ground: MeshInstance3D = MeshInstance3D.new()
-	var plane: PlaneMesh = PlaneMesh.new()
-	plane.size = Vector2(200.0, 60.0)
-	var earth: StandardMaterial3D = StandardMaterial3D.new()
-	earth.albedo_color = Color(0.16, 0.2, 0.09)
-	earth.roughness = 1.0
-	plane.material = earth
-	ground.mesh = plane
-	_stage.add_child(ground)
-	_camera.projection = Camera3D.PROJECTION_ORTHOGONAL
-	_camera.far = 400.0
-	_stage.add_child(_camera)
-	_stage.add_child(_shown)
 	await process_frame

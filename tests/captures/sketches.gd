@@ -5,6 +5,7 @@ extends SceneTree
 ##
 ## FOLDER: of sketches; PICTURE: the file to write, of NAME.json in this order, or of all.
 
+const Stage := preload("sketch_stage.gd")
 const _SIZE: Vector2i = Vector2i(330, 330)
 const _SUPERSAMPLING: int = 2
 const _COLUMNS: int = 2
@@ -14,9 +15,7 @@ const _INK: Dictionary[String, Color] = {
 	"branch": Color(0.6, 0.42, 0.25)
 }
 
-var _viewport: SubViewport = SubViewport.new()
-var _camera: Camera3D = Camera3D.new()
-var _shown: TreeInstance3D = TreeInstance3D.new()
+var _stage: Stage = Stage.new(_SIZE * _SUPERSAMPLING, 60.0)
 
 
 func _initialize() -> void:
@@ -29,7 +28,8 @@ func _draw() -> void:
 	if names.is_empty():
 		for file: String in DirAccess.get_files_at(arguments[0]):
 			names.append(file.get_basename())
-	await _open_stage()
+	root.add_child(_stage)
+	await process_frame
 	var rows: Array[Image] = []
 	for name: String in names:
 		var maker: TreeReconstructor = TreeReconstructor.new()
@@ -41,8 +41,8 @@ func _draw() -> void:
 			return
 		var row: Image = Image.create_empty(_SIZE.x * 3, _SIZE.y, false, Image.FORMAT_RGB8)
 		_put(row, await _paper(sketch, maker.get_report()["strokes"]), 0)
-		_shown.reconstruction = tree
-		await _shown.rebuilt
+		_stage.shown.reconstruction = tree
+		await _stage.shown.rebuilt
 		_put(row, await _look(tree, 0.0), 1)
 		_put(row, await _look(tree, 0.5 * PI), 2)
 		rows.append(row)
@@ -69,61 +69,21 @@ func _put(row: Image, picture: Image, column: int) -> void:
 	row.blit_rect(picture, Rect2i(Vector2i.ZERO, _SIZE), Vector2i(column * _SIZE.x, 0))
 
 
-func _open_stage() -> void:
-	_viewport.size = _SIZE * _SUPERSAMPLING
-	_viewport.own_world_3d = true
-	_viewport.msaa_3d = Viewport.MSAA_4X
-	# Each picture takes seconds without a graphics card: only those that are kept are drawn.
-	_viewport.render_target_update_mode = SubViewport.UPDATE_DISABLED
-	root.add_child(_viewport)
-	var sky: ProceduralSkyMaterial = ProceduralSkyMaterial.new()
-	var environment: Environment = Environment.new()
-	environment.background_mode = Environment.BG_COLOR
-	environment.background_color = Color(0.87, 0.9, 0.93)
-	environment.sky = Sky.new()
-	environment.sky.sky_material = sky
-	environment.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
-	environment.ambient_light_energy = 0.7
-	environment.tonemap_mode = Environment.TONE_MAPPER_FILMIC
-	var world: WorldEnvironment = WorldEnvironment.new()
-	world.environment = environment
-	_viewport.add_child(world)
-	var sun: DirectionalLight3D = DirectionalLight3D.new()
-	sun.rotation_degrees = Vector3(-48.0, -35.0, 0.0)
-	sun.shadow_enabled = true
-	sun.directional_shadow_max_distance = 80.0
-	_viewport.add_child(sun)
-	var ground: MeshInstance3D = MeshInstance3D.new()
-	var plane: PlaneMesh = PlaneMesh.new()
-	plane.size = Vector2(60.0, 60.0)
-	var earth: StandardMaterial3D = StandardMaterial3D.new()
-	earth.albedo_color = Color(0.16, 0.2, 0.09)
-	earth.roughness = 1.0
-	plane.material = earth
-	ground.mesh = plane
-	_viewport.add_child(ground)
-	_camera.projection = Camera3D.PROJECTION_ORTHOGONAL
-	_camera.far = 400.0
-	_viewport.add_child(_camera)
-	_viewport.add_child(_shown)
-	await process_frame
-
-
 func _look(tree: TreeReconstruction, turn: float) -> Image:
 	var box: AABB = tree.get_aabb()
 	var size: float = maxf(box.size.y * 1.12, maxf(box.size.x, box.size.z) * 1.08)
-	_camera.size = size
+	_stage.camera.size = size
 	var middle: Vector3 = Vector3(box.get_center().x, 0.47 * size, box.get_center().z)
 	# A little from above, so that the ground is seen.
 	var way: Vector3 = Vector3(sin(turn), 0.12, cos(turn)).normalized()
-	_camera.position = middle + 100.0 * way
-	_camera.look_at_from_position(_camera.position, middle)
+	_stage.camera.position = middle + 100.0 * way
+	_stage.camera.look_at_from_position(_stage.camera.position, middle)
 	for frame: int in 4:
 		await process_frame
-	_viewport.render_target_update_mode = SubViewport.UPDATE_ONCE
+	_stage.render_target_update_mode = SubViewport.UPDATE_ONCE
 	await process_frame
 	await RenderingServer.frame_post_draw
-	var picture: Image = _viewport.get_texture().get_image()
+	var picture: Image = _stage.get_texture().get_image()
 	picture.resize(_SIZE.x, _SIZE.y, Image.INTERPOLATE_LANCZOS)
 	picture.convert(Image.FORMAT_RGB8)
 	return picture

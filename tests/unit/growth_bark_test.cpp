@@ -8,22 +8,17 @@
 #include "edit/address.h"
 #include "geometry/random.h"
 #include "growth/grow_bark.h"
+#include "growth_trees.h"
 #include "mesh/branch_tubes.h"
 #include "random_tree.h"
 #include "tree/branches.h"
 
 using namespace treerec;
+using test::cylinder;
+using test::expect_sound;
+using test::radii;
 
 namespace {
-
-// A straight trunk, as thick all along.
-Tree cylinder(double radius, double height) {
-    Tree tree;
-    NodeId last = tree.add_root(DVec3(0.0), radius, kTrunkFlag);
-    for (int i = 1; i <= 10; i++)
-        last = tree.add_child(last, DVec3(0.0, height * i / 10.0, 0.0), radius, kTrunkFlag);
-    return tree;
-}
 
 // A trunk with stout branches this way and that, some of which fork.
 Tree stout_tree(uint64_t seed) {
@@ -50,33 +45,8 @@ Tree stout_tree(uint64_t seed) {
     return tree;
 }
 
-void expect_sound(const GrowthStep& step) {
-    EXPECT_TRUE(step.closed) << "step " << step.step;
-    EXPECT_TRUE(step.outward) << "step " << step.step;
-    EXPECT_EQ(step.chi, 2) << "step " << step.step;
-    EXPECT_EQ(step.components, 1U) << "step " << step.step;
-    EXPECT_EQ(step.intersections, 0U) << "step " << step.step;
-    EXPECT_EQ(step.above_longest, 0U) << "step " << step.step;
-    EXPECT_EQ(step.unexplained, 0U) << "step " << step.step;
-}
-
 GrowthRecipe recipe_of(const Tree& tree, const std::string& text) {
     return read_growth_recipe(tree, text);
-}
-
-// Metres from the Y axis, of the vertices between two heights whose angle about it is within `width` radians
-// of `angle`.
-std::vector<double> radii(const GrownBark& bark, double low, double high, double angle = 0.0,
-                          double width = 4.0) {
-    std::vector<double> found;
-    for (const GrownBark::Vertex& vertex : bark.vertices) {
-        const DVec3 p(vertex.position);
-        if (p.y < low || p.y > high) continue;
-        if (std::abs(std::remainder(std::atan2(p.z, p.x) - angle, 2.0 * kPi)) > width) continue;
-        found.push_back(std::hypot(p.x, p.z));
-    }
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "geometry/random.h"
 #include "growth/grow_bark.h"
 #include "growth/shapes.h"
+#include "growth_trees.h"
 #include "mesh/branch_tubes.h"
 
 using namespace treerec;
@@ -20,11 +21,7 @@ namespace {
 constexpr double kRadius = 0.15, kHeight = 1.2;  // of the trunk
 
 Tree trunk() {
-    Tree tree;
-    NodeId last = tree.add_root(DVec3(0.0), kRadius, kTrunkFlag);
-    for (int i = 1; i <= 10; i++)
-        last = tree.add_child(last, DVec3(0.0, kHeight * i / 10.0, 0.0), kRadius, kTrunkFlag);
-    return tree;
+    return test::cylinder(kRadius, kHeight);
 }
 
 GrownTree grow(const std::string& lines, int check_every = 0) {
@@ -35,13 +32,8 @@ GrownTree grow(const std::string& lines, int check_every = 0) {
 void expect_sound(const GrownTree& grown) {
     EXPECT_TRUE(grown.remarks.empty()) << (grown.remarks.empty() ? "" : grown.remarks[0]);
     ASSERT_GE(grown.checks.size(), 3U);
-    for (const GrowthStep& step : grown.checks) {
-        EXPECT_TRUE(step.closed && step.outward) << "step " << step.step;
-        EXPECT_EQ(step.chi, 2) << "step " << step.step;
-        EXPECT_EQ(step.intersections, 0U) << "step " << step.step;
-        EXPECT_EQ(step.above_longest, 0U) << "step " << step.step;
-        EXPECT_EQ(step.unexplained, 0U) << "step " << step.step;
-    }
+    for (const GrowthStep& step : grown.checks)
+        test::expect_sound(step);
 }
 
 double from_axis(const GrownBark::Vertex& vertex) {

@@ -15,8 +15,12 @@
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "growth/grow_bark.h"
+#include "growth_trees.h"
 
 using namespace treerec;
+using test::cylinder;
+using test::expect_sound;
+using test::radii;
 
 namespace {
 
@@ -77,40 +81,12 @@ TreeCase random_setup(uint64_t seed) {
     return setup;
 }
 
-void expect_sound(const GrowthStep& step) {
-    EXPECT_TRUE(step.closed) << "step " << step.step;
-    EXPECT_TRUE(step.outward) << "step " << step.step;
-    EXPECT_EQ(step.chi, 2) << "step " << step.step;
-    EXPECT_EQ(step.components, 1U) << "step " << step.step;
-    EXPECT_EQ(step.intersections, 0U) << "step " << step.step;
-    EXPECT_EQ(step.above_longest, 0U) << "step " << step.step;
-    EXPECT_EQ(step.unexplained, 0U) << "step " << step.step;
-}
-
 bool same(const GrownBark& a, const GrownBark& b) {
     return a.indices == b.indices &&
            std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end(),
                       [](const GrownBark::Vertex& v, const GrownBark::Vertex& w) {
                           return v.position == w.position && v.normal == w.normal && v.along == w.along;
                       });
-}
-
-Tree cylinder(double radius, double height) {
-    Tree tree;
-    NodeId last = tree.add_root(DVec3(0.0), radius, kTrunkFlag);
-    for (int i = 1; i <= 10; i++)
-        last = tree.add_child(last, DVec3(0.0, height * i / 10.0, 0.0), radius, kTrunkFlag);
-    return tree;
-}
-
-// Metres from the Y axis, sorted, between two heights.
-std::vector<double> radii(const GrownBark& bark, double low, double high) {
-    std::vector<double> found;
-    for (const GrownBark::Vertex& vertex : bark.vertices)
-        if (vertex.position.y > low && vertex.position.y < high)
-            found.push_back(std::hypot(vertex.position.x, vertex.position.z));
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 }  // namespace
