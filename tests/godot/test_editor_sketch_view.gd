@@ -54,13 +54,15 @@ func _on_history_wanted(redo: bool) -> void:
 func _on_made(made: TreeReconstruction) -> void:
 	_added = TreeInstance3D.new()
 	_added.reconstruction = made
-	check(_panel.view.place is Transform3D, "Nobody says where the tree has to stand.")
+	var is_told: bool = _panel.view.place is Transform3D
+	check_equal(is_told, _panel.view.enabled, "whether it is told where the tree has to stand")
 	_undo.create_action("Add Tree to Scene")
 	_undo.add_do_method(tree.root.add_child.bind(_added))
 	_undo.add_do_reference(_added)
 	_undo.add_undo_method(tree.root.remove_child.bind(_added))
 	_undo.commit_action()
-	_added.global_transform = _panel.view.place
+	if is_told:
+		_added.global_transform = _panel.view.place
 	_session.edit_node(_added)
 	_panel.set_node(_added)
 
