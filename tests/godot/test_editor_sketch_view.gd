@@ -379,6 +379,26 @@ func test_what_cannot_be_drawn_is_said() -> void:
 	_shut()
 
 
+func test_the_view_is_drawn_in_whatever_tool_the_paper_had() -> void:
+	await _open()
+	for tool: int in [SketchPanel.Canvas.Tool.RESHAPE, SketchPanel.Canvas.Tool.ERASE]:
+		var button: Button = _panel.bar.get_tool_button(tool)
+		button.button_pressed = true
+		button.pressed.emit()
+		check_equal(_panel.view.tool, tool, "the tool of the view")
+		_panel.bar.in_view.button_pressed = false
+		_panel.bar.in_view.button_pressed = true
+		check_equal(_panel.view.tool, SketchPanel.Canvas.Tool.DRAW, "the tool in the view")
+		check_equal(_panel.canvas.tool, SketchPanel.Canvas.Tool.DRAW, "the tool on the paper")
+		check(not button.button_pressed, "The button of another tool stays pressed.")
+	# On an empty sheet there is nothing to erase or reshape.
+	_panel.bar.get_tool_button(SketchPanel.Canvas.Tool.RESHAPE).button_pressed = true
+	_panel.bar.get_tool_button(SketchPanel.Canvas.Tool.RESHAPE).pressed.emit()
+	_panel.set_node(null)
+	check_equal(_panel.view.tool, SketchPanel.Canvas.Tool.DRAW, "the tool of an empty sheet")
+	_shut()
+
+
 func test_a_stroke_under_way_is_given_up() -> void:
 	await _open()
 	_panel.view.input(_camera, SIZE, _event(Vector2(600, 640), true))

@@ -62,7 +62,7 @@ func _init() -> void:
 	)
 	in_view.toggle_mode = true
 	in_view.focus_mode = Control.FOCUS_NONE
-	in_view.toggled.connect(in_view_chosen.emit)
+	in_view.toggled.connect(_on_in_view)
 	add_child(in_view)
 	add_child(VSeparator.new())
 	begin = Widgets.button(
@@ -82,8 +82,10 @@ func _init() -> void:
 		add_child(button)
 
 
-## Shows what can be done with the strokes there are.
+## Shows what can be done with the strokes there are: without any they are drawn.
 func update(has_strokes: bool) -> void:
+	if not has_strokes:
+		_draw_strokes()
 	save_file.disabled = not has_strokes
 	clear.disabled = not has_strokes
 
@@ -103,3 +105,18 @@ static func _shortcut(key: Key) -> Shortcut:
 
 func _on_tool(index: int) -> void:
 	tool_chosen.emit(index)
+
+
+func _on_in_view(on: bool) -> void:
+	if on:
+		# The other tools are those of the paper.
+		_draw_strokes()
+	in_view_chosen.emit(on)
+
+
+func _draw_strokes() -> void:
+	var draw: Button = get_tool_button(Canvas.Tool.DRAW)
+	if draw.button_pressed:
+		return
+	draw.button_pressed = true
+	tool_chosen.emit(Canvas.Tool.DRAW)

@@ -40,6 +40,7 @@ func run() -> void:
 		await user.key("l")
 	await until(func() -> bool: return not _node.is_building_levels(), "the tree is built")
 	await fine_picture("bark-has-grown")
+	session().get(&"view").leaves = true
 	await _press_undo("ctrl+z")
 	check_equal(bytes(_of), before, "the tree after undo")
 	check_equal(list.item_count, 0, "burls after undo")
