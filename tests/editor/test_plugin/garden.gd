@@ -182,10 +182,10 @@ func node_on_screen(of: TreeInstance3D, id: int) -> Vector2:
 	return on_screen(of.global_transform * of.reconstruction.get_node_position(id))
 
 
-## Those of the nodes that the mouse finds at their own place, nothing else being nearer. The nodes
-## must have been framed.
+## Those of the nodes that the mouse finds at their own place, nothing else being nearer: as many as
+## `most`, or at least `least` of them. The nodes must have been framed.
 func clear_nodes(
-	of: TreeInstance3D, candidates: PackedInt32Array, most: int = 1
+	of: TreeInstance3D, candidates: PackedInt32Array, most: int = 1, least: int = most
 ) -> PackedInt32Array:
 	var picker: RefCounted = session().get(&"picker")
 	var camera: Camera3D = view().get_camera_3d()
@@ -203,7 +203,7 @@ func clear_nodes(
 			found.append(id)
 			if found.size() == most:
 				break
-	check(found.size() == most, "Too few nodes can be clicked.")
+	check(found.size() >= least, "Too few nodes can be clicked.")
 	return found
 
 

@@ -60,7 +60,7 @@ func _status() -> String:
 # Of the largest branches the one that is seen longest.
 func _prune() -> bool:
 	var longest: float = 0.0
-	for id: int in clear_nodes(_node, large_branches(_of), 3):
+	for id: int in clear_nodes(_node, large_branches(_of), 3, 1):
 		var axis: PackedVector3Array = _axis_above(id)
 		var line: PackedVector2Array = _on_screen(axis)
 		var length: float = line[0].distance_to(line[-1])
