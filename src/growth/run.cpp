@@ -54,12 +54,12 @@ void Run::plant() {
         for (int side = 0; side < kSides; side++) {
             const double angle = 2.0 * kPi * side / kSides;
             ring[row][side] =
-                add(foot.position + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
+                add(foot.pith + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
                     Tissue::kCambium, foot.along + edge * row);
         }
-    const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
+    const Vertex below = add(foot.pith, Tissue::kCambium, foot.along);
     const Vertex above =
-        add(foot.position + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
+        add(foot.pith + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
     for (int side = 0; side < kSides; side++) {
         const int next = (side + 1) % kSides;
         mesh.add_face(below, ring[0][next], ring[0][side]);
@@ -71,6 +71,11 @@ void Run::plant() {
     }
     apex_[0] = above;
     contact_.list_all();
+}
+
+// Metres along its axis where an apical vertex is that has come all its way in this step.
+double Run::reached(const Cell& cell) const {
+    return tip_at(plan_.branches[static_cast<size_t>(cell.owner)], step_ + 1.0).along;
 }
 
 void Run::advance(const std::function<void(const Surface&)>& moved) {
@@ -146,6 +151,7 @@ void Run::move_all() {
             if (cell.hold == Hold::kFree) {
                 if (!blocked) cell.touched = -1;
                 cell.excess += cell.extra / parts;
+                if (cell.tissue == Tissue::kApical && part + 1 == parts) cell.along = reached(cell);
                 if (cell.tissue == Tissue::kDecayed) cell.sunk += length / parts;
             } else {
                 count_.frozen++;

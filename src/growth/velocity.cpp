@@ -11,15 +11,43 @@ namespace {
 
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
+constexpr double kFlatFoot = 4.0;  // the trunk's radius over how deep its wood is below the axis's foot
 
-// S_c: what cambium of this age has to grow to come to its axis's radius in the end.
-double cambium_speed(const Cell& cell, const AxisPlace& axis, double from_axis, const GrowthPlan& plan,
+// How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the axis,
+// and below its foot as in a flat bowl.
+struct Stand {
+    DVec3 off, normal;
+};
+
+Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPlace& axis, const DVec3& place,
+               const DVec3& normal, int step) {
+    const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
+    const double up = glm::dot(normal, axis.direction);
+    Stand stand{off - axis.direction * glm::dot(off, axis.direction), normal - axis.direction * up};
+    const AxisPlace& foot = branch.axis.front();
+    const double above = glm::dot(place - wood_centre(plan, foot, step + 1.0), foot.direction);
+    if (branch.parent < 0 && above < 0.0 && axis.along < foot.along + foot.radius) {
+        stand.off += axis.direction * (kFlatFoot * above);
+        stand.normal += axis.direction * (kFlatFoot * up);
+    }
+    return stand;
+}
+
+// S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The pith
+// need not lie on the axis: what grows from it towards the axis has farther to go.
+double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
                      int step) {
     if (!plan.follow) return axis.speed;
     const double usual = axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
-    return std::clamp(bark_radius(plan, axis, step + 1.0) - (from_axis - cell.excess), 0.0,
-                      std::max(kCatchUp * usual, 0.5 * young));
+    const double most = std::max(kCatchUp * usual, 0.5 * young);
+    const double bark = bark_radius(plan, axis, step + 1.0) + cell.excess;
+    const double inside = bark * bark - glm::dot(stand.off, stand.off);
+    if (!(inside > 0.0)) return 0.0;
+    const double out = glm::dot(stand.normal, stand.off), square = glm::dot(stand.normal, stand.normal);
+    // Where it first comes to the bark; no farther than `most` matters.
+    const double way = std::sqrt(out * out + square * inside) - out;
+    return square * most > way ? way / square : most;
 }
 
 // Equation 6's sum: of one feature the largest, of several together.
@@ -71,15 +99,14 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
             if (cell.tissue == Tissue::kApical) {  // equation 3
                 const AxisPlace tip = tip_at(branch, step + 1.0);
-                cell.along = tip.along;
-                const DVec3 way = tip.position - place;
+                const DVec3 way = tip.pith - place;
                 // One that the bark has overtaken waits until its axis has come out of it.
                 const bool ahead = glm::dot(way, tip.direction) > 0.0;
                 cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
                 continue;
             }
             const AxisPlace axis = place_at(branch, cell.along);
-            const DVec3 off = place - axis.position;
+            const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
             const DVec3 from_axis = off - axis.direction * glm::dot(off, axis.direction);
             const double distance = glm::length(from_axis);
             cell.extra = 0.0;
@@ -88,8 +115,8 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 cell.velocity = decay_velocity(surface, v, features[static_cast<size_t>(cell.hollow)],
                                                from_axis, bark_radius(plan, axis, step));
             } else {
-                cell.speed = cambium_speed(cell, axis, distance, plan, step);
                 const DVec3 normal = vertex_normal(surface, v);
+                cell.speed = cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step), plan, step);
                 Lips::Growth lip = lips.at(place, normal);
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
