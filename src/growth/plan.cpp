@@ -6,6 +6,8 @@ namespace treerec::growth {
 
 namespace {
 
+constexpr double kCatchUp = 2.0;  // of its pace, that a tip comes after with
+
 AxisPlace between(const AxisPlace& a, const AxisPlace& b, double t) {
     AxisPlace place;
     place.position = glm::mix(a.position, b.position, t);
@@ -38,6 +40,14 @@ AxisPlace place_at(const GrowthBranch& branch, double along) {
 
 AxisPlace tip_at(const GrowthBranch& branch, double step) {
     return find(branch, step, [](const AxisPlace& place) { return place.step; });
+}
+
+AxisPlace next_place(const GrowthBranch& branch, double along, int step) {
+    const double mean = (branch.axis.back().along - branch.axis.front().along) /
+                        std::max(branch.last_step() - branch.first_step(), 1.0);
+    const AxisPlace next = tip_at(branch, step + 1.0);
+    const double pace = std::max(next.along - tip_at(branch, step).along, mean);
+    return next.along > along + kCatchUp * pace ? place_at(branch, along + kCatchUp * pace) : next;
 }
 
 namespace {

@@ -43,6 +43,9 @@ struct GrowthPlan {
 AxisPlace place_at(const GrowthBranch& branch, double along);
 // Where the tip stands at a step.
 AxisPlace tip_at(const GrowthBranch& branch, double step);
+// Where a tip goes in a step that has come `along` metres: where it should be by then. One that was held up
+// comes after at twice its pace.
+AxisPlace next_place(const GrowthBranch& branch, double along, int step);
 // Where the middle of plain wood at `place` of a branch is at a step: at first the pith, in the end the axis.
 DVec3 wood_centre(const GrowthPlan& plan, const AxisPlace& place, double step);
 // Metres: how thick plain wood at `place` of a branch is at a step.

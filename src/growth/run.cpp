@@ -75,7 +75,7 @@ void Run::plant() {
 
 // Metres along its axis where an apical vertex is that has come all its way in this step.
 double Run::reached(const Cell& cell) const {
-    return tip_at(plan_.branches[static_cast<size_t>(cell.owner)], step_ + 1.0).along;
+    return next_place(plan_.branches[static_cast<size_t>(cell.owner)], cell.along, step_).along;
 }
 
 void Run::advance(const std::function<void(const Surface&)>& moved) {

@@ -30,12 +30,13 @@ double ease(double t) {
     return t * t * (3.0 - 2.0 * t);
 }
 
-// What is thick is not as crooked inside as a skeleton that a scan led astray: a thin young tip could not follow
-// each kink, and would run into itself. The bark comes to the axis's own radius all the same.
+// What is thick is not as crooked inside as a skeleton that a scan led astray: a thin young tip could not
+// follow each kink, and would run into itself. The bark comes to the axis's own radius all the same.
 void even_out(GrowthBranch& branch, double longest, double shortest) {
     const double first = branch.axis.front().along, last = branch.axis.back().along;
     for (AxisPlace& place : branch.axis) {
-        const double width = std::min({kEven * place.radius + longest, place.along - first, last - place.along});
+        const double width =
+            std::min({kEven * place.radius + longest, place.along - first, last - place.along});
         DVec3 sum(0.0);
         double weights = 0.0;
         for (int i = -kEvenPlaces; i <= kEvenPlaces; i++) {

@@ -13,8 +13,8 @@ namespace {
 constexpr double kCatchUp = 2.0;
 constexpr double kFlatFoot = 4.0;  // the trunk's radius over how deep its wood is below the axis's foot
 
-// How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the axis,
-// and below its foot as in a flat bowl.
+// How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
+// axis, and below its foot as in a flat bowl.
 struct Stand {
     DVec3 off, normal;
 };
@@ -33,8 +33,8 @@ Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPla
     return stand;
 }
 
-// S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The pith
-// need not lie on the axis: what grows from it towards the axis has farther to go.
+// S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The
+// pith need not lie on the axis: what grows from it towards the axis has farther to go.
 double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
                      int step) {
     if (!plan.follow) return axis.speed;
@@ -98,11 +98,15 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             const DVec3 place = surface.place(v);
             const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
             if (cell.tissue == Tissue::kApical) {  // equation 3
-                const AxisPlace tip = tip_at(branch, step + 1.0);
-                const DVec3 way = tip.pith - place;
+                const AxisPlace next = next_place(branch, cell.along, step);
+                const DVec3 way = next.pith - place;
+                cell.velocity = DVec3(0.0);
+                if (cell.along >= branch.axis.back().along) continue;
                 // One that the bark has overtaken waits until its axis has come out of it.
-                const bool ahead = glm::dot(way, tip.direction) > 0.0;
-                cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
+                if (glm::dot(way, next.direction) > 0.0)
+                    cell.velocity = way;
+                else
+                    cell.along = next.along;
                 continue;
             }
             const AxisPlace axis = place_at(branch, cell.along);
@@ -116,7 +120,8 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                                                from_axis, bark_radius(plan, axis, step));
             } else {
                 const DVec3 normal = vertex_normal(surface, v);
-                cell.speed = cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step), plan, step);
+                cell.speed =
+                    cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step), plan, step);
                 Lips::Growth lip = lips.at(place, normal);
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
