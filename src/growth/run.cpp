@@ -73,11 +73,6 @@ void Run::plant() {
     contact_.list_all();
 }
 
-// Metres along its axis where an apical vertex is that has come all its way in this step.
-double Run::reached(const Cell& cell) const {
-    return next_place(plan_.branches[static_cast<size_t>(cell.owner)], cell.along, step_).along;
-}
-
 void Run::advance(const std::function<void(const Surface&)>& moved) {
     sprout();
     choose_buds();
@@ -151,7 +146,7 @@ void Run::move_all() {
             if (cell.hold == Hold::kFree) {
                 if (!blocked) cell.touched = -1;
                 cell.excess += cell.extra / parts;
-                if (cell.tissue == Tissue::kApical && part + 1 == parts) cell.along = reached(cell);
+                if (cell.tissue == Tissue::kApical) cell.along += (cell.bound - cell.along) / (parts - part);
                 if (cell.tissue == Tissue::kDecayed) cell.sunk += length / parts;
             } else {
                 count_.frozen++;

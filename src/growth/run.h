@@ -42,7 +42,6 @@ class Run {
     void choose_buds();
     void sprout();
     void move_all();
-    double reached(const Cell& cell) const;
     void follow_merges();
 
     const GrowthPlan plan_;

@@ -101,6 +101,7 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 const AxisPlace next = next_place(branch, cell.along, step);
                 const DVec3 way = next.pith - place;
                 cell.velocity = DVec3(0.0);
+                cell.bound = next.along;
                 if (cell.along >= branch.axis.back().along) continue;
                 // One that the bark has overtaken waits until its axis has come out of it.
                 if (glm::dot(way, next.direction) > 0.0)
