@@ -1,5 +1,7 @@
 #include "growth/velocity.h"
 
+#include <CGAL/boost/graph/iterator.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,8 @@ namespace {
 
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
+constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
+constexpr double kTension = 0.15;  // and beside wood of what it stands out of its neighbours
 constexpr double kFlatFoot = 4.0;  // the trunk's radius over how deep its wood is below the axis's foot
 
 // How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
@@ -62,6 +66,32 @@ double extra_growth(const Surface& surface, const std::vector<Feature>& features
         sum += most;
     }
     return sum;
+}
+
+// How far a vertex is outside of where its neighbours are.
+DVec3 bend(const Surface& surface, Vertex v) {
+    DVec3 sum(0.0);
+    int count = 0;
+    for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
+        sum += surface.place(other);
+        count++;
+    }
+    return surface.place(v) - sum / static_cast<double>(count);
+}
+
+// Beside the paper: where a lip closes there is less and less room, and it would buckle into beads. Metres by
+// which a vertex grows less in a step because it stands out of a surface that bends evenly, as a bead does
+// and a lip's roll does not; and beside wood also because it stands out of its neighbours' plane, so that
+// mouths stay smooth.
+double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus) {
+    double around = 0.0;
+    int count = 0;
+    for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
+        around += glm::dot(bend(surface, other), normal);
+        count++;
+    }
+    const double own = glm::dot(bend(surface, v), normal);
+    return kSmooth * (own - around / count) + (callus ? kTension * own : 0.0);
 }
 
 // Equation 8, as far as the hollow may reach.
@@ -127,11 +157,16 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
                 // Equations 4, 6, 9 and 10.
-                cell.velocity = (1.0 + extra) * cell.speed * (normal + lip.wrap);
+                const double whole = (1.0 + extra) * cell.speed;
+                const double less = lip.extra > 0.0
+                                        ? std::clamp(smoothed(surface, v, normal, lip.callus), -whole, whole)
+                                        : 0.0;
+                cell.velocity = (whole - less) * (normal + lip.wrap);
                 // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
-                const DVec3 more = extra * normal + (1.0 + extra) * lip.wrap;
+                const DVec3 more = (whole - cell.speed) * normal + whole * lip.wrap;
                 const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
-                cell.extra = cell.speed * std::max(away, 0.0);
+                const double smooth = distance > 0.0 ? less * glm::dot(normal, from_axis) / distance : 0.0;
+                cell.extra = std::max(away, 0.0) - smooth;
             }
             most = std::max(most, glm::length(cell.velocity));
         }
