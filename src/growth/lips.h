@@ -17,8 +17,9 @@ class Lips {
     // As the surface is now. obstacles: null for none. All must outlive what is asked next.
     void find(const Surface& surface, const std::vector<Feature>& features, const Obstacles* obstacles);
     struct Growth {
-        double extra = 0.0;  // to equation 6's sum
-        DVec3 wrap{0.0};     // A W + B W of equations 9 and 10
+        double extra = 0.0;   // to equation 6's sum
+        bool callus = false;  // beside wood
+        DVec3 wrap{0.0};      // A W + B W of equations 9 and 10
     };
     // Of cambium at a place, whose normal is unit or zero.
     Growth at(const DVec3& place, const DVec3& normal) const;

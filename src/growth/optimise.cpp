@@ -20,6 +20,7 @@ constexpr double kFlat = 0.94;          // cosine between faces (20 degrees) who
 constexpr double kBetter = 0.05;        // sine of what a flip must win at least
 constexpr size_t kGrain = 1024;
 constexpr double kMostAdvance = 2.0;  // longest edges for which one split turns the grain at most
+constexpr double kRound = 0.8;        // of young wood's radius: what lies nearer in is rounded off
 constexpr int kMostRounds = 20;       // of splits and merges in a step
 constexpr double kKeepsSide = 0.2;    // cosine between a face's normals before and after a merge
 
@@ -64,6 +65,7 @@ void Optimiser::run() {
     merged_.clear();
     scan();
     settle();
+    round_tips();
     flip_all();
     settle();
 }
@@ -169,6 +171,56 @@ void Optimiser::split(Edge edge) {
         contact_.list(face);
     changed_around(v);
     if (apical && a.tissue != b.tissue) twist(v, a.tissue == Tissue::kApical ? i : j, since);
+}
+
+void Optimiser::round_tips() {
+    if (!plan_.follow) return;
+    const SurfaceMesh& mesh = surface_.mesh;
+    for (const Vertex v : mesh.vertices())
+        if (surface_.cells[v].tissue == Tissue::kApical) round_off(v);
+}
+
+// Half as thick at each split, what a fast tip leaves behind would be a thread, or flat, without inside: it
+// could not bend. So the ring around it is as thick at once as young wood is, and round. Where there is no
+// room, not.
+void Optimiser::round_off(Vertex apical) {
+    const SurfaceMesh& mesh = surface_.mesh;
+    const Cell& tip = surface_.cells[apical];
+    ring_.clear();
+    for (const Vertex v : CGAL::vertices_around_target(mesh.halfedge(apical), mesh)) {
+        const Cell& cell = surface_.cells[v];
+        if (cell.tissue != Tissue::kCambium || cell.owner != tip.owner || cell.bud >= 0) return;
+        ring_.push_back(v);
+    }
+    DVec3 centre(0.0);
+    for (const Vertex v : ring_)
+        centre += surface_.place(v) / static_cast<double>(ring_.size());
+    const DVec3 way = normalized_or(surface_.place(apical) - centre, DVec3(0.0));
+    if (way == DVec3(0.0)) return;
+    const AxisPlace axis = place_at(plan_.branches[static_cast<size_t>(tip.owner)], tip.along);
+    const double young = std::min(plan_.young, axis.radius);
+    const DVec3 x = any_perpendicular(way), y = glm::cross(way, x);
+    // By which turn an even ring lies nearest to this one. CGAL goes about a vertex clockwise.
+    const double part = -2.0 * kPi / static_cast<double>(ring_.size());
+    double along_x = 0.0, along_y = 0.0, least = young;
+    for (size_t i = 0; i < ring_.size(); i++) {
+        const DVec3 off = surface_.place(ring_[i]) - centre;
+        const double u = glm::dot(off, x), w = glm::dot(off, y);
+        const SineCosine turn = portable_sine_cosine(part * static_cast<double>(i));
+        along_x += u * turn.cosine + w * turn.sine;
+        along_y += w * turn.cosine - u * turn.sine;
+        least = std::min(least, u * u + w * w < young * young ? std::sqrt(u * u + w * w) : young);
+    }
+    const double length = std::sqrt(along_x * along_x + along_y * along_y);
+    if (!(length > 0.0) || least > kRound * young) return;
+    const DVec3 first = (along_x * x + along_y * y) / length, second = glm::cross(way, first);
+    for (size_t i = 0; i < ring_.size(); i++) {
+        const SineCosine turn = portable_sine_cosine(part * static_cast<double>(i));
+        const DVec3 place = surface_.place(ring_[i]);
+        const DVec3 to =
+            centre + way * glm::dot(place - centre, way) + young * (first * turn.cosine + second * turn.sine);
+        if (contact_.move(ring_[i], to, true) == Hold::kFree) changed_around(ring_[i]);
+    }
 }
 
 // Equation 7: by what the tip has advanced since the link was last split. Where there is no room, not.

@@ -37,6 +37,8 @@ class Optimiser {
     void scan();
     void split_long();
     void split(Edge edge);
+    void round_tips();
+    void round_off(Vertex apical);
     void twist(Vertex vertex, Vertex apical, double since);
     bool linked(Vertex vertex) const;
     void settle();
@@ -56,6 +58,7 @@ class Optimiser {
     Change change_;
     std::vector<Edge> long_, short_;  // of which some may not be so any more
     std::vector<std::pair<Vertex, Vertex>> merged_;
+    std::vector<Vertex> ring_;
 };
 
 }  // namespace treerec::growth

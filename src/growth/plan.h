@@ -11,6 +11,7 @@ namespace treerec::growth {
 // Of a branch's axis; metres, tree space.
 struct AxisPlace {
     DVec3 position{0.0};
+    DVec3 pith{0.0};                 // where the tip comes by: the axis, evened out where it is thick
     DVec3 direction{0.0, 1.0, 0.0};  // unit, towards the tip
     double along = 0.0;              // from where the axis begins
     double radius = 0.0;             // that it has in the end; where `follow` is off, of no matter
@@ -42,6 +43,11 @@ struct GrowthPlan {
 AxisPlace place_at(const GrowthBranch& branch, double along);
 // Where the tip stands at a step.
 AxisPlace tip_at(const GrowthBranch& branch, double step);
+// Where a tip goes in a step that has come `along` metres: where it should be by then. One that was held up
+// comes after at twice its pace.
+AxisPlace next_place(const GrowthBranch& branch, double along, int step);
+// Where the middle of plain wood at `place` of a branch is at a step: at first the pith, in the end the axis.
+DVec3 wood_centre(const GrowthPlan& plan, const AxisPlace& place, double step);
 // Metres: how thick plain wood at `place` of a branch is at a step.
 double bark_radius(const GrowthPlan& plan, const AxisPlace& place, double step);
 

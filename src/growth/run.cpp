@@ -54,12 +54,12 @@ void Run::plant() {
         for (int side = 0; side < kSides; side++) {
             const double angle = 2.0 * kPi * side / kSides;
             ring[row][side] =
-                add(foot.position + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
+                add(foot.pith + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
                     Tissue::kCambium, foot.along + edge * row);
         }
-    const Vertex below = add(foot.position, Tissue::kCambium, foot.along);
+    const Vertex below = add(foot.pith, Tissue::kCambium, foot.along);
     const Vertex above =
-        add(foot.position + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
+        add(foot.pith + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
     for (int side = 0; side < kSides; side++) {
         const int next = (side + 1) % kSides;
         mesh.add_face(below, ring[0][next], ring[0][side]);
@@ -146,6 +146,7 @@ void Run::move_all() {
             if (cell.hold == Hold::kFree) {
                 if (!blocked) cell.touched = -1;
                 cell.excess += cell.extra / parts;
+                if (cell.tissue == Tissue::kApical) cell.along += (cell.bound - cell.along) / (parts - part);
                 if (cell.tissue == Tissue::kDecayed) cell.sunk += length / parts;
             } else {
                 count_.frozen++;

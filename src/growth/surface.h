@@ -36,6 +36,7 @@ struct Cell {
     double extra = 0.0;      // of this step, metres: what it grows away from its axis beside S_c,
     double excess = 0.0;     // and what it has so far
     double sunk = 0.0;       // metres that decayed wood has sunk in
+    double bound = 0.0;      // of a tip: where along its axis this step is to lead it
     double tip_along = 0.0;  // of its branch's tip when the vertex was made (equation 7)
     // Of Contact's odometer: until then nothing far can be in its way, and nothing around it can fold over.
     double safe_until = -1.0, flat_until = -1.0;

@@ -16,15 +16,38 @@ constexpr double kThickening = 0.15;  // shortest edges that cambium grows in a 
 constexpr double kYoung = 0.5;        // shortest edges that a tip is thick at once: a needle could not bend
 constexpr int kFewestSteps = 60;
 constexpr double kBudSteps = 3.0;     // between a tip's passing a branch and that sprouting
-constexpr double kDepth = 1.0;        // radii that the trunk's axis begins below its foot
+constexpr double kDepth = 0.25;       // radii that the trunk's axis begins below its foot
 constexpr double kSinks = 2.0;        // longest edges before its open end within which the surface sinks
 constexpr double kSunk = 0.6;         // to this share of the radius
 constexpr double kAbove = 1.02;       // of the radius: what covers a tube that begins inside
+constexpr double kEven = 2.0;         // radii over which to both sides the pith is evened out,
+constexpr int kEvenPlaces = 8;        // at so many places,
+constexpr double kAside = 0.5;        // and of the radius how far it may lie from the axis
 constexpr double kLeastLength = 3.0;  // longest edges that a branch is covered at least
 
 double ease(double t) {
     t = std::clamp(t, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+// What is thick is not as crooked inside as a skeleton that a scan led astray: a thin young tip could not
+// follow each kink, and would run into itself. The bark comes to the axis's own radius all the same.
+void even_out(GrowthBranch& branch, double longest, double shortest) {
+    const double first = branch.axis.front().along, last = branch.axis.back().along;
+    for (AxisPlace& place : branch.axis) {
+        const double width =
+            std::min({kEven * place.radius + longest, place.along - first, last - place.along});
+        DVec3 sum(0.0);
+        double weights = 0.0;
+        for (int i = -kEvenPlaces; i <= kEvenPlaces; i++) {
+            const double weight = kEvenPlaces + 1 - std::abs(i);
+            sum += weight * place_at(branch, place.along + width * i / kEvenPlaces).position;
+            weights += weight;
+        }
+        const DVec3 off = sum / weights - place.position;
+        const double most = kAside * std::max(place.radius - shortest, 0.0), length = glm::length(off);
+        place.pith = place.position + (length > most ? off * (most / length) : off);
+    }
 }
 
 // The part of the axis that is covered, sampled evenly enough. Empty where too little is thick enough.
@@ -101,6 +124,7 @@ TreePlan plan_tree(const Tree& tree, const BranchList& list, double longest, dou
             below.along -= depth;
             grown.axis.insert(grown.axis.begin(), below);
         }
+        even_out(grown, longest, shortest);
         result.covered[b] = grown.ends_open ? grown.axis.back().along - kSinks * longest
                                             : std::numeric_limits<double>::infinity();
         for (const AxisPlace& place : grown.axis)

@@ -1,5 +1,7 @@
 #include "growth/velocity.h"
 
+#include <CGAL/boost/graph/iterator.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,15 +13,45 @@ namespace {
 
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
+constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
+constexpr double kTension = 0.15;  // and beside wood of what it stands out of its neighbours
+constexpr double kFlatFoot = 4.0;  // the trunk's radius over how deep its wood is below the axis's foot
 
-// S_c: what cambium of this age has to grow to come to its axis's radius in the end.
-double cambium_speed(const Cell& cell, const AxisPlace& axis, double from_axis, const GrowthPlan& plan,
+// How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
+// axis, and below its foot as in a flat bowl.
+struct Stand {
+    DVec3 off, normal;
+};
+
+Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPlace& axis, const DVec3& place,
+               const DVec3& normal, int step) {
+    const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
+    const double up = glm::dot(normal, axis.direction);
+    Stand stand{off - axis.direction * glm::dot(off, axis.direction), normal - axis.direction * up};
+    const AxisPlace& foot = branch.axis.front();
+    const double above = glm::dot(place - wood_centre(plan, foot, step + 1.0), foot.direction);
+    if (branch.parent < 0 && above < 0.0 && axis.along < foot.along + foot.radius) {
+        stand.off += axis.direction * (kFlatFoot * above);
+        stand.normal += axis.direction * (kFlatFoot * up);
+    }
+    return stand;
+}
+
+// S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The
+// pith need not lie on the axis: what grows from it towards the axis has farther to go.
+double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
                      int step) {
     if (!plan.follow) return axis.speed;
     const double usual = axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
-    return std::clamp(bark_radius(plan, axis, step + 1.0) - (from_axis - cell.excess), 0.0,
-                      std::max(kCatchUp * usual, 0.5 * young));
+    const double most = std::max(kCatchUp * usual, 0.5 * young);
+    const double bark = bark_radius(plan, axis, step + 1.0) + cell.excess;
+    const double inside = bark * bark - glm::dot(stand.off, stand.off);
+    if (!(inside > 0.0)) return 0.0;
+    const double out = glm::dot(stand.normal, stand.off), square = glm::dot(stand.normal, stand.normal);
+    // Where it first comes to the bark; no farther than `most` matters.
+    const double way = std::sqrt(out * out + square * inside) - out;
+    return square * most > way ? way / square : most;
 }
 
 // Equation 6's sum: of one feature the largest, of several together.
@@ -34,6 +66,32 @@ double extra_growth(const Surface& surface, const std::vector<Feature>& features
         sum += most;
     }
     return sum;
+}
+
+// How far a vertex is outside of where its neighbours are.
+DVec3 bend(const Surface& surface, Vertex v) {
+    DVec3 sum(0.0);
+    int count = 0;
+    for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
+        sum += surface.place(other);
+        count++;
+    }
+    return surface.place(v) - sum / static_cast<double>(count);
+}
+
+// Beside the paper: where a lip closes there is less and less room, and it would buckle into beads. Metres by
+// which a vertex grows less in a step because it stands out of a surface that bends evenly, as a bead does
+// and a lip's roll does not; and beside wood also because it stands out of its neighbours' plane, so that
+// mouths stay smooth.
+double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus) {
+    double around = 0.0;
+    int count = 0;
+    for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
+        around += glm::dot(bend(surface, other), normal);
+        count++;
+    }
+    const double own = glm::dot(bend(surface, v), normal);
+    return kSmooth * (own - around / count) + (callus ? kTension * own : 0.0);
 }
 
 // Equation 8, as far as the hollow may reach.
@@ -70,16 +128,20 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             const DVec3 place = surface.place(v);
             const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
             if (cell.tissue == Tissue::kApical) {  // equation 3
-                const AxisPlace tip = tip_at(branch, step + 1.0);
-                cell.along = tip.along;
-                const DVec3 way = tip.position - place;
+                const AxisPlace next = next_place(branch, cell.along, step);
+                const DVec3 way = next.pith - place;
+                cell.velocity = DVec3(0.0);
+                cell.bound = next.along;
+                if (cell.along >= branch.axis.back().along) continue;
                 // One that the bark has overtaken waits until its axis has come out of it.
-                const bool ahead = glm::dot(way, tip.direction) > 0.0;
-                cell.velocity = step < branch.last_step() && ahead ? way : DVec3(0.0);
+                if (glm::dot(way, next.direction) > 0.0)
+                    cell.velocity = way;
+                else
+                    cell.along = next.along;
                 continue;
             }
             const AxisPlace axis = place_at(branch, cell.along);
-            const DVec3 off = place - axis.position;
+            const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
             const DVec3 from_axis = off - axis.direction * glm::dot(off, axis.direction);
             const double distance = glm::length(from_axis);
             cell.extra = 0.0;
@@ -88,17 +150,23 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 cell.velocity = decay_velocity(surface, v, features[static_cast<size_t>(cell.hollow)],
                                                from_axis, bark_radius(plan, axis, step));
             } else {
-                cell.speed = cambium_speed(cell, axis, distance, plan, step);
                 const DVec3 normal = vertex_normal(surface, v);
+                cell.speed =
+                    cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step), plan, step);
                 Lips::Growth lip = lips.at(place, normal);
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
                 // Equations 4, 6, 9 and 10.
-                cell.velocity = (1.0 + extra) * cell.speed * (normal + lip.wrap);
+                const double whole = (1.0 + extra) * cell.speed;
+                const double less = lip.extra > 0.0
+                                        ? std::clamp(smoothed(surface, v, normal, lip.callus), -whole, whole)
+                                        : 0.0;
+                cell.velocity = (whole - less) * (normal + lip.wrap);
                 // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
-                const DVec3 more = extra * normal + (1.0 + extra) * lip.wrap;
+                const DVec3 more = (whole - cell.speed) * normal + whole * lip.wrap;
                 const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
-                cell.extra = cell.speed * std::max(away, 0.0);
+                const double smooth = distance > 0.0 ? less * glm::dot(normal, from_axis) / distance : 0.0;
+                cell.extra = std::max(away, 0.0) - smooth;
             }
             most = std::max(most, glm::length(cell.velocity));
         }

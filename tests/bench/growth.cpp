@@ -29,9 +29,9 @@ void add_branch(GrowthPlan& plan, int32_t parent, double along, const DVec3& fro
     branch.parent = parent;
     branch.parent_along = along;
     const double length = kApicalSpeed * (plan.steps - first_step);
-    branch.axis.push_back({from, direction, 0.0, 0.0, first_step, kCambiumSpeed});
-    branch.axis.push_back(
-        {from + direction * length, direction, length, 0.0, static_cast<double>(plan.steps), kCambiumSpeed});
+    const DVec3 end = from + direction * length;
+    branch.axis.push_back({from, from, direction, 0.0, 0.0, first_step, kCambiumSpeed});
+    branch.axis.push_back({end, end, direction, length, 0.0, static_cast<double>(plan.steps), kCambiumSpeed});
     plan.branches.push_back(std::move(branch));
 }
 

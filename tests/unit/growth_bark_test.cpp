@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "edit/address.h"
+#include "foliage/branch_axis.h"
 #include "geometry/random.h"
 #include "growth/grow_bark.h"
 #include "growth_trees.h"
@@ -77,6 +78,64 @@ TEST(GrowthBark, ComesToTheTreesRadii) {
     EXPECT_NEAR(found[found.size() / 2], 0.12, 0.02 * 0.12);
     EXPECT_NEAR(found[found.size() / 20], 0.12, 0.05 * 0.12);
     EXPECT_NEAR(found[found.size() * 19 / 20], 0.12, 0.05 * 0.12);
+}
+
+// Skeletons of scans wind and jump from side to side.
+TEST(GrowthBark, FollowsACrookedTrunkToItsEnd) {
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        Random random(seed);
+        Tree tree;
+        NodeId last = tree.add_root(DVec3(0.0), 0.04, kTrunkFlag);
+        for (int i = 1; i <= 30; i++) {
+            const double turn = 0.5 * i;
+            const DVec3 jump(random.uniform(-0.02, 0.02), random.uniform(-0.01, 0.01),
+                             random.uniform(-0.02, 0.02));
+            last = tree.add_child(
+                last, jump + DVec3(0.08 * std::sin(turn), 0.035 * i, 0.08 * (1.0 - std::cos(turn))),
+                0.04 - 0.0006 * i, kTrunkFlag);
+        }
+        const GrownTree grown = grow_bark(tree, recipe_of(tree, "edges longest=0.035"), {20});
+        for (const GrowthStep& step : grown.checks)
+            expect_sound(step);
+        const BranchList list = list_branches(tree);
+        std::vector<AxisPoint> axis;
+        sample_axis(tree, list, list.branches.front(), 0.001, axis);
+        EXPECT_GT(grown.bark.branches.front().until, 0.95 * axis.back().along) << seed;
+        // The whole axis is inside, and no bark is far from it.
+        std::vector<double> off;
+        for (const GrownBark::Vertex& vertex : grown.bark.vertices) {
+            double nearest = 1e9, radius = 0.0;
+            for (const AxisPoint& point : axis) {
+                const double distance = glm::distance(point.position, DVec3(vertex.position));
+                if (distance >= nearest) continue;
+                nearest = distance;
+                radius = point.radius;
+            }
+            if (vertex.position.y > 0.1f && vertex.position.y < 0.9f)
+                off.push_back(std::abs(nearest - radius));
+        }
+        std::sort(off.begin(), off.end());
+        EXPECT_LT(off[off.size() / 2], 0.003) << seed;
+        EXPECT_LT(off[off.size() * 95 / 100], 0.02) << seed;
+    }
+}
+
+TEST(GrowthBark, EndsShortlyBelowTheFoot) {
+    for (const double radius : {0.12, 0.6}) {
+        const Tree tree = cylinder(radius, 5.0 * radius);
+        const double longest = std::max(0.04, 0.2 * radius);
+        const GrownTree grown =
+            grow_bark(tree, recipe_of(tree, "edges longest=" + std::to_string(longest) +
+                                                " shortest=" + std::to_string(0.45 * longest)));
+        double lowest = 0.0;
+        for (const GrownBark::Vertex& vertex : grown.bark.vertices)
+            lowest = std::min(lowest, static_cast<double>(vertex.position.y));
+        EXPECT_LT(lowest, -0.5 * longest);
+        EXPECT_GT(lowest, -0.6 * radius - longest);
+        // It stands on the ground as thick as it is.
+        const std::vector<double> ground = radii(grown.bark, -0.25 * radius, 0.25 * radius);
+        EXPECT_NEAR(ground[ground.size() / 2], radius, 0.03 * radius);
+    }
 }
 
 // Papers/001, equation 6: k S_c more a step, of S_c that makes the radius in all steps.
