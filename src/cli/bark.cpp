@@ -26,6 +26,16 @@ void print_check(const GrowthStep& step) {
         step.frozen_free);
 }
 
+void print_levels(const GrownBark& bark) {
+    for (int level = 0; level < kMostLevels; level++) {
+        const LevelError error = measure_level(bark, level);
+        std::printf(
+            "{\"level\": %d, \"triangles\": %zu, \"mean_mm\": %.2f, \"most_mm\": %.2f, \"outside_mm\": "
+            "%.2f, \"normals_degrees\": %.1f}\n",
+            level, error.triangles, 1000.0 * error.mean, 1000.0 * error.most, 1000.0 * error.out, error.turn);
+    }
+}
+
 // Metres, at breast height; of lower trees at the foot.
 double trunk_radius(const Tree& tree) {
     const double dbh = measure(tree).dbh;
@@ -52,9 +62,12 @@ const Command& bark_command() {
           "hollow_refuge old_oak spiral_grain"},
          {"--log", "FILE", "writes the recipe as it was found on this tree"},
          {"--check", "N", "judges the surface every N steps and prints what it is, a line of JSON each"},
+         {"--level-errors", "",
+          "prints how far the lighter levels are from the full surface, a line of JSON each"},
          {"--trace", "DIR", "writes what each vertex did in each step there, as CSV: docs/growth_trace.md"},
          {"--leaves", "PRESET", "the leaves and bark of models (default generic; see 'treerec textures')"},
          {"--seed", "N", "of the leaves (default 1)"},
+         {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--up", "AXIS", "the axis to the sky of a skeleton that does not say: x y z -x -y -z (default z)"},
          {"--tree", "N", "which tree of a file with several, in its order (default: the largest)"},
@@ -73,7 +86,8 @@ void run_bark(const std::vector<std::string>& words) {
         return;
     }
     if (arguments.positional().size() != 1) throw UsageError("Name one skeleton that bark is to grow on.");
-    if (!arguments.has("-o") && !arguments.has("--check")) throw UsageError("Where to? Name a file with -o.");
+    if (!arguments.has("-o") && !arguments.has("--check") && !arguments.has("--level-errors"))
+        throw UsageError("Where to? Name a file with -o.");
     const std::vector<std::string> none;
     const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
     for (const std::string& out : outs)
@@ -114,6 +128,7 @@ void run_bark(const std::vector<std::string>& words) {
     progress.clear();
     for (const std::string& remark : grown.remarks)
         std::fprintf(stderr, "%s\n", remark.c_str());
+    if (arguments.has("--level-errors")) print_levels(grown.bark);
     bool all_sound = true;
     for (const GrowthStep& step : grown.checks) {
         print_check(step);

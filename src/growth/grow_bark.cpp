@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "growth/blended_normals.h"
 #include "growth/features_of.h"
 #include "growth/judge.h"
+#include "growth/levels.h"
 #include "growth/run.h"
 #include "growth/texture.h"
 #include "growth/trace.h"
@@ -107,6 +109,8 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
                 std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
                 " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
     result.bark = bark_of(run.surface(), list, planned, recipe.longest);
+    blend_normals(result.bark, recipe.longest);
+    order_levels(result.bark, progress);
     result.bark.digest = covered_wood_digest(tree, result.bark.branches);
     return result;
 }

@@ -45,4 +45,17 @@ struct GrownTree {
 GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBarkOptions& options = {},
                     Progress* progress = nullptr);
 
+// How far a lighter level is from the full surface.
+struct LevelError {
+    size_t triangles = 0;
+    // Metres from the full surface's vertices to the nearest place of the level that faces the same way:
+    double mean = 0.0, most = 0.0;
+    double out = 0.0;   // and the mean of how far outside of the full surface that lies (under 0: inside)
+    double turn = 0.0;  // degrees between the normals there, root of the mean square
+};
+
+// level: see lighter_bark(); bark without lighter levels is compared with itself. Throws Error in a build
+// without CGAL.
+LevelError measure_level(const GrownBark& bark, double level);
+
 }  // namespace treerec

@@ -4,8 +4,20 @@
 
 namespace treerec {
 
-GrownTree grow_bark(const Tree&, const GrowthRecipe&, const GrowBarkOptions&, Progress*) {
+namespace {
+
+[[noreturn]] void refuse() {
     throw Error("This build was made without CGAL and can't grow bark; get one that has it.");
+}
+
+}  // namespace
+
+GrownTree grow_bark(const Tree&, const GrowthRecipe&, const GrowBarkOptions&, Progress*) {
+    refuse();
+}
+
+LevelError measure_level(const GrownBark&, double) {
+    refuse();
 }
 
 }  // namespace treerec

@@ -172,6 +172,9 @@ std::string pack_grown_bark(const GrownBark& bark) {
         writer.count(index >= before ? 2 * static_cast<uint64_t>(up) : 2 * static_cast<uint64_t>(down) - 1);
         before = index;
     }
+    writer.whole(bark.parents.size(), 4);
+    for (size_t i = 0; i < bark.parents.size(); i++)
+        writer.count(i - bark.parents[i]);
     return writer.take();
 }
 
@@ -220,6 +223,15 @@ GrownBark unpack_grown_bark(std::string_view packed) {
             (step % 2 == 0 ? static_cast<int64_t>(step / 2) : -static_cast<int64_t>(step / 2) - 1);
         if (next < 0 || next >= static_cast<int64_t>(bark.vertices.size())) damaged();
         index = before = static_cast<uint32_t>(next);
+    }
+    if (version >= 2) {
+        bark.parents.resize(reader.count_of(1));
+        if (!bark.parents.empty() && bark.parents.size() != bark.vertices.size()) damaged();
+        for (size_t i = 0; i < bark.parents.size(); i++) {
+            const uint64_t before_it = reader.count();
+            if (before_it > i) damaged();
+            bark.parents[i] = static_cast<uint32_t>(i - before_it);
+        }
     }
     if (!reader.done()) damaged();
     return bark;

@@ -37,7 +37,8 @@ Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const 
     options.level = whole(level);
     options.twig_level = level;
     options.whole_repeats = whole_repeats;
-    if (level == 0.0) options.grown = grown;
+    GrownBark lighter;
+    options.grown = bark_of_level(grown, level, lighter);
     return build_branch_tubes(wood, options, progress);
 }
 
@@ -64,7 +65,7 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
     }
     if (grown_)
         for (const GrownBark::Vertex& vertex : grown_->vertices)
-            box_.add(DVec3(vertex.position));
+            box_.add(DVec3(vertex.position), grown_->parents.empty() ? 0.0 : kMostSwell * vertex.radius);
     for (const std::vector<LeafPlacement>& leaves : leaves_)
         add_leaves(box_, leaves, leaf_growth(kMostLevels - 1));
 }

@@ -6,6 +6,7 @@
 //   - draws an even share of the twigs that are thinner than level_width(), or short, and with a twig that is
 //     not drawn goes what it bears; what stays is as much wider, so that the bark covers as much of a
 //     picture as at level 0 (twig_shares.h, tube_widths.cpp);
+//   - draws grown bark with a quarter of the vertices of level k - 1 (grown_bark.h: lighter_bark());
 //   - leaves stay where level 0 puts them, 0.42 of those of level k - 1, as much larger about their middles
 //     (leaf_cards.h), and their cards have fewer triangles.
 // Wind channels and colours are functions of the place and the wood at level 0, so they are the same in all.
@@ -57,7 +58,8 @@ struct TreeLevel {
 class LevelBuilder {
   public:
     // Throws Error for rules that check_leaf_rules() refuses, or Cancelled.
-    // grown: drawn at level 0 instead of the tubes that it covers; it must outlive it; null: tubes alone.
+    // grown: drawn instead of the tubes that it covers; without lighter levels at level 0 alone. It must
+    // outlive this; null: tubes alone.
     LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64_t seed, const Foliage& foliage = {},
                  const Progress* progress = nullptr, const GrownBark* grown = nullptr);
     LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},

@@ -74,7 +74,9 @@ void Builder::add_grown(Mesh& mesh) const {
         else
             centre.position = DVec3(vertex.position);
         const double length = axis.size() >= 2 ? axis.back().along : 1.0;
-        const double repeats = repeats_of(own, wood ? kHeartwood : static_cast<double>(vertex.radius));
+        // It is as wide at all levels, where tubes stand for others.
+        const double repeats = repeats_of(
+            own, (wood ? kHeartwood : static_cast<double>(vertex.radius)) * std::max(widened[own], 1.0f));
         mesh.positions.push_back(vertex.position);
         mesh.normals.push_back(vertex.normal);
         mesh.uvs.push_back(

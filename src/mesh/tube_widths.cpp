@@ -33,12 +33,16 @@ void Builder::widen(size_t index) {
     Tube& tube = tubes[index];
     if (tube.rings < 2) return;
     Ring* run = rings[index / kBranchesPerChunk].data() + tube.first_ring;
-    const double area = widened[index] * drawn_area(tree, list, list.branches[index]);
+    const bool goes_on = covered[index] > 0.0;  // from grown bark: only what is left of it is drawn here
+    double whole = 0.0;
+    for (size_t i = 0; goes_on && i < tube.rings; i++)
+        whole += 2.0 * share_of(run, tube.rings, i);
+    const double area = widened[index] * (goes_on ? whole : drawn_area(tree, list, list.branches[index]));
     // A twig that stands for many may start wider than what bears it: from so far nobody sees it.
     const bool free = widened[index] > kFreeFoot && list.branches[index].attach != kNoNode;
     if (free) run[0].radius = std::max(run[0].radius, tube.foot_radius);
     // Else its start stays hidden; and a flare has its own width.
-    size_t first = free || tube.parent_radius <= 0.0 ? 0 : 1;
+    size_t first = free || (tube.parent_radius <= 0.0 && !goes_on) ? 0 : 1;
     while (tube.flare.amount > 0.0 && first < tube.rings && run[first].along <= tube.flare.reach)
         first++;
     double kept = 0.0, open = 0.0;

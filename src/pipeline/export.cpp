@@ -157,6 +157,8 @@ const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
         TubeOptions tubes;
         tubes.pivots = false;
         tubes.level = level;
+        GrownBark lighter;
+        tubes.grown = bark_of_level(options_.grown, level, lighter);
         Coarser made{build_branch_tubes(leafy, tubes, progress_), {}};
         for (size_t kind = 0; kind < kinds_.size(); kind++) {
             // The finest level may have flat cards already.

@@ -28,7 +28,7 @@ struct ExportOptions {
     std::vector<NamedPicture> bark = {};
     // Of the leaves that have no look of their own, instead of the preset's; passed over where not seen().
     std::optional<LeafColours> leaf_colours = {};
-    // Bark that was grown on the tree, for the finest level; null: tubes alone. It must outlive the exporter.
+    // Bark that was grown on the tree; null: tubes alone. It must outlive the exporter.
     const GrownBark* grown = nullptr;
 };
 

@@ -64,6 +64,7 @@ for kind in release debug; do
     check "the $kind game runs" grep -q '^digest ' "$work/$kind.log"
     check "the $kind game makes the same bytes as the editor" grep -q "^digest $wanted\$" "$work/$kind.log"
     check "the $kind game shows the bark that grew" grep -q '^grown true$' "$work/$kind.log"
+    check "and at lighter levels" grep -q '^grown at level 1 true$' "$work/$kind.log"
     check "the $kind game grows the same forest as the editor" grep -q "^forest $forest\$" "$work/$kind.log"
     check "the $kind game knows its scan's name, not on whose disk it lay" grep -q '^source scan.ply$' "$work/$kind.log"
     check "the $kind game has no class of the editor's" grep -q '^editor false$' "$work/$kind.log"

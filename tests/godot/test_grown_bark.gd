@@ -66,7 +66,8 @@ func test_bark_grows_and_is_drawn_instead_of_tubes() -> void:
 	check_equal(made.leaf_preset, "none", "the leaves")
 	var burl: float = _reach(made, 0.8)
 	check(burl > tubes + 0.06, "The burl is %f high over a tube of %f m." % [burl - tubes, tubes])
-	check_near(_reach(made, 0.8, 1), tubes, 0.03, "the next level")
+	for lod: int in range(1, 4):
+		check_near(_reach(made, 0.8, lod), burl, 0.04, "the burl at level %d" % lod)
 	var levels: Array[Dictionary] = made.build_levels([0, 1])
 	var finest: Array = levels[0].bark
 	check_equal(
@@ -112,7 +113,10 @@ func test_an_edit_of_covered_wood_shows_tubes_until_it_is_undone() -> void:
 	var bare: TreeReconstruction = made.duplicate() as TreeReconstruction
 	bare.grown_bark = []
 	check(not bare.has_grown_bark() and not bare.is_bark_stale(), "Without bark it is stale.")
-	check_equal(made.build_mesh_arrays(0), bare.build_mesh_arrays(0), "the tubes")
+	for lod: int in 3:
+		check_equal(
+			made.build_mesh_arrays(lod), bare.build_mesh_arrays(lod), "the tubes of level %d" % lod
+		)
 	check(made.get_bark_revision() != revision, "Nobody is told that the bark is another.")
 	made.revert_edit(edit)
 	check(not made.is_bark_stale(), "It is stale after undo.")
@@ -121,6 +125,28 @@ func test_an_edit_of_covered_wood_shows_tubes_until_it_is_undone() -> void:
 	check(made.is_bark_stale(), "It fits after redo.")
 	var again: TreeReconstruction = _grown(made, made.growth_recipe)
 	check(not again.is_bark_stale(), "It is stale after it has grown again.")
+
+
+func test_a_node_shows_it_at_all_levels() -> void:
+	var made: TreeReconstruction = _grown(stout())
+	var tubes: TreeReconstruction = stout()
+	var node: TreeInstance3D = TreeInstance3D.new()
+	node.reconstruction = made
+	tree.root.add_child(node)
+	await node.rebuilt
+	for lod: int in range(1, 4):
+		check(
+			_reach(made, 0.8, lod) > _reach(tubes, 0.8, lod) + 0.04,
+			"Level %d shows a tube: %f." % [lod, _reach(made, 0.8, lod)]
+		)
+		var level: Dictionary = made.build_levels([lod])[0]
+		var finer: Dictionary = made.build_levels([lod - 1])[0]
+		check(level.triangles < 0.6 * finer.triangles, "Level %d: %s" % [lod, level.triangles])
+	var budget: Dictionary = made.build_levels([0], [300])[0]
+	check(budget.triangles <= 300, "A budget of 300 gives %d." % budget.triangles)
+	# Not while it says that it has ended.
+	await tree.process_frame
+	node.free()
 
 
 func test_setting_bark_alone_makes_the_tree_anew() -> void:

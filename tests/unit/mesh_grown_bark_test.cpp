@@ -56,6 +56,15 @@ GrownBark lozenge(const Tree& tree, double until) {
     return bark;
 }
 
+// With two levels: the tip may become part of one side.
+GrownBark with_levels(GrownBark bark) {
+    std::swap(bark.vertices[4], bark.vertices[5]);
+    for (uint32_t& index : bark.indices)
+        if (index >= 4) index = 9 - index;
+    bark.parents = {0, 1, 2, 3, 4, 3};
+    return bark;
+}
+
 double farthest(const Mesh& mesh) {
     double far = 0.0;
     for (const Vec3& place : mesh.positions)
@@ -90,9 +99,44 @@ TEST(GrownBark, ComesBackFromItsBytes) {
     EXPECT_EQ(unpack_grown_bark(pack_grown_bark(bark)).branches[0].until, bark.branches[0].until);
 }
 
+TEST(GrownBark, LevelsComeBackAndBarkOfTheFirstVersionHasNone) {
+    const GrownBark bark = with_levels(lozenge(ladder(), 4.0));
+    const std::string packed = pack_grown_bark(bark);
+    EXPECT_EQ(unpack_grown_bark(packed).parents, bark.parents);
+    // The first version ended after the triangles.
+    std::string first = pack_grown_bark(lozenge(ladder(), 4.0));
+    first.resize(first.size() - 4);
+    EXPECT_THROW(unpack_grown_bark(first), Error);
+    first[std::string("treerec bark").size()] = 1;
+    const GrownBark back = unpack_grown_bark(first);
+    EXPECT_EQ(back.vertices.size(), bark.vertices.size());
+    EXPECT_EQ(back.indices.size(), bark.indices.size());
+    EXPECT_TRUE(back.parents.empty());
+    // A vertex can't become part of one that comes after it, and all have a parent or none.
+    GrownBark wrong = bark;
+    wrong.parents[2] = 4;
+    EXPECT_THROW(unpack_grown_bark(pack_grown_bark(wrong)), Error);
+    wrong = bark;
+    wrong.parents.pop_back();
+    EXPECT_THROW(unpack_grown_bark(pack_grown_bark(wrong)), Error);
+}
+
+TEST(GrownBark, ALevelIsOfTheFirstVertices) {
+    const GrownBark bark = with_levels(lozenge(ladder(), 4.0));
+    EXPECT_EQ(lighter_bark(bark, 0.0).indices, bark.indices);
+    const GrownBark lighter = lighter_bark(bark, 1.0);
+    EXPECT_EQ(lighter.vertices.size(), 5U);
+    EXPECT_EQ(lighter.indices.size() / 3, 6U);
+    for (const uint32_t index : lighter.indices)
+        ASSERT_LT(index, 5U);
+    // What is cut off above comes back as width.
+    EXPECT_NEAR(glm::distance(lighter.vertices[0].position, bark.vertices[0].position), kMostSwell * 0.2f,
+                1e-5f);
+}
+
 // What comes of damaged bytes can be drawn, or is refused.
 TEST(GrownBark, DamagedBytesAreRefused) {
-    const std::string packed = pack_grown_bark(lozenge(ladder(), 4.0));
+    const std::string packed = pack_grown_bark(with_levels(lozenge(ladder(), 4.0)));
     for (size_t length = 0; length < packed.size(); length++)
         EXPECT_THROW(unpack_grown_bark(std::string_view(packed).substr(0, length)), Error) << length;
     EXPECT_THROW(unpack_grown_bark(packed + "x"), Error);
@@ -110,6 +154,10 @@ TEST(GrownBark, DamagedBytesAreRefused) {
                     ASSERT_LT(static_cast<size_t>(vertex.branch), bark.branches.size());
                     ASSERT_TRUE(std::isfinite(vertex.position.x + vertex.along + vertex.normal.y));
                 }
+                if (bark.parents.empty()) continue;
+                const GrownBark lighter = lighter_bark(bark, 1.0);
+                for (const uint32_t index : lighter.indices)
+                    ASSERT_LT(index, lighter.vertices.size());
             } catch (const Error&) {
             }
         }
@@ -153,7 +201,28 @@ TEST(GrownBark, FitsUntilTheWoodBeneathChanges) {
     EXPECT_NE(covered_wood_digest(tree, of_branch.branches), bark.digest);
 }
 
-TEST(GrownBark, IsDrawnAtTheFinestLevelAlone) {
+TEST(GrownBark, WithLevelsIsDrawnAtThemToo) {
+    const Tree tree = ladder();
+    const GrownBark bark = with_levels(lozenge(tree, 4.0));
+    LeafRules none;
+    none.enabled = false;
+    const std::vector<LeafKind> kinds = leaf_kinds(tree, none);
+    const LevelBuilder builder(tree, kinds, 1, {}, nullptr, &bark), tubes(tree, kinds, 1);
+    for (int level = 0; level <= 4; level++) {
+        const Mesh mesh = builder.build(level).bark;
+        EXPECT_GE(farthest(mesh), 0.9 - 1e-6) << level;
+        for (const Vec3& place : mesh.positions) {
+            ASSERT_GE(place.z, builder.box().min.z - 1e-6);
+            ASSERT_LE(place.z, builder.box().max.z + 1e-6);
+        }
+    }
+    // Below that few triangles count for more.
+    EXPECT_EQ(builder.build(5).bark.indices.size(), tubes.build(5).bark.indices.size());
+    const TreeLevel small = builder.build(0, 60);
+    EXPECT_LE(small.triangle_count(), 60U);
+}
+
+TEST(GrownBark, WithoutLevelsIsDrawnAtTheFinestLevelAlone) {
     const Tree tree = ladder();
     const GrownBark bark = lozenge(tree, 4.0);
     LeafRules none;

@@ -17,6 +17,10 @@ func _ready() -> void:
 	print(
 		"grown ", tree.reconstruction.has_grown_bark() and not tree.reconstruction.is_bark_stale()
 	)
+	var bare: TreeReconstruction = tree.reconstruction.duplicate()
+	bare.grown_bark = []
+	var lighter: int = tree.reconstruction.build_levels([1])[0].triangles
+	print("grown at level 1 ", lighter != int(bare.build_levels([1])[0].triangles))
 	print("triangles ", tree.get_triangle_count())
 	print("editor ", ClassDB.class_exists(&"TreeReconstructor"))
 	var arguments: PackedStringArray = OS.get_cmdline_user_args()
