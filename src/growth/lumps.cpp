@@ -17,7 +17,7 @@ namespace {
 using namespace growth;
 
 constexpr double kFinest = 0.6;  // longest edges: the cells' size, of a scan that is dense enough
-constexpr double kApart = 2.0;   // of the points' distance from one another, that cells have
+constexpr double kApart = 1.5;   // of the points' distance from one another, that cells have
 constexpr double kFewestColumns = 8.0, kMostColumns = 128.0;
 constexpr double kBeside = 1.6;     // radii of a branch about it in which its parent's bark is not seen well,
 constexpr double kNear = 1.5;       // where it is not farther from that bark than so many of the parent's

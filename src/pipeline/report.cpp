@@ -273,6 +273,14 @@ std::string growth_report_json(const GrownTree& grown) {
     return dump(json);
 }
 
+std::string growth_proposal_json(const GrowthProposal& proposal) {
+    Json json;
+    json["burls"] = proposal.burls;
+    json["hollows"] = proposal.hollows;
+    json["warnings"] = proposal.remarks;
+    return dump(json);
+}
+
 std::string bark_fit_json(const BarkFit& fit, const GrownTree& grown) {
     Json json;
     json["bark_fit_version"] = 1;

@@ -8,6 +8,7 @@
 #include "exchange/tree_files.h"
 #include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
+#include "growth/lumps.h"
 #include "photos/bark_picture.h"
 #include "photos/leaf_colours.h"
 #include "photos/marker_scale.h"
@@ -86,6 +87,9 @@ std::string skeleton_report_json(const SkeletonReport& report);
 
 // Of bark that was grown: steps, branches (that it covers), vertices, triangles, warnings [sentence].
 std::string growth_report_json(const GrownTree& grown);
+
+// Of what a scan shows beside round wood: burls, hollows (their numbers), warnings [sentence].
+std::string growth_proposal_json(const GrowthProposal& proposal);
 
 // By what a report of how true grown bark is to its scan is known.
 inline constexpr char kBarkFitMark[] = "\"bark_fit_version\"";
