@@ -166,6 +166,7 @@ void expect_most(const Found& found) {
 }
 
 const char* kEdges = "edges longest=0.035";
+const char* kCoarse = "edges longest=0.05";  // where bark is grown, to be quick
 
 std::vector<uint8_t> all_of(const PointCloud& cloud) {
     return std::vector<uint8_t>(cloud.size(), 1);
@@ -243,7 +244,7 @@ TEST(GrowthLumps, GrownByThemBarkIsNearerToTheScan) {
     std::vector<Bump> bumps{
         {0.5, 0.5, 0.06, 0.05, wood}, {1.0, 2.5, 0.09, 0.04, wood}, {1.4, -1.2, 0.05, 0.03, wood}};
     push(cloud, all_of(cloud), axis, bumps);
-    const GrowthRecipe plain = read_growth_recipe(tree, kEdges);
+    const GrowthRecipe plain = read_growth_recipe(tree, kCoarse);
     const GrowthProposal proposal = propose_growth(tree, cloud, plain);
     const GrowthRecipe recipe = read_growth_recipe(tree, plain.text + proposal.recipe);
     GrowBarkOptions options;
@@ -271,8 +272,8 @@ TEST(GrowthLumps, DeepDentsBecomeHollows) {
     PointCloud cloud = cylinder_scan(wood, 2.0, 0.003, 1.0, 40000, 4);
     std::vector<Bump> bumps{{1.0, 1.0, 0.07, -0.1, wood}};
     push(cloud, all_of(cloud), axis, bumps);
-    const GrowthProposal proposal = propose_growth(tree, cloud, read_growth_recipe(tree, kEdges));
-    const GrowthRecipe recipe = read_growth_recipe(tree, kEdges + ("\n" + proposal.recipe));
+    const GrowthProposal proposal = propose_growth(tree, cloud, read_growth_recipe(tree, kCoarse));
+    const GrowthRecipe recipe = read_growth_recipe(tree, kCoarse + ("\n" + proposal.recipe));
     ASSERT_EQ(proposal.hollows, 1U);
     const auto hollow = std::find_if(recipe.features.begin(), recipe.features.end(), [](const auto& feature) {
         return feature.kind == GrowthFeature::Kind::kHollow;
