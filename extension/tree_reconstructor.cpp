@@ -321,6 +321,8 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("save_marker", "path", "id", "side"), &TreeReconstructor::save_marker,
                          DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
     ClassDB::bind_method(D_METHOD("grow_bark", "tree", "recipe"), &TreeReconstructor::grow_bark);
+    ClassDB::bind_method(D_METHOD("propose_growth", "tree", "points", "recipe"),
+                         &TreeReconstructor::propose_growth, DEFVAL(""));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_commands"),
                                 &TreeReconstructor::get_growth_commands);
     ClassDB::bind_method(D_METHOD("sketch_tree", "sketch", "twigs_of"), &TreeReconstructor::sketch_tree,

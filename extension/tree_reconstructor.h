@@ -23,8 +23,8 @@
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
 // export_file(), save_html_report(), save_marker(), sketch_tree(), sketch_with_twigs(), load_sketch(),
-// save_sketch(), draw_limb() and grow_bark() may run on any thread, one at a time; the other methods may be
-// called from any other thread meanwhile.
+// save_sketch(), draw_limb(), grow_bark() and propose_growth() may run on any thread, one at a time; the
+// other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
 
@@ -46,6 +46,9 @@ class TreeReconstructor : public godot::RefCounted {
     // tree_reconstructor_growth.cpp
     godot::Ref<TreeReconstruction> grow_bark(const godot::Ref<TreeReconstruction>& p_tree,
                                              const godot::String& p_recipe);
+    godot::String propose_growth(const godot::Ref<TreeReconstruction>& p_tree,
+                                 const godot::PackedVector3Array& p_points,
+                                 const godot::String& p_recipe = "");
     static godot::TypedArray<godot::Dictionary> get_growth_commands();
     godot::Ref<TreeReconstruction> sketch_tree(const godot::Ref<TreeSketch>& p_sketch,
                                                const godot::Ref<godot::Resource>& p_twigs_of);

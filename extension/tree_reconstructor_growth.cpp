@@ -6,7 +6,9 @@
 #include "convert.h"
 #include "error.h"
 #include "growth/grow_bark.h"
+#include "growth/lumps.h"
 #include "pipeline/report.h"
+#include "scan_points.h"
 #include "tree_reconstructor.h"
 #include "tree_reconstructor_job.h"
 
@@ -38,6 +40,29 @@ Ref<TreeReconstruction> TreeReconstructor::grow_bark(const Ref<TreeReconstructio
     } catch (const std::exception& error) {
         _fail(error.what());
         return Ref<TreeReconstruction>();
+    }
+}
+
+String TreeReconstructor::propose_growth(const Ref<TreeReconstruction>& p_tree,
+                                         const PackedVector3Array& p_points, const String& p_recipe) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), String(), "There is no tree whose scan could show lumps.");
+    const Job job(this);
+    ERR_FAIL_COND_V_MSG(!job.is_alone(), String(), BUSY);
+    try {
+        Listener listener(this);
+        listener.check();
+        const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+        const treerec::GrowthRecipe recipe = treerec::read_growth_recipe(*tree, to_std(p_recipe));
+        const treerec::GrowthProposal proposal =
+            treerec::propose_growth(*tree, to_cloud(tree->frame(), p_points), recipe, &listener);
+        listener.check();
+        const std::lock_guard lock(mutex_);
+        report_json_ = treerec::growth_proposal_json(proposal);
+        fraction_ = 1.0;
+        return to_godot(proposal.recipe);
+    } catch (const std::exception& error) {
+        _fail(error.what());
+        return String();
     }
 }
 

@@ -1,12 +1,17 @@
 #include <cstdio>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/describe_parameter.h"
 #include "cli/terminal_progress.h"
 #include "file_bytes.h"
+#include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
+#include "growth/lumps.h"
 #include "growth/presets.h"
 #include "pipeline/export.h"
+#include "pipeline/report.h"
+#include "scan/read_cloud.h"
 #include "tree/measure.h"
 
 namespace treerec {
@@ -42,6 +47,43 @@ double trunk_radius(const Tree& tree) {
     return dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius;
 }
 
+// The recipe's text as the options have it.
+std::string recipe_from(const Arguments& arguments, const Tree& tree) {
+    std::string text;
+    if (arguments.has("--preset")) {
+        const GrowthPreset* preset = nullptr;
+        try {
+            preset = &find_growth_preset(arguments.text("--preset", ""));
+        } catch (const Error& error) {
+            throw UsageError(error.what());
+        }
+        text = scale_recipe(preset->recipe, trunk_radius(tree) / kPresetRadius);
+    }
+    if (arguments.has("--recipe")) text += read_file(arguments.text("--recipe", "")).view();
+    if (arguments.has("-c"))
+        for (const std::string& line : arguments.all("-c"))
+            text += "\n" + line;
+    return text;
+}
+
+// With what the scan shows, which is told.
+GrowthRecipe with_lumps(const Tree& tree, const GrowthRecipe& recipe, const PointCloud& scan, bool quiet,
+                        Progress* progress) {
+    const GrowthProposal proposal = propose_growth(tree, scan, recipe, progress);
+    for (const std::string& remark : proposal.remarks)
+        std::fprintf(stderr, "%s\n", remark.c_str());
+    if (!quiet)
+        std::fprintf(stderr, "The scan shows %zu burls and %zu hollows.\n", proposal.burls, proposal.hollows);
+    return read_growth_recipe(tree, recipe.text + proposal.recipe);
+}
+
+void print_fit(const BarkFit& fit) {
+    std::printf("scan: %zu points on the bark; mean distance %.1f mm, of tubes %.1f mm\n", fit.all.points,
+                1000.0 * fit.all.grown.mean, 1000.0 * fit.all.tubes.mean);
+    std::printf("radii: median error %.1f %%, p95 %.1f %%\n", 100.0 * fit.radius_median,
+                100.0 * fit.radius_p95);
+}
+
 bool sound(const GrowthStep& step) {
     return step.closed && step.outward && step.above_longest == 0 && step.unexplained == 0 &&
            step.intersections == 0;
@@ -52,7 +94,7 @@ bool sound(const GrowthStep& step) {
 const Command& bark_command() {
     static const Command command{
         "bark",
-        "bark TREE -o FILE [-c COMMAND] [--recipe FILE] [options]",
+        "bark TREE -o FILE [-c COMMAND] [--recipe FILE] [--scan CLOUD --from-scan] [options]",
         "Grows bark around a tree as one closed surface, with burls, hollows, obstacles and winding grain.",
         {{"-o", "FILE", "what to write: .glb .gltf .obj; again for more", true},
          {"-c", "COMMAND", "one line of the recipe; after the recipe's own, in the order given", true},
@@ -60,6 +102,13 @@ const Command& bark_command() {
          {"--preset", "NAME",
           "begins with a recipe that ships with us, scaled to the trunk: fence_post_swallowed "
           "hollow_refuge old_oak spiral_grain"},
+         {"--scan", "CLOUD", "the scan that the tree was made of, best as 'reconstruct --cloud' writes it"},
+         {"--from-scan", "",
+          "adds to the recipe the lumps and dents that the scan shows; see them with --log"},
+         {"--report", "FILE", "writes how true the bark is to the scan, beside tubes, as JSON: docs/bark.md"},
+         {"--columns", "LIST", "names of a text scan's columns, such as x,y,z,r,g,b; - skips one"},
+         {"--classes", "LIST",
+          "classes of LAS points to read, such as 2,4-5, or all (default: all but noise, 7 and 18)"},
          {"--log", "FILE", "writes the recipe as it was found on this tree"},
          {"--check", "N", "judges the surface every N steps and prints what it is, a line of JSON each"},
          {"--level-errors", "",
@@ -86,8 +135,18 @@ void run_bark(const std::vector<std::string>& words) {
         return;
     }
     if (arguments.positional().size() != 1) throw UsageError("Name one skeleton that bark is to grow on.");
-    if (!arguments.has("-o") && !arguments.has("--check") && !arguments.has("--level-errors"))
+    const bool grows = arguments.has("-o") || arguments.has("--check") || arguments.has("--report") ||
+                       arguments.has("--level-errors");
+    if (!grows && !(arguments.has("--from-scan") && arguments.has("--log")))
         throw UsageError("Where to? Name a file with -o.");
+    for (const char* name : {"--from-scan", "--report"})
+        if (arguments.has(name) && !arguments.has("--scan"))
+            throw UsageError(std::string(name) + " needs the scan: name it with --scan.");
+    if (arguments.has("--scan") && !arguments.has("--from-scan") && !arguments.has("--report"))
+        throw UsageError("What is the scan for? Add --from-scan, --report or both.");
+    if (arguments.has("--report"))
+        require_own(arguments.text("--report", ""), kBarkFitMark, "no report of grown bark");
+    const ReadCloudOptions read = read_options_from(arguments);
     const std::vector<std::string> none;
     const std::vector<std::string>& outs = arguments.has("-o") ? arguments.all("-o") : none;
     for (const std::string& out : outs)
@@ -102,29 +161,27 @@ void run_bark(const std::vector<std::string>& words) {
     options.check_every = static_cast<int>(arguments.whole("--check", 0, 0, 100000));
 
     const Tree tree = skeleton_from(arguments, arguments.positional()[0]);
-    std::string text;
-    if (arguments.has("--preset")) {
-        const GrowthPreset* preset = nullptr;
-        try {
-            preset = &find_growth_preset(arguments.text("--preset", ""));
-        } catch (const Error& error) {
-            throw UsageError(error.what());
-        }
-        text = scale_recipe(preset->recipe, trunk_radius(tree) / kPresetRadius);
+    GrowthRecipe recipe = read_growth_recipe(tree, recipe_from(arguments, tree));
+    PointCloud scan;
+    if (arguments.has("--scan")) scan = read_cloud(arguments.text("--scan", ""), read, nullptr);
+    if (arguments.has("--from-scan")) recipe = with_lumps(tree, recipe, scan, quiet, &progress);
+    if (arguments.has("--log"))
+        write_file(arguments.text("--log", ""), std::string(kGrowthRecipeMark) + "1\n" + recipe.text);
+    if (!grows) {
+        progress.clear();
+        return;
     }
-    if (arguments.has("--recipe")) text += read_file(arguments.text("--recipe", "")).view();
-    if (arguments.has("-c"))
-        for (const std::string& line : arguments.all("-c"))
-            text += "\n" + line;
-    const GrowthRecipe recipe = read_growth_recipe(tree, text);
     if (!options.trace.empty()) make_folder(options.trace);
     const GrownTree grown = grow_bark(tree, recipe, options, &progress);
     exports.grown = &grown.bark;
     TreeExporter exporter(tree, exports, &progress);
     for (const std::string& out : outs)
         exporter.write(out);
-    if (arguments.has("--log"))
-        write_file(arguments.text("--log", ""), std::string(kGrowthRecipeMark) + "1\n" + recipe.text);
+    std::optional<BarkFit> fit;
+    if (arguments.has("--report")) {
+        fit = measure_bark_fit(tree, recipe, grown.bark, scan, &progress);
+        write_file(arguments.text("--report", ""), bark_fit_json(*fit, grown));
+    }
     progress.clear();
     for (const std::string& remark : grown.remarks)
         std::fprintf(stderr, "%s\n", remark.c_str());
@@ -140,6 +197,7 @@ void run_bark(const std::vector<std::string>& words) {
                     grown.bark.indices.size() / 3);
         for (const std::string& out : outs)
             std::printf("wrote %s\n", out.c_str());
+        if (fit) print_fit(*fit);
     }
     if (!all_sound) throw Error("The surface is not sound: see the lines above.");
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "error.h"
+#include "growth/bark_map.h"
 #include "growth/shapes.h"
 #include "growth/texture.h"
 
@@ -15,15 +16,6 @@ namespace {
 constexpr int kMouthSides = 32, kPostSides = 16, kWireSides = 8;
 constexpr double kMouthDepth = 0.15;  // of the radius at the end: from where on outwards bark decays
 constexpr double kSeed = 1.7;         // longest edges about the seed that must be free
-
-// Metres along its branch's axis where a node is.
-double along_of(const Tree& tree, const GrowthBranch& branch, NodeId node) {
-    const DVec3 place = tree.node(node).position;
-    const AxisPlace* nearest = &branch.axis.front();
-    for (const AxisPlace& at : branch.axis)
-        if (glm::distance(at.position, place) < glm::distance(nearest->position, place)) nearest = &at;
-    return nearest->along;
-}
 
 struct Spot {
     int32_t branch = 0;  // of the plan

@@ -1,6 +1,8 @@
 // In place of the rest of this room, where CGAL is left out.
 #include "error.h"
+#include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
+#include "growth/lumps.h"
 
 namespace treerec {
 
@@ -17,6 +19,14 @@ GrownTree grow_bark(const Tree&, const GrowthRecipe&, const GrowBarkOptions&, Pr
 }
 
 LevelError measure_level(const GrownBark&, double) {
+    refuse();
+}
+
+GrowthProposal propose_growth(const Tree&, const PointCloud&, const GrowthRecipe&, Progress*) {
+    refuse();
+}
+
+BarkFit measure_bark_fit(const Tree&, const GrowthRecipe&, const GrownBark&, const PointCloud&, Progress*) {
     refuse();
 }
 

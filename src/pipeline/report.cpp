@@ -215,6 +215,21 @@ Json outline_json(const OutlineJudgement& outline, double r_s) {
 }
 
 // Paths may hold bytes that are no UTF-8; they must not stop the report.
+Json bark_fit_part_json(const BarkFitPart& part) {
+    const auto distances = [](const BarkDistances& d) {
+        return Json{{"median", d.median}, {"mean", d.mean}, {"p95", d.p95}};
+    };
+    Json json;
+    json["from_m"] = part.from;
+    json["to_m"] = part.to;
+    json["points"] = part.points;
+    json["lumpy"] = part.lumpy;
+    json["tubes_m"] = distances(part.tubes);
+    json["grown_m"] = distances(part.grown);
+    json["nearer"] = part.tubes.mean > 0.0 ? 1.0 - part.grown.mean / part.tubes.mean : 0.0;
+    return json;
+}
+
 std::string dump(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -255,6 +270,34 @@ std::string growth_report_json(const GrownTree& grown) {
     json["vertices"] = grown.bark.vertices.size();
     json["triangles"] = grown.bark.indices.size() / 3;
     json["warnings"] = grown.remarks;
+    return dump(json);
+}
+
+std::string growth_proposal_json(const GrowthProposal& proposal) {
+    Json json;
+    json["burls"] = proposal.burls;
+    json["hollows"] = proposal.hollows;
+    json["warnings"] = proposal.remarks;
+    return dump(json);
+}
+
+std::string bark_fit_json(const BarkFit& fit, const GrownTree& grown) {
+    Json json;
+    json["bark_fit_version"] = 1;
+    json["steps"] = grown.steps;
+    json["triangles"] = grown.bark.indices.size() / 3;
+    json["warnings"] = grown.remarks;
+    json["radii"] = {{"slices", fit.slices}, {"median", fit.radius_median}, {"p95", fit.radius_p95}};
+    json["dbh_m"] = nullptr;
+    if (fit.dbh_scan > 0.0)
+        json["dbh_m"] = {
+            {"scan", fit.dbh_scan}, {"grown", fit.dbh_grown}, {"error", fit.dbh_grown / fit.dbh_scan - 1.0}};
+    json["all"] = bark_fit_part_json(fit.all);
+    json["lumpy"] = bark_fit_part_json(fit.lumpy);
+    json["heights"] = Json::array();
+    for (const BarkFitPart& part : fit.heights)
+        json["heights"].push_back(bark_fit_part_json(part));
+    json["worse"] = fit.worse;
     return dump(json);
 }
 

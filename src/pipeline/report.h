@@ -6,7 +6,9 @@
 #include <string>
 
 #include "exchange/tree_files.h"
+#include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
+#include "growth/lumps.h"
 #include "photos/bark_picture.h"
 #include "photos/leaf_colours.h"
 #include "photos/marker_scale.h"
@@ -85,6 +87,18 @@ std::string skeleton_report_json(const SkeletonReport& report);
 
 // Of bark that was grown: steps, branches (that it covers), vertices, triangles, warnings [sentence].
 std::string growth_report_json(const GrownTree& grown);
+
+// Of what a scan shows beside round wood: burls, hollows (their numbers), warnings [sentence].
+std::string growth_proposal_json(const GrowthProposal& proposal);
+
+// By what a report of how true grown bark is to its scan is known.
+inline constexpr char kBarkFitMark[] = "\"bark_fit_version\"";
+
+// bark_fit_version 1, steps, triangles, warnings [sentence], radii {slices, median, p95} (relative errors),
+// dbh_m {scan, grown, error (relative)} (null where the scan does not show it), all, lumpy and heights [..]:
+// {from_m, to_m, points, lumpy (share of the radius), tubes_m and grown_m {median, mean, p95}, nearer (share
+// by which the mean is less than the tubes')}, worse (of the heights): growth/bark_fit.h.
+std::string bark_fit_json(const BarkFit& fit, const GrownTree& grown);
 
 // The measurements alone, with the keys above.
 std::string measurements_json(const Tree& tree);

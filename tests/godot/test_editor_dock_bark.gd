@@ -150,3 +150,54 @@ func test_a_recipe_keeps_what_the_dock_does_not_know() -> void:
 	check_equal(recipe.get_features().size(), 2, "features")
 	recipe.get_features()[0].values["along"] = "1.5"
 	check_equal(recipe.get_text(), text.replace("along=1", "along=1.5"), "the text that was edited")
+
+
+# Of the trunk up to its first limb, with a bump 0.6 m up towards -Z.
+func _lumpy_points() -> PackedVector3Array:
+	var points: PackedVector3Array = []
+	for row: int in 64:
+		var up: float = 0.015 * row
+		var wood: float = 0.16 - 0.04 * up
+		for column: int in 90:
+			var angle: float = TAU * column / 90.0
+			var across: float = wood * angle_difference(0.5 * PI, angle)
+			var square: float = (up - 0.6) * (up - 0.6) + across * across
+			var out: float = wood + 0.045 * exp(-0.5 * square / (0.06 * 0.06))
+			points.append(Vector3(0.05 * up + out * cos(angle), up, -out * sin(angle)))
+	return points
+
+
+func test_the_scan_proposes_burls() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	check(shown.from_scan.button.disabled, "A tree of no scan has lumps of its scan.")
+	_end()
+	of = GrownBark.stout()
+	of.provenance = {"source": "lumpy.ply"}
+	_begin(of)
+	shown = _bark()
+	check(not shown.from_scan.button.disabled, "The scan can't be asked.")
+	shown.add.pressed.emit()
+	_session.scan.wood = _lumpy_points()
+	shown.from_scan.button.pressed.emit()
+	check(shown.from_scan.button.disabled, "It can be asked twice at once.")
+	await _finish()
+	_frame()
+	check("1 burls and 0 hollows" in str(_said), str(_said))
+	check_equal(shown.list.item_count, 2, "burls: the one that was there, and the scan's")
+	check_equal(_undo.get_history_count(), 0, "steps before it grows")
+	shown.list.select(1)
+	shown.list.item_selected.emit(1)
+	check_near(shown.fields["along"].value, 0.6, 0.03, "how far up")
+	check_near(shown.fields["around"].value, 90.0, 8.0, "which way")
+	_said.clear()
+	_session.scan.wood = PackedVector3Array([Vector3(50.0, 0.0, 0.0)])
+	shown.from_scan.button.pressed.emit()
+	await _finish()
+	check("too few points" in str(_said), str(_said))
+	check_equal(shown.list.item_count, 2, "burls")
+	await _grow()
+	check("from=0.7" in of.growth_recipe, of.growth_recipe)
+	check_equal(_undo.get_history_count(), 1, "steps")
+	_end()

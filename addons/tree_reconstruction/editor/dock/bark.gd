@@ -4,6 +4,7 @@ extends "section.gd"
 ## growth itself on a thread.
 
 const Recipe := preload("growth_recipe.gd")
+const FromScan := preload("bark_from_scan.gd")
 
 # What is shown of a command, in this order; of others all their numbers.
 const _SHOWN: Dictionary[String, PackedStringArray] = {
@@ -22,6 +23,7 @@ var remove: Button
 var edge: SpinBox
 var grow: Button
 var back: Button
+var from_scan: FromScan
 ## The fields of the burl that is selected, by their parameters.
 var fields: Dictionary[String, SpinBox] = {}
 
@@ -48,6 +50,7 @@ func get_id() -> StringName:
 func close() -> void:
 	session.tree_changed.disconnect(_on_tree_changed)
 	session.jobs.changed.disconnect(_on_jobs_changed)
+	from_scan.close()
 	if _job != null:
 		session.jobs.cancel(_job)
 
@@ -73,6 +76,9 @@ func _build() -> void:
 	remove = Widgets.button("Remove", "Takes the selected burl out of the recipe.", &"Remove")
 	remove.pressed.connect(_on_remove_pressed)
 	body.add_child(buttons([add, remove]))
+	from_scan = FromScan.new(session, func() -> String: return _recipe.get_text())
+	from_scan.proposed.connect(_on_proposed)
+	body.add_child(buttons([from_scan.button]))
 	body.add_child(_form)
 	edge = _make_number(_parameter("edges", "longest"))
 	edge.value_changed.connect(_on_edge_changed)
@@ -199,6 +205,7 @@ func _refresh() -> void:
 	grow.disabled = _job != null or of.is_empty()
 	add.disabled = of.is_empty()
 	remove.disabled = _selected() == null
+	from_scan.refresh()
 	back.disabled = _job != null or (of.grown_bark.is_empty() and of.growth_recipe.is_empty())
 
 
@@ -372,6 +379,12 @@ func _on_remove_pressed() -> void:
 	if line == null:
 		return
 	_recipe.lines.erase(line)
+	_note_draft()
+	_show_recipe()
+
+
+func _on_proposed(lines: String) -> void:
+	_recipe.lines.append_array(Recipe.new(lines).lines)
 	_note_draft()
 	_show_recipe()
 

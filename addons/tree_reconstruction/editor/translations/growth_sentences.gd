@@ -28,6 +28,12 @@ const PATTERNS: PackedStringArray = [
 	"There is no recipe %s; there are %s.",
 	"'%s' has no faces: give a mesh as a Wavefront OBJ file.",
 	"This build was made without CGAL and can't grow bark; get one that has it.",
+	"The tree has no wood that lumps could be on.",
+	"The scan has no points that bark could be compared with.",
+	(
+		"The scan has too few points on the bark to tell lumps: nothing is proposed. Is it the scan that"
+		+ " this tree was made of?"
+	),
 	"The saved bark is damaged. Grow it again.",
 	# Of a recipe.
 	"Line %s of the recipe: %s",
