@@ -7,7 +7,6 @@
 #include "growth/grow_bark.h"
 #include "growth/presets.h"
 #include "pipeline/export.h"
-#include "tree/measure.h"
 
 namespace treerec {
 
@@ -24,12 +23,6 @@ void print_check(const GrowthStep& step) {
         step.closed ? "true" : "false", step.outward ? "true" : "false", step.above_longest, step.apical,
         step.parting, step.link, step.fold, step.contact, step.unexplained, step.intersections, step.frozen,
         step.frozen_free);
-}
-
-// Metres, at breast height; of lower trees at the foot.
-double trunk_radius(const Tree& tree) {
-    const double dbh = measure(tree).dbh;
-    return dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius;
 }
 
 bool sound(const GrowthStep& step) {

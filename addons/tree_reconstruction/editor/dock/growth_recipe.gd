@@ -66,3 +66,8 @@ func get_features() -> Array[Line]:
 				and not line.command.strip_edges().begins_with("#")
 			)
 	)
+
+
+## A number as recipes have it.
+static func written(value: float) -> String:
+	return String.num(value, 3)
