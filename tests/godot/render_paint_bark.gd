@@ -23,6 +23,7 @@ func _picture() -> Image:
 
 func test_a_lump_that_is_dragged_is_drawn() -> void:
 	_begin(GrownBark.stout(), &"paint_bark")
+	_session.node.wind = false
 	_viewport.own_world_3d = true
 	_viewport.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	var light: DirectionalLight3D = DirectionalLight3D.new()

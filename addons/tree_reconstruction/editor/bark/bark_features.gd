@@ -200,8 +200,8 @@ static func _add_prism(
 ) -> void:
 	_add_ring(lines, middle - z, x, y, 16)
 	_add_ring(lines, middle + z, x, y, 16)
-	for i: int in 8:
-		var side: Vector3 = x * cos(TAU * i / 8.0) + y * sin(TAU * i / 8.0)
+	for i: int in 4:
+		var side: Vector3 = x * cos(TAU * i / 4.0) + y * sin(TAU * i / 4.0)
 		lines.append_array([middle - z + side, middle + z + side])
 
 

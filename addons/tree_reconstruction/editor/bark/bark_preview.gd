@@ -4,7 +4,7 @@ extends RefCounted
 
 const Session := preload("../session.gd")
 
-# As bark in the shade; the tree's own bark is laid over what it grows on.
+# Where the tree's own bark has no picture.
 const _COLOR: Color = Color(0.36, 0.29, 0.235)
 
 var _mesh: ArrayMesh = ArrayMesh.new()
@@ -14,7 +14,6 @@ var _shown: String = ""
 
 
 func _init() -> void:
-	_material.albedo_color = _COLOR
 	_material.roughness = 1.0
 	_material.metallic_specular = 0.1
 
@@ -31,6 +30,7 @@ func show(session: Session, worker: TreeReconstructor, recipe: String) -> void:
 		var arrays: Array = worker.lift_bark(session.tree, recipe)
 		if not arrays.is_empty():
 			_mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
+			_look_like(session.node.get_active_material(0) as ShaderMaterial)
 			_mesh.surface_set_material(0, _material)
 	if not _instance.is_valid():
 		_instance = RenderingServer.instance_create2(
@@ -51,6 +51,23 @@ func clear() -> void:
 		RenderingServer.free_rid(_instance)
 		_instance = RID()
 	_shown = ""
+
+
+# With the picture of the tree's bark, in its scale.
+func _look_like(bark: ShaderMaterial) -> void:
+	var picture: Texture2D = null
+	if bark != null:
+		picture = bark.get_shader_parameter(&"albedo_texture") as Texture2D
+	_material.albedo_texture = picture
+	_material.albedo_color = _COLOR if picture == null else Color.WHITE
+	if picture == null:
+		return
+	var size: Vector3 = Vector3.ONE
+	var names: Array[StringName] = [&"repeat_width", &"repeat_length"]
+	for axis: int in 2:
+		var repeat: Variant = bark.get_shader_parameter(names[axis])
+		size[axis] = 1.0 / (repeat as float if repeat is float else [0.6, 1.0][axis] as float)
+	_material.uv1_scale = size
 
 
 func _notification(what: int) -> void:

@@ -25,6 +25,8 @@ const _BESIDE: Color = Color(0.0, 0.0, 0.0, 0.6)
 var _worker: TreeReconstructor = TreeReconstructor.new()
 var _preview: BarkPreview = BarkPreview.new()
 var _work: BarkWork
+# The node that tells when what grew is drawn.
+var _node: TreeInstance3D
 var _size: Range
 # Where the mouse is over the bark; empty where it isn't.
 var _over: Dictionary = {}
@@ -60,6 +62,11 @@ func get_tooltip() -> String:
 
 func get_icon() -> String:
 	return "res://addons/tree_reconstruction/icons/tools/paint_bark.svg"
+
+
+## It sees the bark, wherever the skeleton's nodes are.
+func picks_nodes() -> bool:
+	return false
 
 
 func get_key() -> Key:
@@ -111,6 +118,9 @@ func start() -> void:
 	super()
 	_work.automatic = values[&"grow"]
 	_work.changed.connect(_on_work_changed)
+	_node = session.node
+	_node.rebuilt.connect(_on_work_changed)
+	session.hovered = NO_NODE
 	_painted = []
 	_update_preview()
 
@@ -123,6 +133,9 @@ func stop() -> void:
 	_places_of = []
 	if _work != null and _work.changed.is_connected(_on_work_changed):
 		_work.changed.disconnect(_on_work_changed)
+	if is_instance_valid(_node):
+		_node.rebuilt.disconnect(_on_work_changed)
+	_node = null
 	_work = null
 
 
@@ -291,9 +304,10 @@ func _draw_feature(on: Control, line: Recipe.Line, place: Dictionary, chosen: bo
 	var eye: Vector3 = session.node.global_transform.affine_inverse() * _eye.global_position
 	if (place.out as Vector3).dot(eye - place.position as Vector3) < 0.0:
 		color.a = 0.35
-	_draw_lines(
-		on, BarkFeatures.outline_of(line, place, _work.get_default), color, 2.5 if chosen else 1.5
-	)
+	var wide: float = 2.5 if chosen else 1.5
+	if line.command == "obstacle":
+		wide = 1.5 if chosen else 1.0
+	_draw_lines(on, BarkFeatures.outline_of(line, place, _work.get_default), color, wide)
 	var at: Vector2 = seen_at(place.position)
 	if at.is_finite():
 		var radius: float = _HANDLE * get_scale() * (1.3 if chosen else 1.0)
@@ -431,7 +445,7 @@ func _update_preview() -> void:
 	if _work == null or session.tree == null:
 		_preview.clear()
 		return
-	if _work.is_seen():
+	if _work.is_seen() and not _node.is_rebuilding():
 		_painted = []
 	var text: String = ""
 	if is_busy():
