@@ -170,6 +170,16 @@ func test_the_lump_is_seen_while_it_is_dragged() -> void:
 	_end()
 
 
+func test_nothing_stays_of_a_tree_that_is_deleted() -> void:
+	var tool: PaintBark = _paint()
+	_click(_seen(0.6))
+	check(tool._preview.get_triangle_count() > 100, "Nothing is shown.")
+	_session.node.free()
+	await _frame()
+	check_equal(tool._preview.get_triangle_count(), 0, "triangles of a tree that is gone")
+	_end()
+
+
 # The outline is as high as what grows: equation 6 with the branch's radius.
 func test_the_preview_is_as_high_as_the_growth() -> void:
 	var tool: PaintBark = _paint()

@@ -14,8 +14,8 @@ const TOOL: StringName = &"paint_bark"
 const NONE: int = -1
 # The first growth has edges that are so many times as long, but not longer than this share of the
 # trunk's radius at its foot.
-const _COARSE: float = 2.5
-const _LONGEST: float = 0.5
+const _COARSE: float = 3.5
+const _LONGEST: float = 0.65
 # It isn't worth it below.
 const _WORTH: float = 1.3
 

@@ -51,7 +51,6 @@ func get_id() -> StringName:
 func close() -> void:
 	session.tree_changed.disconnect(_on_tree_changed)
 	_work.changed.disconnect(_on_work_changed)
-	_work.close()
 
 
 func _build() -> void:

@@ -120,6 +120,7 @@ func start() -> void:
 	_work.changed.connect(_on_work_changed)
 	_node = session.node
 	_node.rebuilt.connect(_on_work_changed)
+	session.tree_changed.connect(_update_preview)
 	session.hovered = NO_NODE
 	_painted = []
 	_update_preview()
@@ -133,6 +134,7 @@ func stop() -> void:
 	_places_of = []
 	if _work != null and _work.changed.is_connected(_on_work_changed):
 		_work.changed.disconnect(_on_work_changed)
+		session.tree_changed.disconnect(_update_preview)
 	if is_instance_valid(_node):
 		_node.rebuilt.disconnect(_on_work_changed)
 	_node = null
@@ -442,7 +444,7 @@ func _update_hint() -> void:
 
 # What is dragged, and what was painted and is not grown yet.
 func _update_preview() -> void:
-	if _work == null or session.tree == null:
+	if _work == null or _work.session == null or session.tree == null:
 		_preview.clear()
 		return
 	if _work.is_seen() and not _node.is_rebuilding():
