@@ -64,42 +64,25 @@ func _build() -> void:
 	_notice = Widgets.sentence()
 	_notice.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	body.add_child(_notice)
-	list.tooltip_text = (
-		"The burls that are to grow, hollows, and what stands in their way. Select one to"
-		+ " change it."
+	_build_surface()
+	_build_list()
+	session.tree_changed.connect(_on_tree_changed)
+	_work.changed.connect(_on_work_changed)
+
+
+# What is about the whole surface; first, so that it is seen however many fields a feature has.
+func _build_surface() -> void:
+	grow = Widgets.button(
+		"Grow",
+		"Grows bark by this recipe around all wood that is thick enough. You can go on meanwhile.",
+		&"Play"
 	)
-	list.custom_minimum_size.y = Widgets.px(84)
-	list.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	list.item_selected.connect(_on_item_selected)
-	body.add_child(list)
-	add = Widgets.button(
-		"Add Burl", "A burl on the branch of the selected node, or else on the trunk.", &"Add"
+	grow.pressed.connect(start)
+	back = Widgets.button(
+		"Back to Tubes", "Takes the grown bark and its recipe off the tree.", &"Clear"
 	)
-	add.pressed.connect(add_burl)
-	remove = Widgets.button("Remove", "Takes what is selected out of the recipe.", &"Remove")
-	remove.pressed.connect(_on_remove_pressed)
-	more = MenuButton.new()
-	more.text = "Add Other"
-	more.tooltip_text = (
-		"A ridge, a hollow or an obstacle, likewise; or one of the presets instead of this"
-		+ " recipe."
-	)
-	more.flat = false
-	_fill_menu(more.get_popup())
-	body.add_child(buttons([add, more, remove]))
-	body.add_child(_form)
-	twist = _make_number(_parameter("grain", "twist"))
-	twist.value_changed.connect(_on_twist_changed)
-	body.add_child(
-		Widgets.line(
-			"Grain Twist",
-			(
-				"How the grain winds about trunk and branches, and the ridges on it, in radians a"
-				+ " metre."
-			),
-			twist
-		)
-	)
+	back.pressed.connect(_on_back_pressed)
+	body.add_child(buttons([grow, back]))
 	edge = _make_number(_parameter("edges", "longest"))
 	edge.value_changed.connect(_on_edge_changed)
 	(
@@ -118,19 +101,46 @@ func _build() -> void:
 			)
 		)
 	)
-	grow = Widgets.button(
-		"Grow",
-		"Grows bark by this recipe around all wood that is thick enough. You can go on meanwhile.",
-		&"Play"
+	twist = _make_number(_parameter("grain", "twist"))
+	twist.value_changed.connect(_on_twist_changed)
+	body.add_child(
+		Widgets.line(
+			"Grain Twist",
+			(
+				"How the grain winds about trunk and branches, and the ridges on it, in radians a"
+				+ " metre."
+			),
+			twist
+		)
 	)
-	grow.pressed.connect(start)
-	back = Widgets.button(
-		"Back to Tubes", "Takes the grown bark and its recipe off the tree.", &"Clear"
+
+
+# The features, and the fields of the one that is selected.
+func _build_list() -> void:
+	list.tooltip_text = (
+		"The burls that are to grow, hollows, and what stands in their way. Select one to"
+		+ " change it."
 	)
-	back.pressed.connect(_on_back_pressed)
-	body.add_child(buttons([grow, back]))
-	session.tree_changed.connect(_on_tree_changed)
-	_work.changed.connect(_on_work_changed)
+	list.custom_minimum_size.y = Widgets.px(84)
+	list.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	list.item_selected.connect(_on_item_selected)
+	body.add_child(list)
+	add = Widgets.button(
+		"Add Burl", "A burl on the branch of the selected node, or else on the trunk.", &"Add"
+	)
+	add.pressed.connect(add_burl)
+	remove = Widgets.button("", "Takes what is selected out of the recipe.", &"Remove")
+	remove.pressed.connect(_on_remove_pressed)
+	more = MenuButton.new()
+	more.text = "Add Other"
+	more.tooltip_text = (
+		"A ridge, a hollow or an obstacle, likewise; or one of the presets instead of this"
+		+ " recipe."
+	)
+	more.flat = false
+	_fill_menu(more.get_popup())
+	body.add_child(buttons([add, more, remove]))
+	body.add_child(_form)
 
 
 ## Adds a burl to the recipe: on the branch of the selected node, or else on the trunk.
