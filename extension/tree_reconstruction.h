@@ -72,6 +72,8 @@ class TreeReconstruction : public godot::Resource {
     godot::String get_growth_recipe() const { return growth_recipe_; }
     void set_grown_bark(const godot::PackedByteArray& p_bark);
     godot::PackedByteArray get_grown_bark() const { return packed_bark_; }
+    void set_growth_pending(bool p_pending);
+    bool is_growth_pending() const { return growth_pending_; }
     void set_seed(int64_t p_seed);
     int64_t get_seed() const;
     void set_leaf_preset(const godot::String& p_name);
@@ -156,6 +158,7 @@ class TreeReconstruction : public godot::Resource {
     // tree_reconstruction_bark.cpp
     bool has_grown_bark() const;
     bool is_bark_stale() const;
+    void take_bark_of(const godot::Ref<TreeReconstruction>& p_other);
 
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
@@ -272,6 +275,7 @@ class TreeReconstruction : public godot::Resource {
     godot::String leaf_preset_ = "generic";
     godot::Dictionary provenance_;
     godot::String growth_recipe_;
+    bool growth_pending_ = false;
     godot::PackedByteArray packed_bark_;  // as it was given, also where this version can't read it
     godot::Dictionary newer_foliage_;     // likewise
     godot::Dictionary

@@ -22,6 +22,13 @@ void TreeReconstruction::set_growth_recipe(const String& p_recipe) {
     emit_changed();
 }
 
+void TreeReconstruction::set_growth_pending(bool p_pending) {
+    if (growth_pending_ != p_pending) {
+        growth_pending_ = p_pending;
+        emit_changed();
+    }
+}
+
 void TreeReconstruction::set_grown_bark(const PackedByteArray& p_bark) {
     auto bark = std::make_shared<GrownBark>();
     PackedByteArray kept = p_bark;
@@ -81,11 +88,36 @@ void TreeReconstruction::set_bark(const GrownBark& p_bark, const String& p_recip
     bytes.resize(int64_t(packed.size()));
     std::memcpy(bytes.ptrw(), packed.data(), packed.size());
     growth_recipe_ = p_recipe;
+    growth_pending_ = false;
     // As a file would give it back, so that it looks the same before it is saved and after.
     set_grown_bark(bytes);
 }
 
+void TreeReconstruction::take_bark_of(const Ref<TreeReconstruction>& p_other) {
+    ERR_FAIL_COND_MSG(p_other.is_null(), "There is no bark to take over.");
+    if (p_other.ptr() == this) {
+        return;
+    }
+    std::shared_ptr<const GrownBark> bark;
+    {
+        const std::lock_guard lock(p_other->mutex_);
+        bark = p_other->bark_;
+    }
+    growth_recipe_ = p_other->growth_recipe_;
+    growth_pending_ = p_other->growth_pending_;
+    packed_bark_ = p_other->packed_bark_;
+    {
+        const std::lock_guard lock(mutex_);
+        // Never changed, only replaced: both may hold the same.
+        bark_ = std::move(bark);
+    }
+    emit_changed();
+}
+
 void TreeReconstruction::_bind_bark() {
+    ClassDB::bind_method(D_METHOD("take_bark_of", "other"), &TreeReconstruction::take_bark_of);
+    ClassDB::bind_method(D_METHOD("set_growth_pending", "pending"), &TreeReconstruction::set_growth_pending);
+    ClassDB::bind_method(D_METHOD("is_growth_pending"), &TreeReconstruction::is_growth_pending);
     ClassDB::bind_method(D_METHOD("has_grown_bark"), &TreeReconstruction::has_grown_bark);
     ClassDB::bind_method(D_METHOD("is_bark_stale"), &TreeReconstruction::is_bark_stale);
     ClassDB::bind_method(D_METHOD("set_growth_recipe", "recipe"), &TreeReconstruction::set_growth_recipe);
@@ -98,4 +130,7 @@ void TreeReconstruction::_bind_bark() {
     ADD_PROPERTY(PropertyInfo(Variant::PACKED_BYTE_ARRAY, "grown_bark", PROPERTY_HINT_NONE, "",
                               PROPERTY_USAGE_STORAGE),
                  "set_grown_bark", "get_grown_bark");
+    ADD_PROPERTY(
+        PropertyInfo(Variant::BOOL, "growth_pending", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
+        "set_growth_pending", "is_growth_pending");
 }

@@ -323,6 +323,14 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("grow_bark", "tree", "recipe"), &TreeReconstructor::grow_bark);
     ClassDB::bind_method(D_METHOD("propose_growth", "tree", "points", "recipe"),
                          &TreeReconstructor::propose_growth, DEFVAL(""));
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_presets"),
+                                &TreeReconstructor::get_growth_presets);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("scale_growth_preset", "name", "tree"),
+                                &TreeReconstructor::scale_growth_preset);
+    ClassDB::bind_method(D_METHOD("pick_bark", "tree", "from", "way", "longest"),
+                         &TreeReconstructor::pick_bark, DEFVAL(0.035));
+    ClassDB::bind_method(D_METHOD("find_bark", "tree", "recipe"), &TreeReconstructor::find_bark);
+    ClassDB::bind_method(D_METHOD("lift_bark", "tree", "recipe"), &TreeReconstructor::lift_bark);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_commands"),
                                 &TreeReconstructor::get_growth_commands);
     ClassDB::bind_method(D_METHOD("sketch_tree", "sketch", "twigs_of"), &TreeReconstructor::sketch_tree,

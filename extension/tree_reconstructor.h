@@ -11,9 +11,11 @@
 #include <godot_cpp/variant/vector2i.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "fidelity/photo_judge.h"
+#include "growth/places.h"
 #include "l_system.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
@@ -50,6 +52,14 @@ class TreeReconstructor : public godot::RefCounted {
                                  const godot::PackedVector3Array& p_points,
                                  const godot::String& p_recipe = "");
     static godot::TypedArray<godot::Dictionary> get_growth_commands();
+    static godot::TypedArray<godot::Dictionary> get_growth_presets();
+    static godot::String scale_growth_preset(const godot::String& p_name,
+                                             const godot::Ref<TreeReconstruction>& p_tree);
+    godot::Dictionary pick_bark(const godot::Ref<TreeReconstruction>& p_tree, const godot::Vector3& p_from,
+                                const godot::Vector3& p_way, double p_longest = 0.035);
+    godot::TypedArray<godot::Dictionary> find_bark(const godot::Ref<TreeReconstruction>& p_tree,
+                                                   const godot::String& p_recipe);
+    godot::Array lift_bark(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_recipe);
     godot::Ref<TreeReconstruction> sketch_tree(const godot::Ref<TreeSketch>& p_sketch,
                                                const godot::Ref<godot::Resource>& p_twigs_of);
     godot::Ref<TreeSketch> sketch_with_twigs(const godot::Ref<TreeSketch>& p_sketch,
@@ -103,6 +113,8 @@ class TreeReconstructor : public godot::RefCounted {
 
     struct Task;
     godot::Ref<TreeReconstruction> _reconstruct(const std::function<Task(Listener&)>& p_begin);
+    const treerec::BarkPlaces& _places_of(const std::shared_ptr<const treerec::Tree>& p_tree,
+                                          double p_longest, double p_shortest);
     void _report_progress(double p_fraction, const char* p_stage);
     void _report_count(size_t p_done, size_t p_all);
     void _fail(const std::string& p_sentence);
@@ -110,6 +122,11 @@ class TreeReconstructor : public godot::RefCounted {
     // What the last reconstruct_file() read and cleaned; the running job's alone.
     treerec::ReconstructCache cache_;
     std::atomic<int64_t> cache_bytes_ = 0;
+
+    // Of the main thread alone: what pick_bark(), find_bark() and lift_bark() looked at last.
+    std::weak_ptr<const treerec::Tree> places_tree_;
+    double places_longest_ = 0.0, places_shortest_ = 0.0;
+    std::optional<treerec::BarkPlaces> places_;
 
     std::atomic<bool> running_ = false;
     std::atomic<bool> cancelled_ = false;

@@ -1,12 +1,16 @@
 // Bark that TreeReconstructor grows on trees (src/growth).
 #include <exception>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 
 #include "convert.h"
 #include "error.h"
 #include "growth/grow_bark.h"
 #include "growth/lumps.h"
+#include "growth/places.h"
+#include "growth/presets.h"
 #include "pipeline/report.h"
 #include "scan_points.h"
 #include "tree_reconstructor.h"
@@ -76,4 +80,124 @@ TypedArray<Dictionary> TreeReconstructor::get_growth_commands() {
         list.push_back(entry);
     }
     return list;
+}
+
+TypedArray<Dictionary> TreeReconstructor::get_growth_presets() {
+    TypedArray<Dictionary> list;
+    for (const treerec::GrowthPreset& preset : treerec::growth_presets()) {
+        Dictionary entry;
+        entry["name"] = to_godot(std::string(preset.name));
+        entry["description"] = to_godot(std::string(preset.title));
+        list.push_back(entry);
+    }
+    return list;
+}
+
+String TreeReconstructor::scale_growth_preset(const String& p_name, const Ref<TreeReconstruction>& p_tree) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), String(), "There is no tree that bark could grow on.");
+    return guarded(String(), [&] {
+        const treerec::GrowthPreset& preset = treerec::find_growth_preset(to_std(p_name));
+        const double radius = treerec::trunk_radius(*p_tree->get_tree());
+        return to_godot(treerec::scale_recipe(preset.recipe, radius / treerec::kPresetRadius));
+    });
+}
+
+const treerec::BarkPlaces& TreeReconstructor::_places_of(const std::shared_ptr<const treerec::Tree>& p_tree,
+                                                         double p_longest, double p_shortest) {
+    if (!places_ || places_tree_.lock() != p_tree || places_longest_ != p_longest ||
+        places_shortest_ != p_shortest) {
+        places_.emplace(*p_tree, p_longest, p_shortest);
+        places_tree_ = p_tree;
+        places_longest_ = p_longest;
+        places_shortest_ = p_shortest;
+    }
+    return *places_;
+}
+
+static Dictionary to_dictionary(const treerec::BarkPlace& p_place) {
+    Dictionary found;
+    found["node"] = int64_t(p_place.node);
+    found["along"] = p_place.along;
+    found["around"] = p_place.around;
+    found["radius"] = p_place.radius;
+    found["position"] = to_godot(p_place.position());
+    found["axis"] = to_godot(p_place.axis);
+    found["direction"] = to_godot(p_place.direction);
+    found["out"] = to_godot(p_place.out);
+    return found;
+}
+
+// What edges a recipe has if it tells none.
+static treerec::GrowthRecipe recipe_of(const treerec::Tree& p_tree, const String& p_text) {
+    try {
+        return treerec::read_growth_recipe(p_tree, to_std(p_text));
+    } catch (const treerec::Error&) {
+        // Half written: what is wrong is told by whoever grows it.
+        return {};
+    }
+}
+
+Dictionary TreeReconstructor::pick_bark(const Ref<TreeReconstruction>& p_tree, const Vector3& p_from,
+                                        const Vector3& p_way, double p_longest) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), Dictionary(), "There is no tree whose bark could be met.");
+    ERR_FAIL_COND_V_MSG(!p_way.is_finite() || !p_from.is_finite() || p_way == Vector3() || !(p_longest > 0.0),
+                        Dictionary(), "The line of sight needs a place and a direction.");
+    const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+    if (tree->empty()) {
+        return Dictionary();
+    }
+    const std::optional<treerec::BarkPlace> found =
+        _places_of(tree, p_longest, p_longest * 15.0 / 35.0)
+            .pick(treerec::DVec3(p_from.x, p_from.y, p_from.z), treerec::DVec3(p_way.x, p_way.y, p_way.z));
+    return found ? to_dictionary(*found) : Dictionary();
+}
+
+TypedArray<Dictionary> TreeReconstructor::find_bark(const Ref<TreeReconstruction>& p_tree,
+                                                    const String& p_recipe) {
+    TypedArray<Dictionary> list;
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), list, "There is no tree whose bark could be looked at.");
+    const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+    if (tree->empty()) {
+        return list;
+    }
+    const treerec::GrowthRecipe whole = recipe_of(*tree, p_recipe);
+    const treerec::BarkPlaces& places = _places_of(tree, whole.longest, whole.shortest);
+    std::istringstream lines(to_std(p_recipe));
+    for (std::string line; std::getline(lines, line);) {
+        const treerec::GrowthRecipe one = recipe_of(*tree, to_godot(line));
+        Dictionary entry;
+        std::optional<treerec::BarkPlace> found;
+        if (!one.features.empty()) {
+            found = places.find(one.features[0]);
+        } else if (!one.obstacles.empty()) {
+            found = places.find(one.obstacles[0]);
+        }
+        list.push_back(found ? to_dictionary(*found) : Dictionary());
+    }
+    return list;
+}
+
+Array TreeReconstructor::lift_bark(const Ref<TreeReconstruction>& p_tree, const String& p_recipe) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), Array(), "There is no tree whose bark could be lifted.");
+    const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+    if (tree->empty()) {
+        return Array();
+    }
+    const treerec::GrowthRecipe recipe = recipe_of(*tree, p_recipe);
+    const treerec::BarkPlaces& places = _places_of(tree, recipe.longest, recipe.shortest);
+    treerec::Mesh all;
+    for (const treerec::GrowthFeature& feature : recipe.features) {
+        if (feature.kind != treerec::GrowthFeature::Kind::kBurl) {
+            continue;
+        }
+        const treerec::Mesh one = places.lift(feature, recipe.twist);
+        const uint32_t before = uint32_t(all.positions.size());
+        all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
+        all.normals.insert(all.normals.end(), one.normals.begin(), one.normals.end());
+        all.uvs.insert(all.uvs.end(), one.uvs.begin(), one.uvs.end());
+        for (const uint32_t index : one.indices) {
+            all.indices.push_back(before + index);
+        }
+    }
+    return to_surface_arrays(all);
 }

@@ -12,7 +12,6 @@
 #include "pipeline/export.h"
 #include "pipeline/report.h"
 #include "scan/read_cloud.h"
-#include "tree/measure.h"
 
 namespace treerec {
 
@@ -39,12 +38,6 @@ void print_levels(const GrownBark& bark) {
             "%.2f, \"normals_degrees\": %.1f}\n",
             level, error.triangles, 1000.0 * error.mean, 1000.0 * error.most, 1000.0 * error.out, error.turn);
     }
-}
-
-// Metres, at breast height; of lower trees at the foot.
-double trunk_radius(const Tree& tree) {
-    const double dbh = measure(tree).dbh;
-    return dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius;
 }
 
 // The recipe's text as the options have it.

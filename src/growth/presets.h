@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "tree/tree.h"
+
 namespace treerec {
 
 struct GrowthPreset {
@@ -15,6 +17,9 @@ struct GrowthPreset {
 
 // Metres, of the trunk where it is thickest above its foot's flare.
 inline constexpr double kPresetRadius = 0.22;
+
+// What that is of a tree: metres, at breast height; of lower trees at the foot.
+double trunk_radius(const Tree& tree);
 
 // By name: fence_post_swallowed, hollow_refuge, old_oak, spiral_grain.
 std::span<const GrowthPreset> growth_presets();

@@ -2,8 +2,14 @@
 
 #include "edit/command_text.h"
 #include "growth/recipe.h"
+#include "tree/measure.h"
 
 namespace treerec {
+
+double trunk_radius(const Tree& tree) {
+    const double dbh = measure(tree).dbh;
+    return dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius;
+}
 
 const GrowthPreset& find_growth_preset(std::string_view name) {
     std::string names;

@@ -3,6 +3,7 @@
 #include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
 #include "growth/lumps.h"
+#include "growth/places.h"
 
 namespace treerec {
 
@@ -28,6 +29,22 @@ GrowthProposal propose_growth(const Tree&, const PointCloud&, const GrowthRecipe
 
 BarkFit measure_bark_fit(const Tree&, const GrowthRecipe&, const GrownBark&, const PointCloud&, Progress*) {
     refuse();
+}
+
+// Nowhere does bark grow.
+struct BarkPlaces::Data {};
+BarkPlaces::BarkPlaces(const Tree&, double, double) {}
+BarkPlaces::~BarkPlaces() = default;
+BarkPlaces::BarkPlaces(BarkPlaces&&) noexcept = default;
+BarkPlaces& BarkPlaces::operator=(BarkPlaces&&) noexcept = default;
+std::optional<BarkPlace> BarkPlaces::pick(const DVec3&, const DVec3&) const {
+    return std::nullopt;
+}
+std::optional<BarkPlace> BarkPlaces::find(const GrowthPlace&) const {
+    return std::nullopt;
+}
+Mesh BarkPlaces::lift(const GrowthFeature&, double) const {
+    return {};
 }
 
 }  // namespace treerec

@@ -3,6 +3,8 @@ extends "./dock_suite.gd"
 
 const Bark := preload("res://addons/tree_reconstruction/editor/dock/bark.gd")
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
+const AllTools := preload("res://addons/tree_reconstruction/editor/tools/all_tools.gd")
+const Picker := preload("res://addons/tree_reconstruction/editor/viewport/picker.gd")
 const GrownBark := preload("./test_grown_bark.gd")
 
 
@@ -200,4 +202,86 @@ func test_the_scan_proposes_burls() -> void:
 	await _grow()
 	check("from=0.7" in of.growth_recipe, of.growth_recipe)
 	check_equal(_undo.get_history_count(), 1, "steps")
+	_end()
+
+
+func test_other_features_are_added_and_changed_by_their_fields() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	var menu: PopupMenu = shown.more.get_popup()
+	for i: int in range(1, Bark.BarkFeatures.KINDS.size()):
+		menu.id_pressed.emit(i)
+		check_equal(shown.list.item_count, i, "features")
+		check(shown.list.is_selected(i - 1), "What was added is not selected.")
+		check(shown.fields.has("along") and shown.fields.has("growth"), str(shown.fields.keys()))
+		var title: String = shown.list.get_item_text(i - 1)
+		check("trunk" in title and "=" not in title, title)
+		check(menu.get_item_text(menu.get_item_index(i)) in title, title)
+	# A post becomes a wire, which has other fields.
+	shown.list.select(2)
+	shown.list.item_selected.emit(2)
+	check(shown.fields.has("radius") and not shown.fields.has("thickness"), "of a post")
+	var shape: OptionButton = shown.choices["shape"] as OptionButton
+	shape.select(1)
+	shape.item_selected.emit(1)
+	await tree.process_frame
+	check(shown.fields.has("thickness") and not shown.fields.has("radius"), "of a wire")
+	shown.fields["thickness"].value = 0.02
+	shown.twist.value = 1.5
+	check_equal(_undo.get_history_count(), 0, "steps before it grows")
+	await _grow()
+	check(
+		"shape=wire" in of.growth_recipe and "thickness=0.02" in of.growth_recipe, of.growth_recipe
+	)
+	check("grain twist=1.5" in of.growth_recipe, of.growth_recipe)
+	check("hollow" in of.growth_recipe and "grain=yes" in of.growth_recipe, of.growth_recipe)
+	_end()
+
+
+func test_a_preset_comes_instead_and_keeps_the_edges() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	var menu: PopupMenu = shown.more.get_popup()
+	shown.edge.value = 0.08
+	shown.add.pressed.emit()
+	for i: int in menu.item_count:
+		if menu.get_item_text(i) == "Old Oak":
+			menu.id_pressed.emit(menu.get_item_id(i))
+	check_equal(shown.list.item_count, 5, "features")
+	check_near(shown.edge.value, 0.08, 1e-6, "the edges")
+	check_near(shown.twist.value, 0.8 * 0.22 / 0.108, 0.02, "the grain's twist")
+	await _grow()
+	check(of.has_grown_bark(), "It has not grown: %s" % _said)
+	_end()
+
+
+func test_while_bark_is_painted_each_change_is_a_step() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	of.growth_recipe = "edges longest=0.08\n"
+	_begin(of)
+	AllTools.add_to(_session)
+	_session.picker = Picker.new(_session)
+	_session.choose(&"paint_bark")
+	var shown: Bark = _bark()
+	shown.add.pressed.emit()
+	check_equal(_undo.get_history_count(), 1, "steps")
+	await _finish()
+	_frame()
+	check(of.has_grown_bark() and not of.growth_pending, "It has not grown: %s" % _said)
+	check("as this recipe" in shown._notice.text, shown._notice.text)
+	shown.fields["growth"].value = 1.5
+	check_equal(_undo.get_history_count(), 2, "steps after a field")
+	await _finish()
+	_undo.undo()
+	_frame()
+	check_near(shown.fields["growth"].value, 0.5, 1e-6, "the growth after undo")
+	check(of.has_grown_bark() and not of.growth_pending, "The bark before is not there.")
+	_undo.undo()
+	_frame()
+	check(not of.has_grown_bark(), "Bark is left.")
+	_session.choose(&"")
+	_session.tools.clear()
+	_session.picker = null
 	_end()

@@ -13,7 +13,13 @@ extends RefCounted
 
 # What a reconstruction makes of a tree; all else is how it looks.
 const _MADE: Array[StringName] = [
-	&"skeleton", &"foliage", &"provenance", &"edit_log", &"growth_recipe", &"grown_bark"
+	&"skeleton",
+	&"foliage",
+	&"provenance",
+	&"edit_log",
+	&"growth_recipe",
+	&"growth_pending",
+	&"grown_bark",
 ]
 
 # EditorUndoRedoManager or UndoRedo.

@@ -61,6 +61,8 @@ var scion: String = ""
 var picked: PackedStringArray = []
 ## What the user wants where other nodes show the edited tree, too.
 var consent: Consent
+## What bark is to grow (see [code]bark/bark_work.gd[/code]), once something asked for it.
+var bark: RefCounted
 
 var _undo_status: UndoStatus = UndoStatus.new()
 var _shown: TreeReconstruction
@@ -149,6 +151,9 @@ func take_scion(lstring: String) -> void:
 ## Ends everything, before the plugin goes.
 func shut_down() -> void:
 	edit_node(null)
+	if bark != null:
+		bark.call(&"close")
+		bark = null
 	jobs.shut_down()
 
 
@@ -376,19 +381,21 @@ func replace_tree(
 
 
 ## Gives the edited tree the bark and the recipe of [param made]; with [code]null[/code], tubes.
-func set_bark(title: String, made: TreeReconstruction) -> void:
+## Steps with the same [param merged] that follow each other quickly become one.
+func set_bark(title: String, made: TreeReconstruction, merged: Array = []) -> void:
 	if tree == null:
 		return
 	cancel_drag()
 	var imported: TreeReconstruction = tree
-	var edited: TreeReconstruction = _editable(set_bark.bind(title, made))
+	var edited: TreeReconstruction = _editable(set_bark.bind(title, made, merged))
 	if edited == null:
 		return
-	var with: TreeReconstruction = made if made != null else TreeReconstruction.new()
-	begin_step(title, edited, imported)
+	var before: TreeReconstruction = TreeReconstruction.new()
+	before.take_bark_of(edited)
+	var after: TreeReconstruction = made if made != null else TreeReconstruction.new()
+	begin_step(title, edited, imported, merged)
 	_add_local(edited, imported)
-	for property: StringName in [&"growth_recipe", &"grown_bark"]:
-		history.add_property(edited, property, with.get(property), edited.get(property))
+	history.add_method(edited, &"take_bark_of", [after], &"take_bark_of", [before])
 	history.commit()
 
 

@@ -1,16 +1,16 @@
 @tool
 extends "section.gd"
-## Bark that grows around the tree as one surface, with burls: a recipe that is edited here, and the
-## growth itself on a thread.
+## Bark that grows around the tree as one surface, with burls, hollows and obstacles: a recipe that
+## is edited here, or painted in the view.
 
+const BarkFeatures := preload("../bark/bark_features.gd")
+const BarkWork := preload("../bark/bark_work.gd")
+const BarkWords := preload("../bark/bark_words.gd")
 const Recipe := preload("growth_recipe.gd")
 const FromScan := preload("bark_from_scan.gd")
 
-# What is shown of a command, in this order; of others all their numbers.
-const _SHOWN: Dictionary[String, PackedStringArray] = {
-	"burl": ["along", "around", "radius", "growth"],
-}
-const _NUMBERS: PackedStringArray = ["number", "length", "whole"]
+# Of the presets in the menu, after the features.
+const _PRESETS: int = 100
 # Metres along the trunk where a burl comes to be, on trees that are high enough.
 const _BREAST_HEIGHT: float = 1.3
 # Of a burl's radius, over that of the wood.
@@ -27,16 +27,19 @@ var from_scan: FromScan
 ## The fields of the burl that is selected, by their parameters.
 var fields: Dictionary[String, SpinBox] = {}
 
+var more: MenuButton
+var twist: SpinBox
+## Those of its fields that are no numbers.
+var choices: Dictionary[String, Control] = {}
+
 var _notice: Label
 var _form: VBoxContainer = VBoxContainer.new()
 var _commands: Dictionary[String, Dictionary] = {}
-var _job: Session.Jobs.Job
-# Recipes that were edited and not grown yet, by the tree's instance id: what is edited, and the
-# tree's own recipe that it began with.
-var _drafts: Dictionary[int, Recipe] = {}
-var _begun: Dictionary[int, String] = {}
+var _work: BarkWork
+var _words: BarkWords
+# The recipe that is shown.
 var _recipe: Recipe = Recipe.new()
-# The command whose fields are shown.
+# The fields that are shown: the command, and what they depend on.
 var _of: String = ""
 # The tree that was looked at last, and whether its bark was stale then.
 var _watched: TreeReconstruction
@@ -49,37 +52,40 @@ func get_id() -> StringName:
 
 func close() -> void:
 	session.tree_changed.disconnect(_on_tree_changed)
-	session.jobs.changed.disconnect(_on_jobs_changed)
 	from_scan.close()
-	if _job != null:
-		session.jobs.cancel(_job)
+	_work.changed.disconnect(_on_work_changed)
 
 
 func _build() -> void:
 	title = "Bark Growth"
-	tooltip_text = "Bark that grows around the tree as one surface, with burls."
+	tooltip_text = "Bark that grows around the tree as one surface, with burls and hollows."
 	folded = true
+	_work = BarkWork.of(session) as BarkWork
+	_words = BarkWords.new(session.get_translation_domain())
 	for command: Dictionary in TreeReconstructor.get_growth_commands():
 		_commands[command.name] = command
 	_notice = Widgets.sentence()
 	_notice.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
 	body.add_child(_notice)
-	list.tooltip_text = "The burls that are to grow. Select one to change it."
-	list.custom_minimum_size.y = Widgets.px(84)
-	list.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
-	list.item_selected.connect(_on_item_selected)
-	body.add_child(list)
-	add = Widgets.button(
-		"Add Burl", "A burl on the branch of the selected node, or else on the trunk.", &"Add"
+	_build_surface()
+	_build_list()
+	session.tree_changed.connect(_on_tree_changed)
+	_work.changed.connect(_on_work_changed)
+
+
+# What is about the whole surface; first, so that it is seen however many fields a feature has.
+func _build_surface() -> void:
+	grow = Widgets.button(
+		"Grow",
+		"Grows bark by this recipe around all wood that is thick enough. You can go on meanwhile.",
+		&"Play"
 	)
-	add.pressed.connect(add_burl)
-	remove = Widgets.button("Remove", "Takes the selected burl out of the recipe.", &"Remove")
-	remove.pressed.connect(_on_remove_pressed)
-	body.add_child(buttons([add, remove]))
-	from_scan = FromScan.new(session, func() -> String: return _recipe.get_text())
-	from_scan.proposed.connect(_on_proposed)
-	body.add_child(buttons([from_scan.button]))
-	body.add_child(_form)
+	grow.pressed.connect(start)
+	back = Widgets.button(
+		"Back to Tubes", "Takes the grown bark and its recipe off the tree.", &"Clear"
+	)
+	back.pressed.connect(_on_back_pressed)
+	body.add_child(buttons([grow, back]))
 	edge = _make_number(_parameter("edges", "longest"))
 	edge.value_changed.connect(_on_edge_changed)
 	(
@@ -98,115 +104,114 @@ func _build() -> void:
 			)
 		)
 	)
-	grow = Widgets.button(
-		"Grow",
-		"Grows bark by this recipe around all wood that is thick enough. You can go on meanwhile.",
-		&"Play"
+	twist = _make_number(_parameter("grain", "twist"))
+	twist.value_changed.connect(_on_twist_changed)
+	body.add_child(
+		Widgets.line(
+			"Grain Twist",
+			(
+				"How the grain winds about trunk and branches, and the ridges on it, in radians a"
+				+ " metre."
+			),
+			twist
+		)
 	)
-	grow.pressed.connect(start)
-	back = Widgets.button(
-		"Back to Tubes", "Takes the grown bark and its recipe off the tree.", &"Clear"
+
+
+# The features, and the fields of the one that is selected.
+func _build_list() -> void:
+	list.tooltip_text = (
+		"The burls that are to grow, hollows, and what stands in their way. Select one to"
+		+ " change it."
 	)
-	back.pressed.connect(_on_back_pressed)
-	body.add_child(buttons([grow, back]))
-	session.tree_changed.connect(_on_tree_changed)
-	session.jobs.changed.connect(_on_jobs_changed)
+	list.custom_minimum_size.y = Widgets.px(84)
+	list.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	list.item_selected.connect(_on_item_selected)
+	body.add_child(list)
+	add = Widgets.button(
+		"Add Burl", "A burl on the branch of the selected node, or else on the trunk.", &"Add"
+	)
+	add.pressed.connect(add_burl)
+	remove = Widgets.button("", "Takes what is selected out of the recipe.", &"Remove")
+	remove.pressed.connect(_on_remove_pressed)
+	more = MenuButton.new()
+	more.text = "Add Other"
+	more.tooltip_text = (
+		"A ridge, a hollow or an obstacle, likewise; or one of the presets instead of this"
+		+ " recipe."
+	)
+	more.flat = false
+	_fill_menu(more.get_popup())
+	from_scan = FromScan.new(session, func() -> String: return _work.get_recipe().get_text())
+	from_scan.proposed.connect(_on_proposed)
+	body.add_child(buttons([add, more, remove]))
+	body.add_child(buttons([from_scan.button]))
+	body.add_child(_form)
 
 
 ## Adds a burl to the recipe: on the branch of the selected node, or else on the trunk.
 func add_burl() -> void:
-	var of: TreeReconstruction = session.tree
-	if of == null or of.is_empty():
+	if session.tree == null or session.tree.is_empty():
 		return
 	var line: Recipe.Line = Recipe.Line.new("burl")
-	var id: int = session.get_active()
-	var along: float = 0.0
-	if id == session.NO_NODE or id == of.get_root():
-		id = of.get_root()
-		along = minf(_BREAST_HEIGHT, 0.5 * of.get_aabb().size.y)
-	else:
-		line.values["node"] = str(id)
-	var radius: float = maxf(_BURL_WIDTH * of.get_node_radius(id), _MINIMUM_BURL)
-	line.values["along"] = _written(along)
+	var id: int = _place(line)
+	var radius: float = maxf(_BURL_WIDTH * session.tree.get_node_radius(id), _MINIMUM_BURL)
 	line.values["around"] = "0"
-	line.values["radius"] = _written(radius)
+	line.values["radius"] = Recipe.written(radius)
 	line.values["growth"] = _parameter("burl", "growth").default
-	_recipe.lines.append(line)
-	_note_draft()
+	_add(line)
+
+
+## Likewise another feature: one of [code]BarkFeatures.KINDS[/code].
+func add_feature(kind: StringName) -> void:
+	if session.tree == null or session.tree.is_empty():
+		return
+	var placed: Recipe.Line = Recipe.Line.new("burl")
+	var radius: float = session.tree.get_node_radius(_place(placed))
+	var line: Recipe.Line = BarkFeatures.make(kind, radius)
+	line.values.merge(placed.values, true)
+	_add(line)
+
+
+## Writes one of [method TreeReconstructor.get_growth_presets], made for this trunk, instead of the
+## features and the grain. The edges stay.
+func take_preset(name: String) -> void:
+	if session.tree == null or session.tree.is_empty():
+		return
+	_recipe = _work.get_recipe()
+	var kept: Recipe.Line = _recipe.find("edges")
+	_recipe.lines = Recipe.new(TreeReconstructor.scale_growth_preset(name, session.tree)).lines
+	if kept != null:
+		_recipe.lines.push_front(kept)
+	_work.selected = 0
+	_note_draft(tr("Bark Preset"))
 	_show_recipe()
-	list.select(list.item_count - 1)
-	_show_fields()
 
 
 ## Grows the bark, on a thread.
 func start() -> void:
-	if session.tree == null or session.tree.is_empty() or _job != null:
-		return
-	var worker: TreeReconstructor = TreeReconstructor.new()
-	# The tree may be edited meanwhile: trees are replaced, never changed, so this takes no time.
-	var of: TreeReconstruction = TreeReconstruction.new()
-	of.take_tree_of(session.tree)
-	_job = session.jobs.start(
-		tr("Bark of %s") % session.node.name,
-		_grow.bind(worker, of, _recipe.get_text()),
-		_on_grown.bind(worker, session.node.get_instance_id()),
-		worker
-	)
+	_work.grow()
 	invalidate()
 	update()
-
-
-static func _grow(
-	_running: Session.Jobs.Job, worker: TreeReconstructor, of: TreeReconstruction, recipe: String
-) -> TreeReconstruction:
-	return worker.grow_bark(of, recipe)
-
-
-func _on_grown(
-	made: TreeReconstruction, _ended: Session.Jobs.Job, worker: TreeReconstructor, node: int
-) -> void:
-	_job = null
-	invalidate()
-	if made == null:
-		session.say(worker.get_error_message(), session.Kind.ERROR)
-		return
-	# The node may be gone, so it is known by its instance id.
-	if not is_instance_valid(session.node) or session.node.get_instance_id() != node:
-		session.say(
-			tr("Another tree is selected now, so the bark that grew is left out."),
-			session.Kind.WARNING
-		)
-		return
-	session.set_bark(tr("Grow Bark"), made)
-	var report: Dictionary = worker.get_report()
-	for warning: String in report.warnings:
-		session.say(warning, session.Kind.WARNING)
-	if session.tree.is_bark_stale():
-		session.say(
-			tr("The tree was edited while its bark grew, so it shows tubes. Grow the bark again."),
-			session.Kind.WARNING
-		)
 
 
 func _refresh() -> void:
 	var of: TreeReconstruction = session.tree
 	if of == null:
 		return
-	var id: int = of.get_instance_id()
-	# What the tree has now was edited or undone elsewhere: it counts, not the draft.
-	if not _drafts.has(id) or _begun[id] != of.growth_recipe:
-		_drafts[id] = Recipe.new(of.growth_recipe)
-		_begun[id] = of.growth_recipe
-	if _recipe != _drafts[id]:
-		_recipe = _drafts[id]
+	if _recipe != _work.get_recipe():
+		_recipe = _work.get_recipe()
 		_show_recipe()
 	_notice.text = _state_of(of)
 	grow.text = "Grow Again" if of.is_bark_stale() else "Grow"
-	grow.disabled = _job != null or of.is_empty()
+	grow.disabled = _work.is_growing() or of.is_empty()
 	add.disabled = of.is_empty()
+	more.disabled = of.is_empty()
 	remove.disabled = _selected() == null
 	from_scan.refresh()
-	back.disabled = _job != null or (of.grown_bark.is_empty() and of.growth_recipe.is_empty())
+	back.disabled = (
+		_work.is_growing() or (of.grown_bark.is_empty() and of.growth_recipe.is_empty())
+	)
 
 
 func _state_of(of: TreeReconstruction) -> String:
@@ -214,64 +219,90 @@ func _state_of(of: TreeReconstruction) -> String:
 		return tr("The wood beneath the grown bark has changed, so the tree shows tubes.")
 	if not of.has_grown_bark():
 		return tr("The tree shows tubes: no bark has grown on it yet.")
-	if _recipe.get_text() != of.growth_recipe:
+	if of.growth_pending or _work.get_recipe().get_text() != of.growth_recipe:
 		return tr("The bark was grown by another recipe than this one.")
 	return tr("The bark is as this recipe has it.")
 
 
 func _show_recipe() -> void:
-	var chosen: int = -1 if list.get_selected_items().is_empty() else list.get_selected_items()[0]
 	list.clear()
 	for line: Recipe.Line in _recipe.get_features():
-		list.add_item(_title_of(line))
+		list.add_item(_words.title_of(line, _work.get_default))
 		list.set_item_metadata(list.item_count - 1, line)
-	if list.item_count > 0:
-		list.select(clampi(chosen, 0, list.item_count - 1))
-	var edges: Recipe.Line = _recipe.find("edges")
-	var longest: Dictionary = _parameter("edges", "longest")
-	var given: String = longest.default
-	if edges != null:
-		given = edges.values.get("longest", given)
-	edge.set_value_no_signal(given.to_float())
+	_select()
+	for field: Array in [[edge, "edges", "longest"], [twist, "grain", "twist"]]:
+		var given: Recipe.Line = _recipe.find(field[1])
+		var standard: String = _work.get_default(field[1], field[2])
+		var value: String = standard if given != null or field[0] == edge else "0"
+		if given != null:
+			value = given.values.get(field[2], standard)
+		(field[0] as SpinBox).set_value_no_signal(value.to_float())
 	_show_fields()
+
+
+# What is selected in the list is what is in the view.
+func _select() -> void:
+	if list.item_count == 0:
+		return
+	var chosen: PackedInt32Array = list.get_selected_items()
+	var before: int = 0 if chosen.is_empty() else chosen[0]
+	var now: int = before if _work.selected < 0 else _work.selected
+	list.select(clampi(now, 0, list.item_count - 1))
 
 
 func _show_fields() -> void:
 	var line: Recipe.Line = _selected()
 	remove.disabled = line == null
-	var command: String = "" if line == null else line.command
-	if command != _of:
-		_of = command
+	var of: String = "" if line == null else "%s %s" % [line.command, BarkFeatures.kind_of(line)]
+	if of != _of:
+		_of = of
 		fields.clear()
+		choices.clear()
 		for child: Node in _form.get_children():
 			_form.remove_child(child)
 			child.queue_free()
-		for parameter: Dictionary in _parameters_of(command):
-			var field: SpinBox = _make_number(parameter)
-			field.value_changed.connect(_on_field_changed.bind(parameter.name))
-			fields[parameter.name] = field
-			var words: PackedStringArray = _words_of(parameter)
-			_form.add_child(Widgets.line(words[0], words[1], field))
+		if line != null:
+			for name: String in BarkWords.get_shown(line):
+				_add_field(line.command, _parameter(line.command, name))
 	for name: String in fields:
-		var parameter: Dictionary = _parameter(command, name)
-		var standard: String = parameter.default
-		var value: String = line.values.get(name, standard)
+		var value: String = line.values.get(name, _work.get_default(line.command, name))
 		fields[name].set_value_no_signal(value.to_float())
+	for name: String in choices:
+		var value: String = line.values.get(name, _work.get_default(line.command, name))
+		if choices[name] is CheckBox:
+			(choices[name] as CheckBox).set_pressed_no_signal(value in ["yes", "true", "1"])
+		else:
+			Widgets.choose(choices[name] as OptionButton, value)
 
 
-func _parameters_of(command: String) -> Array[Dictionary]:
-	var shown: Array[Dictionary] = []
-	if not _commands.has(command):
-		return shown
-	for parameter: Dictionary in _commands[command].parameters:
-		var wanted: bool = (
-			parameter.type in _NUMBERS and not (parameter.default as String).is_empty()
+func _add_field(command: String, parameter: Dictionary) -> void:
+	if parameter.is_empty():
+		return
+	var name: String = parameter.name
+	var words: PackedStringArray = _words.words_of(command, parameter)
+	var control: Control
+	if parameter.type == "switch":
+		var box: CheckBox = CheckBox.new()
+		box.toggled.connect(func(on: bool) -> void: _on_written("yes" if on else "no", name))
+		control = box
+		choices[name] = box
+	elif parameter.type == "word":
+		var shapes: Array = _words.get_shapes()
+		var options: OptionButton = Widgets.choice(
+			shapes[0] as PackedStringArray, shapes[1] as Array
 		)
-		if _SHOWN.has(command):
-			wanted = parameter.name in _SHOWN[command]
-		if wanted:
-			shown.append(parameter)
-	return shown
+		options.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+		options.item_selected.connect(
+			func(_index: int) -> void: _on_written(options.get_selected_metadata(), name)
+		)
+		control = options
+		choices[name] = options
+	else:
+		var field: SpinBox = _make_number(parameter)
+		field.value_changed.connect(_on_field_changed.bind(name))
+		control = field
+		fields[name] = field
+	_form.add_child(Widgets.line(words[0], words[1], control))
 
 
 func _parameter(command: String, name: String) -> Dictionary:
@@ -281,37 +312,39 @@ func _parameter(command: String, name: String) -> Dictionary:
 	return {}
 
 
-# What a parameter is called, and its tooltip.
-func _words_of(parameter: Dictionary) -> PackedStringArray:
-	match parameter.name:
-		"along":
-			return [tr("Along"), tr("Along its branch: of the trunk from the ground.")]
-		"around":
-			return [
-				tr("Around"),
-				tr("About its branch, counter-clockwise as seen from above; 0° is towards +X.")
-			]
-		"radius":
-			return [tr("Radius"), tr("How far from its middle the burl reaches.")]
-		"growth":
-			return [
-				tr("Growth"),
-				tr("How much faster than usual the bark grows there; 1 is twice as fast.")
-			]
-	var title: String = parameter.name
-	return [title.capitalize(), parameter.description]
+# Puts a line where a feature begins: on the branch of the selected node, or on the trunk at breast
+# height. Returns the node.
+func _place(line: Recipe.Line) -> int:
+	var id: int = session.get_active()
+	var along: float = 0.0
+	if id == session.NO_NODE or id == session.tree.get_root():
+		id = session.tree.get_root()
+		along = minf(_BREAST_HEIGHT, 0.5 * session.tree.get_aabb().size.y)
+	else:
+		line.values["node"] = str(id)
+	line.values["along"] = Recipe.written(along)
+	return id
 
 
-func _title_of(line: Recipe.Line) -> String:
-	if line.command != "burl":
-		return line.get_text()
-	var along: float = line.values.get("along", _parameter("burl", "along").default).to_float()
-	var around: float = line.values.get("around", "0").to_float()
-	if line.values.has("node"):
-		# As it was found, it has its place with it.
-		var node: String = line.values["node"].get_slice("@", 0)
-		return tr("Burl by node %s, %.2f m along, %d°") % [node, along, roundi(around)]
-	return tr("Burl on the trunk, %.2f m up, %d°") % [along, roundi(around)]
+func _add(line: Recipe.Line) -> void:
+	_recipe = _work.get_recipe()
+	_recipe.lines.append(line)
+	_work.selected = _recipe.get_features().size() - 1
+	_note_draft(tr("Place on the Bark"))
+	_show_recipe()
+
+
+func _fill_menu(menu: PopupMenu) -> void:
+	var titles: PackedStringArray = _words.get_titles()
+	menu.auto_translate_mode = Node.AUTO_TRANSLATE_MODE_DISABLED
+	for i: int in range(1, titles.size()):
+		menu.add_item(titles[i], i)
+	menu.add_separator(tr("Presets"))
+	var presets: Array[Dictionary] = TreeReconstructor.get_growth_presets()
+	for i: int in presets.size():
+		menu.add_item(_words.name_of_preset(presets[i].name), _PRESETS + i)
+		menu.set_item_tooltip(menu.item_count - 1, _words.tip_of_preset(presets[i].name))
+	menu.id_pressed.connect(_on_more_chosen)
 
 
 func _make_number(parameter: Dictionary) -> SpinBox:
@@ -343,34 +376,55 @@ func _selected() -> Recipe.Line:
 	return null if chosen.is_empty() else list.get_item_metadata(chosen[0]) as Recipe.Line
 
 
-static func _written(value: float) -> String:
-	return String.num(value, 3)
-
-
-func _note_draft() -> void:
+# What was written is a draft until it grows; while bark is painted it is a step, and grows.
+func _note_draft(title: String, merged: Array = []) -> void:
 	if session.tree == null:
 		return
+	if _work.is_painting():
+		_work.commit(title, merged)
+		_recipe = _work.get_recipe()
 	_notice.text = _state_of(session.tree)
 
 
 func _on_field_changed(value: float, name: String) -> void:
+	_on_written(Recipe.written(value), name)
+
+
+func _on_written(value: String, name: String) -> void:
 	var line: Recipe.Line = _selected()
 	if line == null:
 		return
-	line.values[name] = _written(value)
-	list.set_item_text(list.get_selected_items()[0], _title_of(line))
-	_note_draft()
+	var index: int = list.get_selected_items()[0]
+	line.values[name] = value
+	list.set_item_text(index, _words.title_of(line, _work.get_default))
+	_work.selected = index
+	_note_draft(tr("Change on the Bark"), [session.tree.get_instance_id(), index, name])
+	if choices.has(name) or _work.is_painting():
+		_show_recipe.call_deferred()
 
 
 func _on_edge_changed(value: float) -> void:
 	var line: Recipe.Line = _recipe.find("edges", true)
-	line.values["longest"] = _written(value)
+	line.values["longest"] = Recipe.written(value)
 	# The shortest goes with it.
 	line.values.erase("shortest")
-	_note_draft()
+	_note_draft(tr("Change on the Bark"), [session.tree.get_instance_id(), "edges"])
 
 
-func _on_item_selected(_index: int) -> void:
+func _on_twist_changed(value: float) -> void:
+	_recipe.find("grain", true).values["twist"] = Recipe.written(value)
+	_note_draft(tr("Change on the Bark"), [session.tree.get_instance_id(), "grain"])
+
+
+func _on_more_chosen(id: int) -> void:
+	if id >= _PRESETS:
+		take_preset(TreeReconstructor.get_growth_presets()[id - _PRESETS].name)
+	else:
+		add_feature(BarkFeatures.KINDS[id])
+
+
+func _on_item_selected(index: int) -> void:
+	_work.selected = index
 	_show_fields()
 
 
@@ -379,13 +433,14 @@ func _on_remove_pressed() -> void:
 	if line == null:
 		return
 	_recipe.lines.erase(line)
-	_note_draft()
+	_note_draft(tr("Remove from the Bark"))
 	_show_recipe()
 
 
 func _on_proposed(lines: String) -> void:
+	_recipe = _work.get_recipe()
 	_recipe.lines.append_array(Recipe.new(lines).lines)
-	_note_draft()
+	_note_draft(tr("From the Scan"))
 	_show_recipe()
 
 
@@ -393,12 +448,12 @@ func _on_back_pressed() -> void:
 	session.set_bark(tr("Back to Tubes"), null)
 
 
-func _on_jobs_changed() -> void:
-	# One that was cancelled ends without a word.
-	if _job != null and _job.cancelled and not _job in session.jobs.get_running():
-		_job = null
-		invalidate()
-		update()
+func _on_work_changed() -> void:
+	if is_visible_in_tree() and _recipe == _work.get_recipe():
+		_select()
+		_show_fields()
+	invalidate()
+	update()
 
 
 # An edit of the wood beneath is told at once, also while the section is folded.

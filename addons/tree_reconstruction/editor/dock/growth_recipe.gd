@@ -57,12 +57,17 @@ func find(command: String, wanted: bool = false) -> Line:
 	return made
 
 
-## The lines that say what grows where, such as burls: all but those about the surface.
+## The lines that say what grows where, such as burls: all but those about the whole surface.
 func get_features() -> Array[Line]:
 	return lines.filter(
 		func(line: Line) -> bool:
 			return (
-				line.command not in ["edges", "steps"]
+				line.command not in ["edges", "steps", "grain"]
 				and not line.command.strip_edges().begins_with("#")
 			)
 	)
+
+
+## A number as recipes have it.
+static func written(value: float) -> String:
+	return String.num(value, 3)

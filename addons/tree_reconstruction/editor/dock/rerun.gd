@@ -15,6 +15,7 @@ const _NOT_KEPT: Array[StringName] = [
 	&"provenance",
 	&"edit_log",
 	&"growth_recipe",
+	&"growth_pending",
 	&"grown_bark",
 	&"script",
 	&"leaf_preset"

@@ -21,6 +21,7 @@ const _TOOLS: Array[GDScript] = [
 	preload("length.gd"),
 	preload("complete.gd"),
 	preload("limb.gd"),
+	preload("paint_bark.gd"),
 	preload("doubt.gd"),
 	preload("unfit.gd"),
 	preload("flood.gd"),

@@ -52,6 +52,11 @@ func input(_camera: Camera3D, _event: InputEvent) -> bool:
 	return false
 
 
+## Whether it is told of the node under the mouse, which is marked then.
+func picks_nodes() -> bool:
+	return true
+
+
 ## Controls for below the viewport, or [code]null[/code]. The caller frees them.
 func make_settings() -> Control:
 	return null

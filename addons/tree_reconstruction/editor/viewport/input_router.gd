@@ -76,6 +76,7 @@ func update() -> void:
 	if not is_instance_valid(camera) or _session.tree == null:
 		return
 	var editing: bool = _session.view.editing and _session.view.skeleton
+	editing = editing and (_session.tool == null or _session.tool.call(&"picks_nodes"))
 	var busy: bool = Input.get_mouse_button_mask() != 0 and Engine.is_editor_hint()
 	if not editing:
 		_session.hovered = TreeReconstruction.NO_NODE
