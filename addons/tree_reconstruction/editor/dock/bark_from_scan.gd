@@ -21,13 +21,16 @@ var _waiting: int = 0
 func _init(session: Session, recipe: Callable) -> void:
 	_session = session
 	_recipe = recipe
-	button = Widgets.button(
-		"From the Scan",
-		(
-			"Adds burls and hollows where the scan shows lumps and deep dents, to be changed or removed."
-			+ " Nothing grows before you press Grow."
-		),
-		&"Search"
+	button = (
+		Widgets
+		. button(
+			"From the Scan",
+			(
+				"Adds burls and hollows where the scan shows lumps and deep dents, to be changed or removed."
+				+ " Nothing grows before you press Grow."
+			),
+			&"Search"
+		)
 	)
 	button.pressed.connect(_on_pressed)
 	_session.scan_changed.connect(_on_scan_changed)
