@@ -15,10 +15,10 @@ namespace {
 constexpr double kCatchUp = 2.0;
 constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
 constexpr double kTension = 0.15;  // and beside wood of what it stands out of its neighbours
-constexpr double kFlatFoot = 4.0;  // the trunk's radius over how deep its wood is below the axis's foot
+constexpr double kFlatEnd = 4.0;   // a radius over how far its wood goes on beyond the axis's foot or end
 
 // How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
-// axis, and below its foot as in a flat bowl.
+// axis, and below its foot and above a closed end as in a flat bowl.
 struct Stand {
     DVec3 off, normal;
 };
@@ -28,11 +28,15 @@ Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPla
     const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
     const double up = glm::dot(normal, axis.direction);
     Stand stand{off - axis.direction * glm::dot(off, axis.direction), normal - axis.direction * up};
-    const AxisPlace& foot = branch.axis.front();
+    const AxisPlace &foot = branch.axis.front(), &end = branch.axis.back();
     const double above = glm::dot(place - wood_centre(plan, foot, step + 1.0), foot.direction);
-    if (branch.parent < 0 && above < 0.0 && axis.along < foot.along + foot.radius) {
-        stand.off += axis.direction * (kFlatFoot * above);
-        stand.normal += axis.direction * (kFlatFoot * up);
+    const double past = glm::dot(place - wood_centre(plan, end, step + 1.0), end.direction);
+    double beyond = 0.0;
+    if (branch.parent < 0 && above < 0.0 && axis.along < foot.along + foot.radius) beyond = above;
+    if (!branch.ends_open && past > 0.0 && axis.along > end.along - end.radius) beyond = past;
+    if (beyond != 0.0) {
+        stand.off += axis.direction * (kFlatEnd * beyond);
+        stand.normal += axis.direction * (kFlatEnd * up);
     }
     return stand;
 }
@@ -132,7 +136,16 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 const DVec3 way = next.pith - place;
                 cell.velocity = DVec3(0.0);
                 cell.bound = next.along;
-                if (cell.along >= branch.axis.back().along) continue;
+                const AxisPlace& end = branch.axis.back();
+                if (cell.along >= end.along) {
+                    // It has come to where the wood is cut off, and grows as that does.
+                    if (plan.follow && !branch.ends_open)
+                        cell.velocity =
+                            end.direction *
+                            cambium_speed(cell, end, stand_of(plan, branch, end, place, end.direction, step),
+                                          plan, step);
+                    continue;
+                }
                 // One that the bark has overtaken waits until its axis has come out of it.
                 if (glm::dot(way, next.direction) > 0.0)
                     cell.velocity = way;

@@ -120,7 +120,7 @@ TEST(GrowthBark, FollowsACrookedTrunkToItsEnd) {
     }
 }
 
-TEST(GrowthBark, EndsShortlyBelowTheFoot) {
+TEST(GrowthBark, EndsShortlyBelowTheFootAndBeyondACut) {
     for (const double radius : {0.12, 0.6}) {
         const Tree tree = cylinder(radius, 5.0 * radius);
         const double longest = std::max(0.04, 0.2 * radius);
@@ -132,6 +132,15 @@ TEST(GrowthBark, EndsShortlyBelowTheFoot) {
             lowest = std::min(lowest, static_cast<double>(vertex.position.y));
         EXPECT_LT(lowest, -0.5 * longest);
         EXPECT_GT(lowest, -0.6 * radius - longest);
+        // A cut's bark is a shallow dome, without a pit where the tip came to its end.
+        double highest = 0.0, pit = 10.0 * radius;
+        for (const GrownBark::Vertex& vertex : grown.bark.vertices) {
+            const DVec3 p(vertex.position);
+            highest = std::max(highest, p.y);
+            if (std::hypot(p.x, p.z) < 0.3 * radius && p.y > 0.0) pit = std::min(pit, p.y);
+        }
+        EXPECT_LT(highest, 5.6 * radius + longest);
+        EXPECT_GT(pit, highest - 0.1 * radius);
         // It stands on the ground as thick as it is.
         const std::vector<double> ground = radii(grown.bark, -0.25 * radius, 0.25 * radius);
         EXPECT_NEAR(ground[ground.size() / 2], radius, 0.03 * radius);
