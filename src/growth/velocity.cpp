@@ -85,17 +85,22 @@ DVec3 bend(const Surface& surface, Vertex v) {
 
 // Beside the paper: where a lip closes there is less and less room, and it would buckle into beads. Metres by
 // which a vertex grows less in a step because it stands out of a surface that bends evenly, as a bead does
-// and a lip's roll does not; and beside wood also because it stands out of its neighbours' plane, so that
-// mouths stay smooth.
-double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus) {
-    double around = 0.0;
+// and a lip's roll does not; and beside wood also because it stands out of its neighbours more than on a
+// round trunk, so that mouths stay smooth. direction: of the axis, `distance` metres away.
+double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus, const DVec3& direction,
+                double distance) {
+    double around = 0.0, across = 0.0;
     int count = 0;
+    const DVec3 side = glm::cross(direction, normal);
     for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
         around += glm::dot(bend(surface, other), normal);
+        const double aside = glm::dot(surface.place(other) - surface.place(v), side);
+        across += aside * aside;
         count++;
     }
     const double own = glm::dot(bend(surface, v), normal);
-    return kSmooth * (own - around / count) + (callus ? kTension * own : 0.0);
+    const double round = distance > 0.0 ? across / (2.0 * distance * count) : 0.0;
+    return kSmooth * (own - around / count) + (callus ? kTension * (own - round) : 0.0);
 }
 
 // Equation 8, as far as the hollow may reach.
@@ -171,9 +176,11 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 const double extra = extra_growth(surface, features, place) + lip.extra;
                 // Equations 4, 6, 9 and 10.
                 const double whole = (1.0 + extra) * cell.speed;
-                const double less = lip.extra > 0.0
-                                        ? std::clamp(smoothed(surface, v, normal, lip.callus), -whole, whole)
-                                        : 0.0;
+                const double less =
+                    lip.extra > 0.0
+                        ? std::clamp(smoothed(surface, v, normal, lip.callus, axis.direction, distance),
+                                     -whole, whole)
+                        : 0.0;
                 cell.velocity = (whole - less) * (normal + lip.wrap);
                 // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
                 const DVec3 more = (whole - cell.speed) * normal + whole * lip.wrap;
