@@ -11,8 +11,8 @@ extends RefCounted
 ## Actions name resources and nodes of the user's alone, nothing of the plugin: so they outlive it
 ## being switched off, and its scripts being loaded again.
 
-# What a reconstruction makes of a tree; all else is how it looks.
-const _MADE: Array[StringName] = [
+## What a reconstruction makes of a tree; all else is how it looks.
+const MADE: Array[StringName] = [
 	&"skeleton",
 	&"foliage",
 	&"provenance",
@@ -142,6 +142,6 @@ static func stored_values(object: Object) -> Dictionary:
 	for property: Dictionary in object.get_property_list():
 		var name: StringName = property.name
 		# What is large is not set by a property of the leaves.
-		if property.usage & PROPERTY_USAGE_STORAGE and name not in _MADE and name != &"script":
+		if property.usage & PROPERTY_USAGE_STORAGE and name not in MADE and name != &"script":
 			values[name] = object.get(name)
 	return values

@@ -8,18 +8,9 @@ signal ended(sentence: String)
 
 const Session := preload("../session.gd")
 const Jobs := preload("../jobs.gd")
-# What is the scan's, not the user's, and what is no property of the tree.
-const _NOT_KEPT: Array[StringName] = [
-	&"skeleton",
-	&"foliage",
-	&"provenance",
-	&"edit_log",
-	&"growth_recipe",
-	&"growth_pending",
-	&"grown_bark",
-	&"script",
-	&"leaf_preset"
-]
+const History := preload("../history.gd")
+# What else is not the user's, or no property of the tree.
+const _NOT_KEPT: Array[StringName] = [&"script", &"leaf_preset"]
 # Workers keep what stays valid of their last run, so that the next one is quick.
 const _KEPT_WORKERS: int = 2
 
@@ -175,6 +166,7 @@ static func _keep_rules(made: TreeReconstruction, old: TreeReconstruction) -> vo
 		var name: StringName = property.name
 		if (
 			property.usage & PROPERTY_USAGE_STORAGE
+			and not name in History.MADE
 			and not name in _NOT_KEPT
 			and not name.begins_with("resource_")
 			and not name.begins_with("metadata/")
