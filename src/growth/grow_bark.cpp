@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "growth/blended_normals.h"
+#include "growth/detour.h"
 #include "growth/features_of.h"
 #include "growth/judge.h"
 #include "growth/levels.h"
@@ -85,6 +86,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
     result.steps = planned.plan.steps;
     Obstacles obstacles(kObstacleCell * recipe.longest);
     add_obstacles(tree, list, planned, recipe, result.remarks, obstacles);
+    go_around(planned.plan, obstacles, recipe.shortest);
     Run run(planned.plan, features_of(tree, list, planned, recipe, result.remarks), recipe.longest,
             recipe.shortest, &obstacles);
     std::function<void(const Surface&)> moved;

@@ -214,6 +214,26 @@ TEST(GrowthObstacle, IsSwallowedTheMoreTheLongerAndByGrowthAndWrap) {
     EXPECT_GT(share("growth=0.5 wrap=0", 0.13), none + 0.1);
 }
 
+TEST(GrowthObstacle, TipsGoAroundWhatStandsInTheirWay) {
+    for (const char* line : {
+             "shape=post gap=-0.15 direction=1,0,0 radius=0.03 length=1",
+             "shape=post gap=-0.13 around=60 direction=0.6,0.3,0.6 radius=0.04 length=1",
+             "shape=wire gap=-0.15 direction=0,0,1 length=1",
+             "shape=sheet gap=-0.15 direction=0,1,0 width=0.08 length=1",
+         }) {
+        SCOPED_TRACE(line);
+        const GrownTree grown = grow(std::string("obstacle along=0.6 ") + line, 60);
+        expect_sound(grown);
+        EXPECT_TRUE(std::isinf(grown.bark.branches[0].until));
+        EXPECT_GT(test::radii(grown.bark, 1.0, 1.15).size(), 20U);
+    }
+    // What is wider than the wood is no way around.
+    const GrownTree stopped =
+        grow("obstacle shape=sheet along=0.6 gap=-0.15 direction=0,1,0 width=1 length=1");
+    EXPECT_LT(stopped.bark.branches[0].until, 0.6);
+    EXPECT_GT(stopped.bark.branches[0].until, 0.45);
+}
+
 TEST(GrowthObstacle, ComesFromFiles) {
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "growth_fence.obj";
     const auto write = [&](const char* text) { std::ofstream(path) << text; };
