@@ -58,6 +58,7 @@ struct Feature {
     double rate = 0.0;       // S_h of equation 8, metres a step
     double deepest = 0.0;    // metres that wood sinks at most
     double wall = 0.0;       // metres of sound wood that are left between it and the bark on other sides
+    bool cut = false;        // the branch's end, whose tip dies, too
     Lip lip;
     bool placed = false;
 };

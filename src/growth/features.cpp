@@ -73,14 +73,17 @@ void place_feature(Surface& surface, const GrowthPlan& plan, Vertex apex, double
     const GrowthBranch& branch = plan.branches[static_cast<size_t>(feature.branch)];
     const double end = branch.axis.back().along - 0.5 * longest;
     const double passed = feature.along + longest;
-    if (leader.tissue != Tissue::kApical ||
-        leader.along < std::max(passed, std::min(passed + 0.5 * feature.length, end)))
+    // A tip that was cut has passed all.
+    if (leader.tissue == Tissue::kCambium ||
+        (leader.tissue == Tissue::kApical &&
+         leader.along < std::max(passed, std::min(passed + 0.5 * feature.length, end))))
         return;
     const AxisPlace base = place_at(branch, feature.along);
     if (feature.kind == Feature::Kind::kHollow) {
-        // Depth counts from the bark of the end, and that has not come out to there yet.
-        feature.deepest -= base.radius - bark_radius(plan, base, step);
+        // Depth counts from the bark of the end, and that has not come out to there yet; of a cut, from it.
+        if (!feature.cut) feature.deepest -= base.radius - bark_radius(plan, base, step);
         feature.rate = std::max(feature.deepest, 0.0) / std::max(feature.last_step - step, kFewSteps);
+        feature.last_step = std::max(feature.last_step, step + (feature.cut ? 1.0 : 0.0));
         feature.placed = true;
         return;
     }
@@ -108,8 +111,9 @@ void decay(Surface& surface, const std::vector<Feature>& features, int step) {
         if (hollow.kind != Feature::Kind::kHollow || !hollow.placed || step > hollow.last_step) continue;
         for (const Vertex v : surface.mesh.vertices()) {
             Cell& cell = surface.cells[v];
-            if (cell.tissue != Tissue::kCambium || cell.bud >= 0 || !hollow.region.holds(surface.place(v)))
-                continue;
+            const bool dies = cell.tissue == Tissue::kCambium ||
+                              (hollow.cut && cell.tissue == Tissue::kApical && cell.owner == hollow.branch);
+            if (!dies || cell.bud >= 0 || !hollow.region.holds(surface.place(v))) continue;
             cell.tissue = Tissue::kDecayed;
             cell.hollow = static_cast<int32_t>(i);
             cell.sunk = 0.0;

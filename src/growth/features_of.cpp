@@ -15,6 +15,9 @@ namespace {
 
 constexpr int kMouthSides = 32, kPostSides = 16, kWireSides = 8;
 constexpr double kMouthDepth = 0.15;  // of the radius at the end: from where on outwards bark decays
+constexpr double kFace = 0.75;        // of the wood's radius when it is cut: of what is dead of a cut face
+constexpr double kFaceDepth = 0.5;    // radii of a cut end that the region of its dead wood reaches in
+constexpr double kBeforeEnd = 1.6;    // longest edges before its end at which a tip is through
 constexpr double kSeed = 1.7;         // longest edges about the seed that must be free
 
 struct Spot {
@@ -143,7 +146,36 @@ std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const
         }
         features.push_back(std::move(feature));
     }
+    if (recipe.cuts) add_cuts(planned, *recipe.cuts, recipe.longest, features);
     return features;
+}
+
+void add_cuts(const TreePlan& planned, const GrowthCuts& cuts, double longest,
+              std::vector<Feature>& features) {
+    for (size_t b = 0; b < planned.plan.branches.size(); b++) {
+        const GrowthBranch& branch = planned.plan.branches[b];
+        const AxisPlace& end = branch.axis.back();
+        if (branch.ends_open || end.radius < cuts.least) continue;
+        Feature feature;
+        feature.kind = Feature::Kind::kHollow;
+        feature.cut = true;
+        feature.branch = static_cast<int32_t>(b);
+        feature.along = std::max(end.along - kBeforeEnd * longest, branch.axis.front().along);
+        feature.direction = any_perpendicular(end.direction);
+        feature.first_step =
+            std::min(glm::mix(end.step, double(planned.plan.steps), cuts.from), planned.plan.steps - 1.0);
+        feature.last_step = feature.first_step + 1.0;
+        const double radius = kFace * bark_radius(planned.plan, end, feature.first_step);
+        const DVec3 x = feature.direction, y = glm::cross(end.direction, x);
+        for (const std::array<DVec3, 3>& triangle :
+             prism(end.position - end.direction * (kFaceDepth * end.radius),
+                   end.position + end.direction * (4.0 * end.radius + longest), x * radius, y * radius,
+                   kMouthSides))
+            feature.region.add(triangle[0], triangle[1], triangle[2]);
+        feature.deepest = cuts.depth;
+        feature.lip = lip_of(cuts.lip, longest);
+        features.push_back(std::move(feature));
+    }
 }
 
 void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& planned,

@@ -40,14 +40,20 @@ double reached(const Surface& surface, const GrowthBranch& branch, int32_t index
     return 0.0;
 }
 
-GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned, double longest) {
+GrownBark bark_of(const Run& run, const BranchList& list, const TreePlan& planned, double longest) {
+    const Surface& surface = run.surface();
     GrownBark bark;
     std::vector<BranchCoordinates> coordinates;
     for (size_t b = 0; b < planned.plan.branches.size(); b++) {
         const size_t own = static_cast<size_t>(planned.branch_of[b]);
-        bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)],
-                                 std::min(planned.covered[own], reached(surface, planned.plan.branches[b],
-                                                                        static_cast<int32_t>(b), longest))});
+        const int32_t index = static_cast<int32_t>(b);
+        const bool cut = std::any_of(run.features().begin(), run.features().end(), [&](const Feature& f) {
+            return f.cut && f.placed && f.branch == index;
+        });
+        const double until =
+            cut ? planned.covered[own]
+                : std::min(planned.covered[own], reached(surface, planned.plan.branches[b], index, longest));
+        bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)], until});
         coordinates.emplace_back(planned.plan.branches[b], planned.plan.twist);
     }
     std::vector<uint32_t> vertex_of(surface.mesh.num_vertices());
@@ -107,10 +113,12 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
     }
     for (const Feature& feature : run.features())
         if (!feature.placed)
-            result.remarks.push_back(
-                std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
-                " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
-    result.bark = bark_of(run.surface(), list, planned, recipe.longest);
+            result.remarks.push_back(std::string(feature.cut                              ? "A cut"
+                                                 : feature.kind == Feature::Kind::kHollow ? "A hollow"
+                                                                                          : "A burl") +
+                                     " found no bark " + number_text(feature.along) +
+                                     " m along its branch and was left out.");
+    result.bark = bark_of(run, list, planned, recipe.longest);
     blend_normals(result.bark, recipe.longest);
     order_levels(result.bark, progress);
     result.bark.digest = covered_wood_digest(tree, result.bark.branches);

@@ -62,6 +62,14 @@ struct GrowthObstacle : GrowthPlace {
     GrowthLip lip;
 };
 
+// Where branches end as thick as cut ones do.
+struct GrowthCuts {
+    double least = 0.0;  // metres: of the radius there
+    double from = 0.0;   // share of the branch's age there after which it was cut
+    double depth = 0.0;  // metres that the wood sinks in
+    GrowthLip lip;
+};
+
 struct GrowthRecipe {
     double longest = 0.035;   // T_s, metres
     double shortest = 0.015;  // T_m, metres
@@ -69,7 +77,8 @@ struct GrowthRecipe {
     double twist = 0.0;       // theta_p, radians a metre
     std::vector<GrowthFeature> features;
     std::vector<GrowthObstacle> obstacles;
-    std::string text;  // its lines as found on this tree
+    std::optional<GrowthCuts> cuts;  // that heal
+    std::string text;                // its lines as found on this tree
 };
 
 // How a written recipe begins, before the number of its version.

@@ -81,6 +81,11 @@ void take_hollow(GrowthRecipe& recipe, const EditArguments& arguments) {
     recipe.features.push_back(feature);
 }
 
+void take_cuts(GrowthRecipe& recipe, const EditArguments& arguments) {
+    recipe.cuts = GrowthCuts{arguments.number("least"), arguments.number("from"), arguments.number("depth"),
+                             lip_of(arguments)};
+}
+
 void take_obstacle(GrowthRecipe& recipe, const EditArguments& arguments) {
     using Shape = GrowthObstacle::Shape;
     GrowthObstacle obstacle;
@@ -152,6 +157,16 @@ std::vector<Parameter> hollow_parameters() {
     return parameters;
 }
 
+std::vector<Parameter> cuts_parameters() {
+    std::vector<Parameter> parameters{
+        length_parameter("least", 0.02, 0.001, kLargest,
+                         "of the wood's radius at its end; thinner ends are tips"),
+        number_parameter("from", 0.6, 0.0, 1.0, "share of the age of the wood there after which it was cut"),
+        length_parameter("depth", 0.0, 0.0, kLargest, "that the cut wood sinks in")};
+    add_lip(parameters, 0.08, 0.4, 0.5, 0.05);
+    return parameters;
+}
+
 std::vector<Parameter> obstacle_parameters() {
     std::vector<Parameter> parameters = with_place(
         1.0,
@@ -209,6 +224,8 @@ const std::vector<GrowthCommand>& growth_commands() {
          take_burl},
         {"hollow", "Bark that dies and wood that decays below it, with lips that grow over it.",
          hollow_parameters(), take_hollow},
+        {"cuts", "Callus that grows over stubs and other ends where wood was cut.", cuts_parameters(),
+         take_cuts},
         {"obstacle", "Something that does not yield; bark stops at it, swells and grows over it.",
          obstacle_parameters(), take_obstacle},
     };

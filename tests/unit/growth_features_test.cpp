@@ -161,6 +161,35 @@ TEST(GrowthHollow, BareWoodLooksLikeWood) {
     EXPECT_GE(wood, decayed(grown.bark));
 }
 
+TEST(GrowthCuts, CallusGrowsOverCutEnds) {
+    const auto bare = [](const std::string& line) {
+        const GrownTree grown = grow(line, 40);
+        expect_sound(grown);
+        EXPECT_TRUE(std::isinf(grown.bark.branches[0].until));
+        double area = 0.0;
+        for (size_t i = 0; i < grown.bark.indices.size(); i += 3) {
+            const GrownBark::Vertex* v[3];
+            for (size_t k = 0; k < 3; k++)
+                v[k] = &grown.bark.vertices[grown.bark.indices[i + k]];
+            if (!(v[0]->decayed || v[1]->decayed || v[2]->decayed)) continue;
+            // At the end alone, facing up.
+            EXPECT_GT(v[0]->position.y, static_cast<float>(kHeight - kRadius)) << line;
+            const DVec3 a(v[0]->position), b(v[1]->position), c(v[2]->position);
+            area += 0.5 * std::abs(glm::cross(b - a, c - a).y);
+        }
+        return area;
+    };
+    EXPECT_EQ(bare("burl along=0.5 radius=0.1"), 0.0);
+    const double face = kPi * kRadius * kRadius;
+    const double cut = bare("cuts from=0.6 growth=0 wrap=0"), healed = bare("cuts from=0.6 growth=1 wrap=1");
+    EXPECT_GT(cut, 0.15 * face);
+    EXPECT_LT(cut, 0.8 * face);
+    EXPECT_LT(healed, 0.7 * cut);
+    EXPECT_LT(bare("cuts from=0.2 growth=1 wrap=1"), 0.7 * healed);
+    // What ends thinner is no cut.
+    EXPECT_EQ(bare("cuts least=0.2"), 0.0);
+}
+
 TEST(GrowthObstacle, NothingGoesThroughIt) {
     Random random(7);
     for (const char* shape : {"wire", "ring", "sheet", "wire", "ring", "sheet"}) {
