@@ -39,15 +39,24 @@ double reached(const Surface& surface, const GrowthBranch& branch, int32_t index
     return 0.0;
 }
 
-GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned, double longest) {
-    GrownBark bark;
+std::vector<BranchCoordinates> coordinates_of(const GrowthPlan& plan) {
     std::vector<BranchCoordinates> coordinates;
+    for (const GrowthBranch& branch : plan.branches)
+        coordinates.emplace_back(branch, plan.twist);
+    return coordinates;
+}
+
+// Its branches are covered as far as they have come; all of them where it is on its way.
+GrownBark bark_of(const Surface& surface, const BranchList& list, const TreePlan& planned,
+                  const std::vector<BranchCoordinates>& coordinates, double longest, bool done) {
+    GrownBark bark;
     for (size_t b = 0; b < planned.plan.branches.size(); b++) {
         const size_t own = static_cast<size_t>(planned.branch_of[b]);
+        const double most = planned.covered[own];
         bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)],
-                                 std::min(planned.covered[own], reached(surface, planned.plan.branches[b],
-                                                                        static_cast<int32_t>(b), longest))});
-        coordinates.emplace_back(planned.plan.branches[b], planned.plan.twist);
+                                 done ? std::min(most, reached(surface, planned.plan.branches[b],
+                                                               static_cast<int32_t>(b), longest))
+                                      : most});
     }
     std::vector<uint32_t> vertex_of(surface.mesh.num_vertices());
     for (const Vertex v : surface.mesh.vertices()) {
@@ -92,6 +101,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
         moved = [&](const Surface& surface) {
             write_trace(options.trace, surface, run.step(), recipe.shortest);
         };
+    const std::vector<BranchCoordinates> coordinates = coordinates_of(planned.plan);
     while (!run.done()) {
         if (progress) {
             progress->check();
@@ -102,16 +112,23 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
         run.advance(moved);
         if (options.check_every > 0 && (run.done() || run.step() % options.check_every == 0))
             result.checks.push_back(judge(run, recipe.longest));
+        if (options.watcher && !run.done() && options.watcher->wants(run.step(), planned.plan.steps)) {
+            GrownBark bark = bark_of(run.surface(), list, planned, coordinates, recipe.longest, false);
+            blend_normals(bark, recipe.longest);
+            options.watcher->take(run.step(), bark);
+        }
     }
     for (const Feature& feature : run.features())
         if (!feature.placed)
             result.remarks.push_back(
                 std::string(feature.kind == Feature::Kind::kHollow ? "A hollow" : "A burl") +
                 " found no bark " + number_text(feature.along) + " m along its branch and was left out.");
-    result.bark = bark_of(run.surface(), list, planned, recipe.longest);
+    result.bark = bark_of(run.surface(), list, planned, coordinates, recipe.longest, true);
     blend_normals(result.bark, recipe.longest);
     order_levels(result.bark, progress);
     result.bark.digest = covered_wood_digest(tree, result.bark.branches);
+    if (options.watcher && options.watcher->wants(run.step(), planned.plan.steps))
+        options.watcher->take(run.step(), result.bark);
     return result;
 }
 
