@@ -5,9 +5,7 @@ const Bark := preload("res://addons/tree_reconstruction/editor/dock/bark.gd")
 const BarkWork := preload("res://addons/tree_reconstruction/editor/bark/bark_work.gd")
 const AllTools := preload("res://addons/tree_reconstruction/editor/tools/all_tools.gd")
 const Picker := preload("res://addons/tree_reconstruction/editor/viewport/picker.gd")
-const SceneObstacles := preload(
-	"res://addons/tree_reconstruction/editor/bark/scene_obstacles.gd"
-)
+const SceneObstacles := preload("res://addons/tree_reconstruction/editor/bark/scene_obstacles.gd")
 const GrownBark := preload("./test_grown_bark.gd")
 
 var _made: Array[Node] = []

@@ -25,9 +25,7 @@ func show(bark: PackedByteArray) -> void:
 	if _mesh.get_surface_count() > 0 and node.mesh != null and node.mesh.get_surface_count() > 0:
 		_mesh.surface_set_material(0, node.get_active_material(0))
 	if not _instance.is_valid():
-		_instance = RenderingServer.instance_create2(
-			_mesh.get_rid(), node.get_world_3d().scenario
-		)
+		_instance = RenderingServer.instance_create2(_mesh.get_rid(), node.get_world_3d().scenario)
 		# It stands still.
 		RenderingServer.instance_geometry_set_shader_parameter(_instance, &"tree_wind", 0.0)
 	RenderingServer.instance_set_base(_instance, _mesh.get_rid())

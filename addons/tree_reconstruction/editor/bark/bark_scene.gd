@@ -85,8 +85,10 @@ func get_notice(recipe: Recipe) -> String:
 		if SceneObstacles.node_of(line, _session.node) == null:
 			return (
 				tr(
-					"'%s' is not in this scene any more. The bark keeps its shape: remove it from the list"
-					+ " if it should be gone."
+					(
+						"'%s' is not in this scene any more. The bark keeps its shape: remove it from the list"
+						+ " if it should be gone."
+					)
 				)
 				% SceneObstacles.name_of(line)
 			)

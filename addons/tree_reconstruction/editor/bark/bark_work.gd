@@ -13,14 +13,15 @@ const BarkScene := preload("bark_scene.gd")
 ## The tool that paints.
 const TOOL: StringName = &"paint_bark"
 const NONE: int = -1
-# Always the same one, so that it is known again.
-static var _no_frames: Array[Dictionary] = []
 # The first growth has edges that are so many times as long, but not longer than this share of the
 # trunk's radius at its foot.
 const _COARSE: float = 3.5
 const _LONGEST: float = 0.65
 # It isn't worth it below.
 const _WORTH: float = 1.3
+
+# Always the same one, so that it is known again.
+static var _no_frames: Array[Dictionary] = []
 
 var session: Session
 ## The obstacles that are nodes of the scene.

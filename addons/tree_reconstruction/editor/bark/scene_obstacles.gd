@@ -50,7 +50,9 @@ static func name_of(line: Recipe.Line) -> String:
 func find(node: Node3D, tree: Node3D) -> Found:
 	var found: Found = Found.new()
 	if node == tree or tree.is_ancestor_of(node):
-		found.sentence = tr("'%s' belongs to the tree itself: it can't stand in its way.") % node.name
+		found.sentence = (
+			tr("'%s' belongs to the tree itself: it can't stand in its way.") % node.name
+		)
 		return found
 	if node.is_ancestor_of(tree):
 		found.sentence = (
@@ -62,9 +64,7 @@ func find(node: Node3D, tree: Node3D) -> Found:
 		and absf(node.global_basis.determinant()) > _FLAT
 		and absf(tree.global_basis.determinant()) > _FLAT
 	):
-		found.sentence = (
-			tr("'%s' or the tree has a scale of 0: give it another one.") % node.name
-		)
+		found.sentence = (tr("'%s' or the tree has a scale of 0: give it another one.") % node.name)
 		return found
 	var meshes: Array[Array] = []
 	_gather(node, node.global_transform.affine_inverse(), false, meshes)
@@ -75,8 +75,12 @@ func find(node: Node3D, tree: Node3D) -> Found:
 		count += _count(pair[0] as Mesh)
 	if count > MOST_TRIANGLES:
 		found.sentence = (
-			tr("'%s' has %d triangles, and an obstacle can have %d: choose a simpler mesh, such as its"
-			+ " collision shape.")
+			tr(
+				(
+					"'%s' has %d triangles, and an obstacle can have %d: choose a simpler mesh, such as its"
+					+ " collision shape."
+				)
+			)
 			% [node.name, count, MOST_TRIANGLES]
 		)
 		return found
@@ -84,9 +88,7 @@ func find(node: Node3D, tree: Node3D) -> Found:
 		found.corners.append_array((pair[1] as Transform3D) * _corners(pair[0] as Mesh))
 	if found.corners.is_empty():
 		found.sentence = (
-			tr(
-				"'%s' has no triangles: choose a MeshInstance3D, a CSG shape or a CollisionShape3D."
-			)
+			tr("'%s' has no triangles: choose a MeshInstance3D, a CSG shape or a CollisionShape3D.")
 			% node.name
 		)
 	return found

@@ -15,18 +15,15 @@ var _session: Session
 ## [param target]: what nodes can be dropped on.
 func _init(session: Session, target: Control) -> void:
 	_session = session
-	button = (
-		Widgets
-		. button(
-			"From the Scene…",
-			(
-				"An obstacle that is a node of this scene, such as a fence: a mesh, a CSG shape or a"
-				+ " collision shape, with all below it. You can drag nodes from the Scene dock onto the"
-				+ " list as well."
-			),
-			&"Node3D"
-		)
-	)
+	button = (Widgets.button(
+		"From the Scene…",
+		(
+			"An obstacle that is a node of this scene, such as a fence: a mesh, a CSG shape or a"
+			+ " collision shape, with all below it. You can drag nodes from the Scene dock onto the"
+			+ " list as well."
+		),
+		&"Node3D"
+	))
 	button.pressed.connect(choose.bind(session))
 	target.set_drag_forwarding(Callable(), _can_drop, _drop)
 
@@ -34,9 +31,7 @@ func _init(session: Session, target: Control) -> void:
 ## Asks for a node.
 static func choose(session: Session) -> void:
 	if Engine.is_editor_hint() and session.node != null:
-		EditorInterface.popup_node_selector(
-			_on_chosen.bind(weakref(session)), SceneObstacles.TYPES
-		)
+		EditorInterface.popup_node_selector(_on_chosen.bind(weakref(session)), SceneObstacles.TYPES)
 
 
 ## Whether a drag carries nodes.

@@ -49,13 +49,16 @@ func _init(session: Session, work: BarkWork) -> void:
 	back.pressed.connect(end)
 	_line.add_child(back)
 	add_child(_line)
-	record = Widgets.button(
-		"Show How It Grew",
-		(
-			"Grows the bark once more in the background, to keep its steps for this slider. The tree"
-			+ " stays as it is."
-		),
-		&"Animation"
+	record = (
+		Widgets
+		. button(
+			"Show How It Grew",
+			(
+				"Grows the bark once more in the background, to keep its steps for this slider. The tree"
+				+ " stays as it is."
+			),
+			&"Animation"
+		)
 	)
 	record.pressed.connect(_work.record)
 	add_child(record)
@@ -74,9 +77,7 @@ func refresh() -> void:
 		slider.max_value = maxi(frames.size() - 1, 1)
 		slider.set_value_no_signal(slider.max_value)
 	var tree: TreeReconstruction = _session.tree
-	var grown: bool = (
-		tree != null and tree.has_grown_bark() and not tree.is_bark_stale()
-	)
+	var grown: bool = tree != null and tree.has_grown_bark() and not tree.is_bark_stale()
 	visible = grown
 	_line.visible = frames.size() > 1
 	record.visible = not _line.visible
@@ -106,9 +107,7 @@ func _show_state() -> void:
 	play.set(&"icon_name", &"Play" if _timer.is_stopped() else &"Pause")
 	if _of.is_empty():
 		return
-	_step.text = (
-		"%d / %d" % [_of[mini(roundi(slider.value), _of.size() - 1)].step, _of[-1].step]
-	)
+	_step.text = ("%d / %d" % [_of[mini(roundi(slider.value), _of.size() - 1)].step, _of[-1].step])
 
 
 func _on_play_pressed() -> void:

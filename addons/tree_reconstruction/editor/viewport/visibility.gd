@@ -43,9 +43,7 @@ func update() -> void:
 	if is_instance_valid(_node):
 		var view: Session.ViewState = _session.view
 		var tree: bool = not view.growing
-		_apply(
-			view.mesh and tree, view.leaves and tree, view.wind and _node.wind, view.growing
-		)
+		_apply(view.mesh and tree, view.leaves and tree, view.wind and _node.wind, view.growing)
 		_show_channel(_session.view.channel)
 
 
