@@ -19,7 +19,7 @@ using growth::GrowthBranch;
 
 constexpr int kAround = 40, kMostAlong = 160;  // quads of a patch
 constexpr int kMouth = 24;                     // likewise, of a mouth
-constexpr double kAboveMouth = 4e-3;           // metres over the tube, which has flat sides
+constexpr double kAboveMouth = 0.04;           // radii over the wood: tubes have flat sides and bend
 constexpr double kLeast = 5e-4;                // metres: what is lifted by less is left out
 constexpr double kAbove = 1e-3;                // metres over the tube, so that both are told apart
 
@@ -152,7 +152,7 @@ Mesh BarkPlaces::mouth(const GrowthFeature& hollow) const {
             const double at = begin + (end - begin) * i / kMouth, turn = 2.0 * j / kMouth - 1.0;
             const BarkPlace place =
                 data_->place(branch, hollow.node, from, at, hollow.around + widest * turn);
-            patch.positions.push_back(Vec3(place.position() + place.out * kAboveMouth));
+            patch.positions.push_back(Vec3(place.position() + place.out * (kAboveMouth * place.radius)));
             patch.normals.push_back(Vec3(place.out));
             patch.tangents.push_back(Vec4(Vec3(glm::cross(place.direction, place.out)), 1.0f));
             patch.uvs.push_back(Vec2(static_cast<float>(turn), static_cast<float>((at - centre) / half)));

@@ -12,7 +12,7 @@ const Stage := preload("sketch_stage.gd")
 const _SIZE: Vector2i = Vector2i(360, 480)
 const _SUPERSAMPLING: int = 2
 const _PRESET: String = "fence_post_swallowed"
-const _EDGES: String = "edges longest=0.03\n"
+const _EDGES: String = "edges longest=0.045\n"
 const _FRAMES: int = 84
 # The result is looked at for a while.
 const _LAST: int = 14
