@@ -17,8 +17,8 @@ const _FRAMES: int = 84
 # The result is looked at for a while.
 const _LAST: int = 14
 # Radians that the camera goes about the tree meanwhile, and where it begins, from the post.
-const _TURN: float = 0.5
-const _BEGIN: float = 0.15
+const _TURN: float = -0.45
+const _BEGIN: float = 0.95
 # Of the height at which the highest feature stands.
 const _HEADROOM: float = 1.45
 
@@ -103,7 +103,7 @@ func _put(line: Recipe.Line, place: Dictionary) -> void:
 	shape.bottom_radius = shape.top_radius
 	shape.height = float(line.values["length"])
 	var material: StandardMaterial3D = StandardMaterial3D.new()
-	material.albedo_color = Color(0.4, 0.39, 0.38) if wire else Color(0.5, 0.44, 0.36)
+	material.albedo_color = Color(0.4, 0.39, 0.38) if wire else Color(0.36, 0.29, 0.22)
 	material.roughness = 0.9
 	shape.material = material
 	var thing: MeshInstance3D = MeshInstance3D.new()
