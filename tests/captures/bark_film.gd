@@ -3,8 +3,8 @@ extends SceneTree
 ##
 ##     godot --path project --script tests/captures/bark_film.gd -- TREE FOLDER [LEAVES]
 ##
-## TREE: a skeleton. LEAVES: the preset whose bark the tree has. FOLDER gets the pictures 0000.png and
-## so on; make_captures.sh makes a film of them.
+## TREE: a skeleton. LEAVES: the preset whose bark the tree has. FOLDER gets the pictures 0000.png
+## and so on; make_captures.sh makes a film of them.
 
 const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")

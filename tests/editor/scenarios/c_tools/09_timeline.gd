@@ -46,9 +46,7 @@ func run() -> void:
 	await user.frames(2)
 	await user.move(middle(list))
 	await user.click(middle(list))
-	if not await until(
-		func() -> bool: return list.item_count == 1, "the wall is in the list"
-	):
+	if not await until(func() -> bool: return list.item_count == 1, "the wall is in the list"):
 		return
 
 	await step("it grows around it, and the slider shows how")
@@ -70,9 +68,7 @@ func run() -> void:
 	await user.frames(4)
 	await fine_picture("timeline-half-way")
 	await press(timeline.get(&"play") as Control)
-	await until(
-		func() -> bool: return not session().get(&"view").growing, "it plays to the end"
-	)
+	await until(func() -> bool: return not session().get(&"view").growing, "it plays to the end")
 	check_equal(slider.value, slider.max_value, "where the slider is")
 	await user.frames(4)
 	await picture("timeline-the-tree-again")
