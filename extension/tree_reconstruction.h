@@ -72,6 +72,8 @@ class TreeReconstruction : public godot::Resource {
     godot::String get_growth_recipe() const { return growth_recipe_; }
     void set_grown_bark(const godot::PackedByteArray& p_bark);
     godot::PackedByteArray get_grown_bark() const { return packed_bark_; }
+    void set_growth_meshes(const godot::Dictionary& p_meshes);
+    godot::Dictionary get_growth_meshes() const { return growth_meshes_; }
     void set_growth_pending(bool p_pending);
     bool is_growth_pending() const { return growth_pending_; }
     void set_seed(int64_t p_seed);
@@ -275,6 +277,7 @@ class TreeReconstruction : public godot::Resource {
     godot::String leaf_preset_ = "generic";
     godot::Dictionary provenance_;
     godot::String growth_recipe_;
+    godot::Dictionary growth_meshes_;  // never changed, only replaced
     bool growth_pending_ = false;
     godot::PackedByteArray packed_bark_;  // as it was given, also where this version can't read it
     godot::Dictionary newer_foliage_;     // likewise

@@ -22,6 +22,11 @@ void TreeReconstruction::set_growth_recipe(const String& p_recipe) {
     emit_changed();
 }
 
+void TreeReconstruction::set_growth_meshes(const Dictionary& p_meshes) {
+    growth_meshes_ = p_meshes;
+    emit_changed();
+}
+
 void TreeReconstruction::set_growth_pending(bool p_pending) {
     if (growth_pending_ != p_pending) {
         growth_pending_ = p_pending;
@@ -104,6 +109,7 @@ void TreeReconstruction::take_bark_of(const Ref<TreeReconstruction>& p_other) {
         bark = p_other->bark_;
     }
     growth_recipe_ = p_other->growth_recipe_;
+    growth_meshes_ = p_other->growth_meshes_;
     growth_pending_ = p_other->growth_pending_;
     packed_bark_ = p_other->packed_bark_;
     {
@@ -122,11 +128,16 @@ void TreeReconstruction::_bind_bark() {
     ClassDB::bind_method(D_METHOD("is_bark_stale"), &TreeReconstruction::is_bark_stale);
     ClassDB::bind_method(D_METHOD("set_growth_recipe", "recipe"), &TreeReconstruction::set_growth_recipe);
     ClassDB::bind_method(D_METHOD("get_growth_recipe"), &TreeReconstruction::get_growth_recipe);
+    ClassDB::bind_method(D_METHOD("set_growth_meshes", "meshes"), &TreeReconstruction::set_growth_meshes);
+    ClassDB::bind_method(D_METHOD("get_growth_meshes"), &TreeReconstruction::get_growth_meshes);
     ClassDB::bind_method(D_METHOD("set_grown_bark", "bark"), &TreeReconstruction::set_grown_bark);
     ClassDB::bind_method(D_METHOD("get_grown_bark"), &TreeReconstruction::get_grown_bark);
     ADD_PROPERTY(PropertyInfo(Variant::STRING, "growth_recipe", PROPERTY_HINT_MULTILINE_TEXT, "",
                               PROPERTY_USAGE_STORAGE),
                  "set_growth_recipe", "get_growth_recipe");
+    ADD_PROPERTY(
+        PropertyInfo(Variant::DICTIONARY, "growth_meshes", PROPERTY_HINT_NONE, "", PROPERTY_USAGE_STORAGE),
+        "set_growth_meshes", "get_growth_meshes");
     ADD_PROPERTY(PropertyInfo(Variant::PACKED_BYTE_ARRAY, "grown_bark", PROPERTY_HINT_NONE, "",
                               PROPERTY_USAGE_STORAGE),
                  "set_grown_bark", "get_grown_bark");

@@ -320,7 +320,11 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::save_html_report, DEFVAL(Dictionary()));
     ClassDB::bind_method(D_METHOD("save_marker", "path", "id", "side"), &TreeReconstructor::save_marker,
                          DEFVAL(0), DEFVAL(treerec::kUsualMarkerSide));
-    ClassDB::bind_method(D_METHOD("grow_bark", "tree", "recipe"), &TreeReconstructor::grow_bark);
+    ClassDB::bind_method(D_METHOD("grow_bark", "tree", "recipe", "recorded"), &TreeReconstructor::grow_bark,
+                         DEFVAL(false));
+    ClassDB::bind_method(D_METHOD("get_growth_frames"), &TreeReconstructor::get_growth_frames);
+    ClassDB::bind_static_method("TreeReconstructor", D_METHOD("draw_grown_bark", "tree", "bark"),
+                                &TreeReconstructor::draw_grown_bark);
     ClassDB::bind_method(D_METHOD("propose_growth", "tree", "points", "recipe"),
                          &TreeReconstructor::propose_growth, DEFVAL(""));
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_presets"),
@@ -330,6 +334,7 @@ void TreeReconstructor::_bind_methods() {
     ClassDB::bind_method(D_METHOD("pick_bark", "tree", "from", "way", "longest"),
                          &TreeReconstructor::pick_bark, DEFVAL(0.035));
     ClassDB::bind_method(D_METHOD("find_bark", "tree", "recipe"), &TreeReconstructor::find_bark);
+    ClassDB::bind_method(D_METHOD("sink_bark", "tree", "recipe"), &TreeReconstructor::sink_bark);
     ClassDB::bind_method(D_METHOD("lift_bark", "tree", "recipe"), &TreeReconstructor::lift_bark);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_growth_commands"),
                                 &TreeReconstructor::get_growth_commands);

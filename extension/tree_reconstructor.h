@@ -47,7 +47,10 @@ class TreeReconstructor : public godot::RefCounted {
                              int p_levels = 1, bool p_pictures_beside = false);
     // tree_reconstructor_growth.cpp
     godot::Ref<TreeReconstruction> grow_bark(const godot::Ref<TreeReconstruction>& p_tree,
-                                             const godot::String& p_recipe);
+                                             const godot::String& p_recipe, bool p_recorded = false);
+    godot::TypedArray<godot::Dictionary> get_growth_frames() const;
+    static godot::Array draw_grown_bark(const godot::Ref<TreeReconstruction>& p_tree,
+                                        const godot::PackedByteArray& p_bark);
     godot::String propose_growth(const godot::Ref<TreeReconstruction>& p_tree,
                                  const godot::PackedVector3Array& p_points,
                                  const godot::String& p_recipe = "");
@@ -59,6 +62,7 @@ class TreeReconstructor : public godot::RefCounted {
                                 const godot::Vector3& p_way, double p_longest = 0.035);
     godot::TypedArray<godot::Dictionary> find_bark(const godot::Ref<TreeReconstruction>& p_tree,
                                                    const godot::String& p_recipe);
+    godot::Array sink_bark(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_recipe);
     godot::Array lift_bark(const godot::Ref<TreeReconstruction>& p_tree, const godot::String& p_recipe);
     godot::Ref<TreeReconstruction> sketch_tree(const godot::Ref<TreeSketch>& p_sketch,
                                                const godot::Ref<godot::Resource>& p_twigs_of);
@@ -135,6 +139,7 @@ class TreeReconstructor : public godot::RefCounted {
     mutable std::mutex mutex_;
     double fraction_ = 0.0;
     std::string stage_;
+    godot::TypedArray<godot::Dictionary> growth_frames_;
     godot::Vector2i count_;  // of what the stage goes through, done and in all; 0 where it does not tell
     std::string error_message_;
     std::string report_json_;

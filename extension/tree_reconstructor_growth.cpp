@@ -1,9 +1,14 @@
 // Bark that TreeReconstructor grows on trees (src/growth).
+#include <array>
+#include <cstring>
 #include <exception>
+#include <godot_cpp/variant/packed_byte_array.hpp>
+#include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "convert.h"
 #include "error.h"
@@ -11,6 +16,8 @@
 #include "growth/lumps.h"
 #include "growth/places.h"
 #include "growth/presets.h"
+#include "growth/recording.h"
+#include "mesh/branch_tubes.h"
 #include "pipeline/report.h"
 #include "scan_points.h"
 #include "tree_reconstructor.h"
@@ -18,8 +25,27 @@
 
 using namespace godot;
 
+// What a recipe calls by name.
+static void give_meshes(treerec::GrowthRecipe& p_recipe, const Dictionary& p_meshes) {
+    for (treerec::GrowthObstacle& obstacle : p_recipe.obstacles) {
+        if (obstacle.mesh.empty()) {
+            continue;
+        }
+        const PackedVector3Array corners = p_meshes.get(to_godot(obstacle.mesh), PackedVector3Array());
+        const Vector3* const read = corners.ptr();
+        for (int64_t i = 0; i + 2 < corners.size(); i += 3) {
+            std::array<treerec::DVec3, 3> triangle;
+            for (int64_t k = 0; k < 3; k++) {
+                const Vector3& corner = read[i + k];
+                triangle[size_t(k)] = treerec::DVec3(corner.x, corner.y, corner.z);
+            }
+            obstacle.triangles.push_back(triangle);
+        }
+    }
+}
+
 Ref<TreeReconstruction> TreeReconstructor::grow_bark(const Ref<TreeReconstruction>& p_tree,
-                                                     const String& p_recipe) {
+                                                     const String& p_recipe, bool p_recorded) {
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), Ref<TreeReconstruction>(),
                         "There is no tree that bark could grow on.");
     const Job job(this);
@@ -32,12 +58,28 @@ Ref<TreeReconstruction> TreeReconstructor::grow_bark(const Ref<TreeReconstructio
         made.instantiate();
         made->take_tree_of(p_tree);
         made->set_leaf_setting(p_tree->get_leaf_setting());
+        made->set_growth_meshes(p_tree->get_growth_meshes());
         const std::shared_ptr<const treerec::Tree> tree = made->get_tree();
-        const treerec::GrowthRecipe recipe = treerec::read_growth_recipe(*tree, to_std(p_recipe));
-        const treerec::GrownTree grown = treerec::grow_bark(*tree, recipe, {}, &listener);
+        treerec::GrowthRecipe recipe = treerec::read_growth_recipe(*tree, to_std(p_recipe));
+        give_meshes(recipe, made->get_growth_meshes());
+        treerec::GrowthRecording recording;
+        treerec::GrowBarkOptions options;
+        options.watcher = p_recorded ? &recording : nullptr;
+        const treerec::GrownTree grown = treerec::grow_bark(*tree, recipe, options, &listener);
         listener.check();
+        TypedArray<Dictionary> frames;
+        for (const treerec::GrowthRecording::Frame& frame : recording.frames()) {
+            PackedByteArray bytes;
+            bytes.resize(int64_t(frame.bark.size()));
+            std::memcpy(bytes.ptrw(), frame.bark.data(), frame.bark.size());
+            Dictionary entry;
+            entry["step"] = frame.step;
+            entry["bark"] = bytes;
+            frames.push_back(entry);
+        }
         made->set_bark(grown.bark, to_godot(recipe.text));
         const std::lock_guard lock(mutex_);
+        growth_frames_ = frames;
         report_json_ = treerec::growth_report_json(grown);
         fraction_ = 1.0;
         return made;
@@ -45,6 +87,24 @@ Ref<TreeReconstruction> TreeReconstructor::grow_bark(const Ref<TreeReconstructio
         _fail(error.what());
         return Ref<TreeReconstruction>();
     }
+}
+
+TypedArray<Dictionary> TreeReconstructor::get_growth_frames() const {
+    const std::lock_guard lock(mutex_);
+    return growth_frames_;
+}
+
+Array TreeReconstructor::draw_grown_bark(const Ref<TreeReconstruction>& p_tree,
+                                         const PackedByteArray& p_bark) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), Array(), "There is no tree that bark could be drawn on.");
+    return guarded(Array(), [&] {
+        const treerec::GrownBark bark = treerec::unpack_grown_bark(
+            std::string_view(reinterpret_cast<const char*>(p_bark.ptr()), size_t(p_bark.size())));
+        treerec::TubeOptions options;
+        options.grown = &bark;
+        options.grown_alone = true;
+        return to_surface_arrays(treerec::build_branch_tubes(*p_tree->get_tree(), options));
+    });
 }
 
 String TreeReconstructor::propose_growth(const Ref<TreeReconstruction>& p_tree,
@@ -177,6 +237,39 @@ TypedArray<Dictionary> TreeReconstructor::find_bark(const Ref<TreeReconstruction
     return list;
 }
 
+// Meshes as one.
+static void append(treerec::Mesh& p_all, const treerec::Mesh& p_one) {
+    const uint32_t before = uint32_t(p_all.positions.size());
+    const auto append = [](auto& p_to, const auto& p_from) {
+        p_to.insert(p_to.end(), p_from.begin(), p_from.end());
+    };
+    append(p_all.positions, p_one.positions);
+    append(p_all.normals, p_one.normals);
+    append(p_all.tangents, p_one.tangents);
+    append(p_all.uvs, p_one.uvs);
+    append(p_all.custom0, p_one.custom0);
+    for (const uint32_t index : p_one.indices) {
+        p_all.indices.push_back(before + index);
+    }
+}
+
+Array TreeReconstructor::sink_bark(const Ref<TreeReconstruction>& p_tree, const String& p_recipe) {
+    ERR_FAIL_COND_V_MSG(p_tree.is_null(), Array(), "There is no tree whose bark could sink.");
+    const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
+    if (tree->empty()) {
+        return Array();
+    }
+    const treerec::GrowthRecipe recipe = recipe_of(*tree, p_recipe);
+    const treerec::BarkPlaces& places = _places_of(tree, recipe.longest, recipe.shortest);
+    treerec::Mesh all;
+    for (const treerec::GrowthFeature& feature : recipe.features) {
+        if (feature.kind == treerec::GrowthFeature::Kind::kHollow) {
+            append(all, places.mouth(feature));
+        }
+    }
+    return to_surface_arrays(all);
+}
+
 Array TreeReconstructor::lift_bark(const Ref<TreeReconstruction>& p_tree, const String& p_recipe) {
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), Array(), "There is no tree whose bark could be lifted.");
     const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
@@ -190,14 +283,7 @@ Array TreeReconstructor::lift_bark(const Ref<TreeReconstruction>& p_tree, const 
         if (feature.kind != treerec::GrowthFeature::Kind::kBurl) {
             continue;
         }
-        const treerec::Mesh one = places.lift(feature, recipe.twist);
-        const uint32_t before = uint32_t(all.positions.size());
-        all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
-        all.normals.insert(all.normals.end(), one.normals.begin(), one.normals.end());
-        all.uvs.insert(all.uvs.end(), one.uvs.begin(), one.uvs.end());
-        for (const uint32_t index : one.indices) {
-            all.indices.push_back(before + index);
-        }
+        append(all, places.lift(feature, recipe.twist));
     }
     return to_surface_arrays(all);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "error.h"
 #include "growth/bark_map.h"
@@ -78,15 +79,27 @@ Region mouth_of(const GrowthFeature& wanted, const Spot& spot) {
     return region;
 }
 
+Triangles placed_mesh(const GrowthObstacle& wanted) {
+    if (!wanted.mesh.empty() && wanted.triangles.empty())
+        throw Error("The obstacle " + quote_word(wanted.mesh) +
+                    " is a mesh of a scene, which is not at hand here. Grow this recipe in the editor, or "
+                    "give the obstacle a file=, a Wavefront OBJ file.");
+    Triangles triangles = wanted.mesh.empty() ? read_triangles(wanted.file) : wanted.triangles;
+    const DVec3 x = wanted.x.value_or(DVec3(1.0, 0.0, 0.0)), y = wanted.y.value_or(DVec3(0.0, 1.0, 0.0)),
+                z = wanted.z.value_or(DVec3(0.0, 0.0, 1.0)), middle = wanted.at.value_or(DVec3(0.0));
+    const bool mirrored = glm::dot(glm::cross(x, y), z) < 0.0;
+    for (std::array<DVec3, 3>& triangle : triangles) {
+        for (DVec3& corner : triangle)
+            corner = middle + x * corner.x + y * corner.y + z * corner.z;
+        if (mirrored) std::swap(triangle[1], triangle[2]);
+    }
+    return triangles;
+}
+
 Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
     using Shape = GrowthObstacle::Shape;
     if (wanted.shape == Shape::kMesh) {
-        Triangles triangles = read_triangles(wanted.file);
-        if (wanted.at)
-            for (std::array<DVec3, 3>& triangle : triangles)
-                for (DVec3& corner : triangle)
-                    corner += *wanted.at;
-        return triangles;
+        return placed_mesh(wanted);
     }
     const DVec3 middle =
         wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.axis.radius + wanted.gap);

@@ -40,21 +40,29 @@ double reached(const Surface& surface, const GrowthBranch& branch, int32_t index
     return 0.0;
 }
 
-GrownBark bark_of(const Run& run, const BranchList& list, const TreePlan& planned, double longest) {
+std::vector<BranchCoordinates> coordinates_of(const GrowthPlan& plan) {
+    std::vector<BranchCoordinates> coordinates;
+    for (const GrowthBranch& branch : plan.branches)
+        coordinates.emplace_back(branch, plan.twist);
+    return coordinates;
+}
+
+// Its branches are covered as far as they have come; all of them where it is on its way.
+GrownBark bark_of(const Run& run, const BranchList& list, const TreePlan& planned,
+                  const std::vector<BranchCoordinates>& coordinates, double longest) {
     const Surface& surface = run.surface();
     GrownBark bark;
-    std::vector<BranchCoordinates> coordinates;
     for (size_t b = 0; b < planned.plan.branches.size(); b++) {
         const size_t own = static_cast<size_t>(planned.branch_of[b]);
         const int32_t index = static_cast<int32_t>(b);
+        const double most = planned.covered[own];
         const bool cut = std::any_of(run.features().begin(), run.features().end(), [&](const Feature& f) {
             return f.cut && f.placed && f.branch == index;
         });
-        const double until =
-            cut ? planned.covered[own]
-                : std::min(planned.covered[own], reached(surface, planned.plan.branches[b], index, longest));
+        const double until = run.done() && !cut
+                                 ? std::min(most, reached(surface, planned.plan.branches[b], index, longest))
+                                 : most;
         bark.branches.push_back({list.nodes[static_cast<size_t>(list.branches[own].begin)], until});
-        coordinates.emplace_back(planned.plan.branches[b], planned.plan.twist);
     }
     std::vector<uint32_t> vertex_of(surface.mesh.num_vertices());
     for (const Vertex v : surface.mesh.vertices()) {
@@ -100,6 +108,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
         moved = [&](const Surface& surface) {
             write_trace(options.trace, surface, run.step(), recipe.shortest);
         };
+    const std::vector<BranchCoordinates> coordinates = coordinates_of(planned.plan);
     while (!run.done()) {
         if (progress) {
             progress->check();
@@ -110,6 +119,11 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
         run.advance(moved);
         if (options.check_every > 0 && (run.done() || run.step() % options.check_every == 0))
             result.checks.push_back(judge(run, recipe.longest));
+        if (options.watcher && !run.done() && options.watcher->wants(run.step(), planned.plan.steps)) {
+            GrownBark bark = bark_of(run, list, planned, coordinates, recipe.longest);
+            blend_normals(bark, recipe.longest);
+            options.watcher->take(run.step(), bark);
+        }
     }
     for (const Feature& feature : run.features())
         if (!feature.placed)
@@ -118,10 +132,12 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
                                                                                           : "A burl") +
                                      " found no bark " + number_text(feature.along) +
                                      " m along its branch and was left out.");
-    result.bark = bark_of(run, list, planned, recipe.longest);
+    result.bark = bark_of(run, list, planned, coordinates, recipe.longest);
     blend_normals(result.bark, recipe.longest);
     order_levels(result.bark, progress);
     result.bark.digest = covered_wood_digest(tree, result.bark.branches);
+    if (options.watcher && options.watcher->wants(run.step(), planned.plan.steps))
+        options.watcher->take(run.step(), result.bark);
     return result;
 }
 

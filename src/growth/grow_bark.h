@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "growth/recipe.h"
+#include "growth/recording.h"
 #include "mesh/grown_bark.h"
 #include "progress.h"
 #include "tree/tree.h"
@@ -31,6 +32,8 @@ struct GrowBarkOptions {
     int check_every = 0;
     // A folder that each step's moves are written to (growth/trace.h); empty: none.
     std::string trace{};
+    // Sees the surface on its way; null: nobody. It must outlive the call.
+    GrowthWatcher* watcher = nullptr;
 };
 
 struct GrownTree {

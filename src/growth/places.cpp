@@ -18,6 +18,8 @@ using growth::BranchCoordinates;
 using growth::GrowthBranch;
 
 constexpr int kAround = 40, kMostAlong = 160;  // quads of a patch
+constexpr int kMouth = 24;                     // likewise, of a mouth
+constexpr double kAboveMouth = 0.04;           // radii over the wood: tubes have flat sides and bend
 constexpr double kLeast = 5e-4;                // metres: what is lifted by less is left out
 constexpr double kAbove = 1e-3;                // metres over the tube, so that both are told apart
 
@@ -131,6 +133,37 @@ std::optional<BarkPlace> BarkPlaces::find(const GrowthPlace& place) const {
     if (branch < 0) return std::nullopt;
     const double from = data_->along_of(static_cast<size_t>(branch), place.node);
     return data_->place(static_cast<size_t>(branch), place.node, from, from + place.along, place.around);
+}
+
+Mesh BarkPlaces::mouth(const GrowthFeature& hollow) const {
+    Mesh patch;
+    const int32_t found = data_->branch_of(hollow.node);
+    if (found < 0 || hollow.width <= 0.0 || hollow.height <= 0.0) return patch;
+    const size_t branch = static_cast<size_t>(found);
+    const double from = data_->along_of(branch, hollow.node);
+    const BarkPlace middle = data_->place(branch, hollow.node, from, from + hollow.along, hollow.around);
+    const GrowthBranch& grown = data_->planned.plan.branches[branch];
+    const double half = 0.5 * hollow.height, centre = from + middle.along;
+    const double begin = std::max(centre - half, branch == 0 ? 0.0 : grown.axis.front().along);
+    const double end = std::min(centre + half, grown.axis.back().along);
+    const double widest = std::min(0.5 * hollow.width / std::max(middle.radius, 1e-6) * 180.0 / kPi, 180.0);
+    for (int i = 0; i <= kMouth; i++)
+        for (int j = 0; j <= kMouth; j++) {
+            const double at = begin + (end - begin) * i / kMouth, turn = 2.0 * j / kMouth - 1.0;
+            const BarkPlace place =
+                data_->place(branch, hollow.node, from, at, hollow.around + widest * turn);
+            patch.positions.push_back(Vec3(place.position() + place.out * (kAboveMouth * place.radius)));
+            patch.normals.push_back(Vec3(place.out));
+            patch.tangents.push_back(Vec4(Vec3(glm::cross(place.direction, place.out)), 1.0f));
+            patch.uvs.push_back(Vec2(static_cast<float>(turn), static_cast<float>((at - centre) / half)));
+            patch.custom0.push_back(Vec4(Vec3(DVec3(0.5 * hollow.width, half, hollow.depth)), 0.0f));
+        }
+    for (int i = 0; i < kMouth; i++)
+        for (int j = 0; j < kMouth; j++) {
+            const uint32_t a = static_cast<uint32_t>(i * (kMouth + 1) + j), b = a + 1, c = a + kMouth + 1;
+            patch.indices.insert(patch.indices.end(), {a, b, c + 1, a, c + 1, c});
+        }
+    return patch;
 }
 
 Mesh BarkPlaces::lift(const GrowthFeature& burl, double twist) const {

@@ -37,6 +37,10 @@ class BarkPlaces {
     // branch's radius for what plain cambium grows. twist: radians a metre, of the grain. Positions, normals
     // and UVs in metres: u about the branch, v along it. Empty as find().
     Mesh lift(const GrowthFeature& burl, double twist) const;
+    // The mouth of a hollow, a patch that lies on the bark: UVs go from -1 to 1 across it and along the
+    // branch, its ellipse is where they are as long as 1; custom0: half its width, half its height and its
+    // depth, metres; tangents lie across. Empty as find().
+    Mesh mouth(const GrowthFeature& hollow) const;
 
   private:
     struct Data;

@@ -7,6 +7,7 @@
 //     obstacle shape=post around=180 gap=-0.02 radius=0.05
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -59,6 +60,11 @@ struct GrowthObstacle : GrowthPlace {
     std::optional<DVec3> direction;  // unit, tree space: along a post or wire, across a sheet, a ring's axis
     double length = 0.0, radius = 0.0, width = 0.0, thickness = 0.0;  // metres
     std::string file;                                                 // of a mesh
+    // Instead of a file: the name of a mesh that is kept beside the recipe, and its triangles, metres, in its
+    // own space, which whoever keeps it fills in.
+    std::string mesh;
+    std::vector<std::array<DVec3, 3>> triangles;
+    std::optional<DVec3> x, y, z;  // of a mesh: where its axes point, tree space, of any length but 0
     GrowthLip lip;
 };
 

@@ -1,5 +1,6 @@
 // What a recipe's lines are.
 #include <cmath>
+#include <utility>
 
 #include "edit/command_text.h"
 #include "growth/recipe.h"
@@ -105,9 +106,16 @@ void take_obstacle(GrowthRecipe& recipe, const EditArguments& arguments) {
     obstacle.width = arguments.number("width");
     obstacle.thickness = arguments.number("thickness");
     if (arguments.has("file")) obstacle.file = arguments.text("file");
-    if ((obstacle.shape == Shape::kMesh) == obstacle.file.empty())
-        throw Error(obstacle.file.empty() ? "An obstacle with shape=mesh needs file=, a Wavefront OBJ file."
-                                          : "An obstacle with file= needs shape=mesh.");
+    if (arguments.has("mesh")) obstacle.mesh = arguments.text("mesh");
+    for (const auto& [name, axis] :
+         {std::pair{"x", &obstacle.x}, std::pair{"y", &obstacle.y}, std::pair{"z", &obstacle.z}})
+        if (arguments.has(name)) *axis = arguments.vector(name);
+    const bool named = !obstacle.file.empty() || !obstacle.mesh.empty();
+    if ((obstacle.shape == Shape::kMesh) != named)
+        throw Error(named ? "An obstacle with file= needs shape=mesh."
+                          : "An obstacle with shape=mesh needs file=, a Wavefront OBJ file.");
+    if (!obstacle.file.empty() && !obstacle.mesh.empty())
+        throw Error("An obstacle is of a file= or of a mesh=, not of both.");
     obstacle.lip = lip_of(arguments);
     recipe.obstacles.push_back(obstacle);
 }
@@ -180,7 +188,13 @@ std::vector<Parameter> obstacle_parameters() {
          length_parameter("radius", 0.05, 0.0005, kFarthest, "of a post or ring"),
          length_parameter("width", 0.1, 0.001, kFarthest, "of a box or sheet"),
          length_parameter("thickness", 0.004, 0.0005, kFarthest, "of a box, wire or ring"),
-         text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres").optional()});
+         text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres").optional(),
+         text_parameter("mesh", {"fence"}, "instead, a mesh that is kept with a tree in a scene").optional(),
+         offset_parameter("x", "where the X axis of a mesh points, as long as a metre of it is").optional(),
+         offset_parameter("y", "likewise, of its Y axis").optional(),
+         offset_parameter("z", "likewise, of its Z axis").optional(),
+         text_parameter("scene", {"../Fence"}, "the node of the scene that it is, for the editor")
+             .optional()});
     add_lip(parameters, 0.06, 0.4, 0.8, 0.03);
     return parameters;
 }

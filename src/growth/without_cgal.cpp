@@ -43,6 +43,9 @@ std::optional<BarkPlace> BarkPlaces::pick(const DVec3&, const DVec3&) const {
 std::optional<BarkPlace> BarkPlaces::find(const GrowthPlace&) const {
     return std::nullopt;
 }
+Mesh BarkPlaces::mouth(const GrowthFeature&) const {
+    return {};
+}
 Mesh BarkPlaces::lift(const GrowthFeature&, double) const {
     return {};
 }

@@ -163,7 +163,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     Tube& tube = tubes[index];
     std::vector<Ring>& out = rings[index / kBranchesPerChunk];
     tube.first_ring = static_cast<uint32_t>(out.size());
-    if (widened[index] == 0.0f) return;
+    if (widened[index] == 0.0f || options.grown_alone) return;
     sample_axis(tree, list, branch, 2.0 * least, points);
     if (points.size() < 2) return;
     size_t nearest = 0;

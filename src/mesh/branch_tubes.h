@@ -23,6 +23,7 @@ struct TubeOptions {
     bool pivots = true;  // custom0, radii and wind are filled; files have no place for them
     // Drawn instead of the tubes that it covers; null: tubes alone. It must outlive the call.
     const GrownBark* grown = nullptr;
+    bool grown_alone = false;  // without any tube
 };
 
 // Vertices carry normals, tangents, UVs (u around in repeats, v along in metres), wind channels.

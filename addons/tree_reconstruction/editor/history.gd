@@ -18,6 +18,7 @@ const MADE: Array[StringName] = [
 	&"provenance",
 	&"edit_log",
 	&"growth_recipe",
+	&"growth_meshes",
 	&"growth_pending",
 	&"grown_bark",
 ]
@@ -122,6 +123,11 @@ func look(contexts: Array[Object]) -> String:
 		elif now > before and at >= 0:
 			found = "+" + plain.get_action_name(at)
 	return found
+
+
+## Whether something that was undone can be done again in the history that [param context] is in.
+func can_redo(context: Object) -> bool:
+	return _get_plain(context).has_redo()
 
 
 func _get_version(context: Object) -> int:

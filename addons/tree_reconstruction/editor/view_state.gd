@@ -82,6 +82,13 @@ var grid: bool = false:
 		grid = value
 		changed.emit()
 
+## Whether how the bark grew is shown instead of the tree. Not kept.
+var growing: bool = false:
+	set(value):
+		if growing != value:
+			growing = value
+			changed.emit()
+
 ## Whether a sketch is drawn right in the 3D view: its camera, and photos that are compared, stay
 ## where they are, whatever is selected. Not kept.
 var drawing: bool = false:

@@ -41,6 +41,7 @@ static func fell(tree: TreeInstance3D, id: int, density: float, stump_body: bool
 	top.skeleton = _lying((edit.get_removed_wood()[0] as TreeReconstruction).skeleton)
 	top.edit_log = ""
 	top.growth_recipe = ""
+	top.growth_meshes = {}
 	top.growth_pending = false
 	top.grown_bark = []
 	var fallen: TreeInstance3D = TreeInstance3D.new()

@@ -65,7 +65,8 @@ static func make(kind: StringName, radius: float, size: float = 1.0) -> Recipe.L
 	return line
 
 
-## Which of [member KINDS] a line is; empty for others, as a mesh.
+## Which of [member KINDS] a line is, or [code]scene[/code] for a node of it; empty for others, as a
+## mesh.
 static func kind_of(line: Recipe.Line) -> StringName:
 	match line.command:
 		"burl":
@@ -73,6 +74,8 @@ static func kind_of(line: Recipe.Line) -> StringName:
 		"hollow":
 			return &"hollow"
 		"obstacle":
+			if line.values.has("scene"):
+				return &"scene"
 			var shape: StringName = line.values.get("shape", "post")
 			return shape if shape in KINDS else &""
 	return &""
@@ -113,6 +116,9 @@ static func outline_of(
 			_add_circle(lines, place, number.call("radius"), number.call("radius"))
 		&"hollow":
 			_add_circle(lines, place, 0.5 * number.call("width"), 0.5 * number.call("height"))
+		&"scene", &"":
+			# It is seen in the scene, if at all.
+			pass
 		_:
 			_add_obstacle(lines, line, place, number)
 	return lines

@@ -1,14 +1,17 @@
 @tool
 extends RefCounted
-## How burls would lift the bark, drawn over the tree at once, while nothing has grown yet.
+## How burls would lift the bark, and the mouths of hollows, drawn over the tree at once, while
+## nothing has grown yet.
 
 const Session := preload("../session.gd")
+const _MOUTH: Shader = preload("mouth.gdshader")
 
 # Where the tree's own bark has no picture.
 const _COLOR: Color = Color(0.36, 0.29, 0.235)
 
 var _mesh: ArrayMesh = ArrayMesh.new()
 var _material: StandardMaterial3D = StandardMaterial3D.new()
+var _wood: ShaderMaterial = ShaderMaterial.new()
 var _instance: RID
 var _shown: String = ""
 
@@ -16,9 +19,10 @@ var _shown: String = ""
 func _init() -> void:
 	_material.roughness = 1.0
 	_material.metallic_specular = 0.1
+	_wood.shader = _MOUTH
 
 
-## Shows the burls of a recipe on the edited tree; none with an empty one.
+## Shows the burls and hollows of a recipe on the edited tree; none with an empty one.
 func show(session: Session, worker: TreeReconstructor, recipe: String) -> void:
 	if recipe.is_empty() or session.node == null or not session.node.is_inside_tree():
 		clear()
@@ -32,6 +36,12 @@ func show(session: Session, worker: TreeReconstructor, recipe: String) -> void:
 			_mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)
 			_look_like(session.node.get_active_material(0) as ShaderMaterial)
 			_mesh.surface_set_material(0, _material)
+		arrays = worker.sink_bark(session.tree, recipe)
+		if not arrays.is_empty():
+			_mesh.add_surface_from_arrays(
+				Mesh.PRIMITIVE_TRIANGLES, arrays, [], {}, TreeReconstruction.MESH_FLAGS
+			)
+			_mesh.surface_set_material(_mesh.get_surface_count() - 1, _wood)
 	if not _instance.is_valid():
 		_instance = RenderingServer.instance_create2(
 			_mesh.get_rid(), session.node.get_world_3d().scenario
@@ -41,9 +51,11 @@ func show(session: Session, worker: TreeReconstructor, recipe: String) -> void:
 
 ## How many triangles are shown.
 func get_triangle_count() -> int:
-	if not _instance.is_valid() or _mesh.get_surface_count() == 0:
-		return 0
-	return _mesh.surface_get_array_index_len(0) / 3
+	var count: int = 0
+	if _instance.is_valid():
+		for surface: int in _mesh.get_surface_count():
+			count += _mesh.surface_get_array_index_len(surface) / 3
+	return count
 
 
 func clear() -> void:

@@ -4,6 +4,7 @@ extends RefCounted
 
 const BarkFeatures := preload("bark_features.gd")
 const Recipe := preload("../dock/growth_recipe.gd")
+const SceneObstacles := preload("scene_obstacles.gd")
 
 # The parameters that have a field, in this order, by the kind of feature.
 const _SHOWN: Dictionary[StringName, Array] = {
@@ -15,6 +16,7 @@ const _SHOWN: Dictionary[StringName, Array] = {
 	&"box": ["shape", "along", "around", "gap", "width", "length", "thickness", "growth"],
 	&"sheet": ["shape", "along", "around", "gap", "width", "length", "growth"],
 	&"ring": ["shape", "along", "around", "gap", "radius", "thickness", "growth"],
+	&"scene": ["growth"],
 }
 
 
@@ -91,6 +93,8 @@ func words_of(command: String, parameter: Dictionary) -> PackedStringArray:
 ## A line of the list.
 func title_of(line: Recipe.Line, defaults: Callable) -> String:
 	var kind: int = BarkFeatures.KINDS.find(BarkFeatures.kind_of(line))
+	if SceneObstacles.is_one(line):
+		return tr("Obstacle from the scene: %s") % SceneObstacles.name_of(line)
 	if kind < 0:
 		return line.get_text()
 	var standard: String = defaults.call(line.command, "along")

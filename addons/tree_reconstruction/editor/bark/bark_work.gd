@@ -8,6 +8,7 @@ signal changed
 
 const Session := preload("../session.gd")
 const Recipe := preload("../dock/growth_recipe.gd")
+const BarkScene := preload("bark_scene.gd")
 
 ## The tool that paints.
 const TOOL: StringName = &"paint_bark"
@@ -19,7 +20,12 @@ const _LONGEST: float = 0.65
 # It isn't worth it below.
 const _WORTH: float = 1.3
 
+# Always the same one, so that it is known again.
+static var _no_frames: Array[Dictionary] = []
+
 var session: Session
+## The obstacles that are nodes of the scene.
+var scene: BarkScene
 ## Which of the recipe's features is selected, or NONE.
 var selected: int = NONE:
 	set(value):
@@ -47,6 +53,14 @@ var _seen: String = "\n"
 var _drafts: Dictionary[int, Recipe] = {}
 var _begun: Dictionary[int, String] = {}
 var _defaults: Dictionary[String, String] = {}
+# How the bark grew that was grown last, and which it is.
+var _frames: Array[Dictionary] = []
+var _frames_of: PackedByteArray = []
+# What get_frames() was asked about last, and whether it was the same.
+var _asked: Array = []
+var _same: bool = false
+# What grows once more, for its frames alone.
+var _recording: Session.Jobs.Job
 
 
 ## That of a session, which has one.
@@ -66,9 +80,11 @@ func begin(of_session: Session) -> void:
 	for command: Dictionary in TreeReconstructor.get_growth_commands():
 		for parameter: Dictionary in command.parameters:
 			_defaults["%s %s" % [command.name, parameter.name]] = parameter.default
+	scene = BarkScene.new(self, session)
 	session.tree_changed.connect(_on_tree_changed)
 	session.tool_changed.connect(follow)
 	session.jobs.changed.connect(_on_jobs_changed)
+	(Engine.get_main_loop() as SceneTree).process_frame.connect(_on_frame)
 
 
 ## Ends what runs.
@@ -76,6 +92,7 @@ func close() -> void:
 	if session == null:
 		return
 	_cancel()
+	(Engine.get_main_loop() as SceneTree).process_frame.disconnect(_on_frame)
 	session.tree_changed.disconnect(_on_tree_changed)
 	session.tool_changed.disconnect(follow)
 	session.jobs.changed.disconnect(_on_jobs_changed)
@@ -135,6 +152,7 @@ func commit(title: String, merged: Array = []) -> void:
 	_step = TreeReconstruction.new()
 	_step.take_bark_of(tree)
 	_step.growth_recipe = text
+	_step.growth_meshes = scene.get_meshes(text)
 	_step.growth_pending = not text.is_empty() or tree.has_grown_bark()
 	session.set_bark(title, _step, merged)
 	changed.emit()
@@ -146,7 +164,44 @@ func grow() -> void:
 	if session.tree == null or session.tree.is_empty() or is_growing():
 		return
 	_grows = []
+	scene.follow(get_recipe())
 	_start(get_recipe().get_text())
+	changed.emit()
+
+
+## How the bark of the edited tree grew (see [method TreeReconstructor.get_growth_frames]), its
+## result last; nothing where that is not known.
+func get_frames() -> Array[Dictionary]:
+	var tree: TreeReconstruction = session.tree
+	if tree == null or _frames.is_empty():
+		return _no_frames
+	# Comparing takes a while.
+	var asked: Array = [tree, tree.get_bark_revision(), _frames_of.size()]
+	if asked != _asked:
+		_asked = asked
+		_same = tree.grown_bark == _frames_of
+	return _frames if _same else _no_frames
+
+
+func is_recording() -> bool:
+	return _recording != null
+
+
+## Grows the tree's bark once more for [method get_frames], on a thread. The tree stays as it is.
+func record() -> void:
+	var tree: TreeReconstruction = session.tree
+	if tree == null or is_recording() or tree.is_bark_stale() or not tree.has_grown_bark():
+		return
+	var worker: TreeReconstructor = TreeReconstructor.new()
+	var copy: TreeReconstruction = TreeReconstruction.new()
+	copy.take_tree_of(tree)
+	copy.growth_meshes = tree.growth_meshes
+	_recording = session.jobs.start(
+		tr("Growth of %s") % session.node.name,
+		_run.bind(worker, copy, tree.growth_recipe, true),
+		_on_recorded.bind(worker, tree.grown_bark),
+		worker
+	)
 	changed.emit()
 
 
@@ -190,9 +245,12 @@ func _start(recipe: String) -> void:
 	# The tree may be edited meanwhile: trees are replaced, never changed, so this takes no time.
 	var copy: TreeReconstruction = TreeReconstruction.new()
 	copy.take_tree_of(session.tree)
+	copy.growth_meshes = scene.get_meshes(recipe)
+	# What is coarse is seen for a moment only.
+	var recorded: bool = _grows.is_empty() or not _grows[2]
 	_job = session.jobs.start(
 		tr("Bark of %s") % session.node.name,
-		_run.bind(worker, copy, recipe),
+		_run.bind(worker, copy, recipe, recorded),
 		_on_grown.bind(worker, session.node.get_instance_id()),
 		worker
 	)
@@ -207,9 +265,13 @@ func _cancel() -> void:
 
 
 static func _run(
-	_running: Session.Jobs.Job, worker: TreeReconstructor, copy: TreeReconstruction, recipe: String
+	_running: Session.Jobs.Job,
+	worker: TreeReconstructor,
+	copy: TreeReconstruction,
+	recipe: String,
+	recorded: bool
 ) -> TreeReconstruction:
-	return worker.grow_bark(copy, recipe)
+	return worker.grow_bark(copy, recipe, recorded)
 
 
 func _on_grown(
@@ -219,6 +281,7 @@ func _on_grown(
 		return
 	_job = null
 	var itself: Array = _grows
+	_take_frames(made, worker)
 	if not itself.is_empty():
 		_take_grown(made, worker, itself)
 		changed.emit()
@@ -234,6 +297,31 @@ func _on_grown(
 	else:
 		session.set_bark(tr("Grow Bark"), made)
 		_tell(worker)
+	changed.emit()
+
+
+func _take_frames(made: TreeReconstruction, worker: TreeReconstructor) -> void:
+	if made != null and not worker.get_growth_frames().is_empty():
+		_frames = worker.get_growth_frames()
+		_frames_of = made.grown_bark
+		_asked = []
+
+
+func _on_recorded(
+	made: TreeReconstruction,
+	_ended: Session.Jobs.Job,
+	worker: TreeReconstructor,
+	bark: PackedByteArray
+) -> void:
+	_recording = null
+	if session == null:
+		return
+	if made == null:
+		session.say(worker.get_error_message(), session.Kind.ERROR)
+	else:
+		_take_frames(made, worker)
+		# As it was asked for, though another version of the addon may have grown it.
+		_frames_of = bark
 	changed.emit()
 
 
@@ -286,8 +374,16 @@ func _on_tree_changed() -> void:
 	follow()
 
 
+func _on_frame() -> void:
+	scene.update((Engine.get_main_loop() as SceneTree).root.get_process_delta_time())
+
+
 # One that was cancelled ends without a word.
 func _on_jobs_changed() -> void:
+	if _recording != null and _recording.cancelled:
+		if not _recording in session.jobs.get_running():
+			_recording = null
+			changed.emit()
 	if _job != null and _job.cancelled and not _job in session.jobs.get_running():
 		_job = null
 		if not _grows.is_empty():

@@ -6,6 +6,8 @@ extends "section.gd"
 const BarkFeatures := preload("../bark/bark_features.gd")
 const BarkWork := preload("../bark/bark_work.gd")
 const BarkWords := preload("../bark/bark_words.gd")
+const Obstacles := preload("bark_obstacles.gd")
+const Timeline := preload("bark_timeline.gd")
 const Recipe := preload("growth_recipe.gd")
 const FromScan := preload("bark_from_scan.gd")
 
@@ -24,6 +26,8 @@ var edge: SpinBox
 var grow: Button
 var back: Button
 var from_scan: FromScan
+var obstacles: Obstacles
+var timeline: Timeline
 ## The fields of the burl that is selected, by their parameters.
 var fields: Dictionary[String, SpinBox] = {}
 
@@ -53,6 +57,7 @@ func get_id() -> StringName:
 func close() -> void:
 	session.tree_changed.disconnect(_on_tree_changed)
 	from_scan.close()
+	timeline.close()
 	_work.changed.disconnect(_on_work_changed)
 
 
@@ -86,6 +91,8 @@ func _build_surface() -> void:
 	)
 	back.pressed.connect(_on_back_pressed)
 	body.add_child(buttons([grow, back]))
+	timeline = Timeline.new(session, _work)
+	body.add_child(timeline)
 	edge = _make_number(_parameter("edges", "longest"))
 	edge.value_changed.connect(_on_edge_changed)
 	(
@@ -145,7 +152,8 @@ func _build_list() -> void:
 	from_scan = FromScan.new(session, func() -> String: return _work.get_recipe().get_text())
 	from_scan.proposed.connect(_on_proposed)
 	body.add_child(buttons([add, more, remove]))
-	body.add_child(buttons([from_scan.button]))
+	obstacles = Obstacles.new(session, list)
+	body.add_child(buttons([from_scan.button, obstacles.button]))
 	body.add_child(_form)
 
 
@@ -197,6 +205,7 @@ func start() -> void:
 
 func _refresh() -> void:
 	var of: TreeReconstruction = session.tree
+	timeline.refresh()
 	if of == null:
 		return
 	if _recipe != _work.get_recipe():
@@ -207,6 +216,7 @@ func _refresh() -> void:
 	grow.disabled = _work.is_growing() or of.is_empty()
 	add.disabled = of.is_empty()
 	more.disabled = of.is_empty()
+	obstacles.button.disabled = of.is_empty()
 	remove.disabled = _selected() == null
 	from_scan.refresh()
 	back.disabled = (
@@ -217,6 +227,9 @@ func _refresh() -> void:
 func _state_of(of: TreeReconstruction) -> String:
 	if of.is_bark_stale():
 		return tr("The wood beneath the grown bark has changed, so the tree shows tubes.")
+	var moved: String = _work.scene.get_notice(_work.get_recipe())
+	if not moved.is_empty():
+		return moved
 	if not of.has_grown_bark():
 		return tr("The tree shows tubes: no bark has grown on it yet.")
 	if of.growth_pending or _work.get_recipe().get_text() != of.growth_recipe:
@@ -450,6 +463,8 @@ func _on_back_pressed() -> void:
 
 func _on_work_changed() -> void:
 	if is_visible_in_tree() and _recipe == _work.get_recipe():
+		if list.item_count != _recipe.get_features().size():
+			_show_recipe()
 		_select()
 		_show_fields()
 	invalidate()

@@ -9,13 +9,12 @@ class Line:
 	extends RefCounted
 
 	var command: String
-	## What is given, by names, in its order.
+	## What is given, by names, in its order; as it is written, with quotes where it has them.
 	var values: Dictionary[String, String] = {}
 
 	func _init(text: String) -> void:
-		var words: PackedStringArray = text.strip_edges().split(" ", false)
-		# A value between quotes may have blanks.
-		if text.contains('"') or text.strip_edges().begins_with("#") or words.is_empty():
+		var words: PackedStringArray = _split(text.strip_edges())
+		if text.strip_edges().begins_with("#") or words.is_empty():
 			command = text
 			return
 		command = words[0]
@@ -27,6 +26,33 @@ class Line:
 		for key: String in values:
 			text += " %s=%s" % [key, values[key]]
 		return text
+
+	## What is given, without its quotes; empty where it is not.
+	func get_word(name: String) -> String:
+		var word: String = values.get(name, "")
+		if word.length() < 2 or not word.begins_with('"'):
+			return word
+		return word.substr(1, word.length() - 2).replace('""', '"')
+
+	## Gives a word, with quotes where it needs them.
+	func set_word(name: String, word: String) -> void:
+		var plain: bool = not word.is_empty()
+		for mark: String in [" ", '"', "#", "\t", "\n"]:
+			plain = plain and mark not in word
+		values[name] = word if plain else '"%s"' % word.replace('"', '""').replace("\n", " ")
+
+	# A value between quotes may have blanks.
+	static func _split(text: String) -> PackedStringArray:
+		var words: PackedStringArray = []
+		var inside: bool = false
+		for part: String in text.split(" "):
+			if inside:
+				words[-1] += " " + part
+			elif not part.is_empty():
+				words.append(part)
+			if part.count('"') % 2 == 1:
+				inside = not inside
+		return words
 
 
 var lines: Array[Line] = []

@@ -2,6 +2,7 @@
 extends "wood_tool.gd"
 ## Paints burls, ridges, hollows and obstacles on the bark, which grows them (docs/bark.md).
 
+const BarkObstacles := preload("../dock/bark_obstacles.gd")
 const BarkFeatures := preload("../bark/bark_features.gd")
 const BarkPreview := preload("../bark/bark_preview.gd")
 const BarkWords := preload("../bark/bark_words.gd")
@@ -109,6 +110,11 @@ func make_settings() -> Control:
 			values[&"grow"],
 			_on_grow_toggled
 		)
+	)
+	strip.add_button(
+		tr("From the Scene…"),
+		tr("An obstacle that is a node of this scene, such as a fence: move it there."),
+		BarkObstacles.choose.bind(session)
 	)
 	return strip
 
@@ -394,6 +400,10 @@ func _find_places() -> Array[Dictionary]:
 	if of != _places_of:
 		_places_of = of
 		_places = _worker.find_bark(session.tree, text).slice(before)
+		for i: int in features.size():
+			# What is in the scene is moved there.
+			if features[i].values.has("mesh") or features[i].values.has("file"):
+				_places[i] = {}
 	return _places
 
 

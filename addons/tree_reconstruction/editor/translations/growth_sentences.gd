@@ -25,6 +25,11 @@ const PATTERNS: PackedStringArray = [
 	"A hollow that begins at from=%s must end later: give until= more than that.",
 	"An obstacle with shape=mesh needs file=, a Wavefront OBJ file.",
 	"An obstacle with file= needs shape=mesh.",
+	"An obstacle is of a file= or of a mesh=, not of both.",
+	(
+		"The obstacle %s is a mesh of a scene, which is not at hand here. Grow this recipe in the editor,"
+		+ " or give the obstacle a file=, a Wavefront OBJ file."
+	),
 	"There is no recipe %s; there are %s.",
 	"'%s' has no faces: give a mesh as a Wavefront OBJ file.",
 	"This build was made without CGAL and can't grow bark; get one that has it.",

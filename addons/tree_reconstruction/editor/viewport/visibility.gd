@@ -6,10 +6,13 @@ extends RefCounted
 const Session: GDScript = preload("../session.gd")
 const OwnMaterials: GDScript = preload("../../nodes/own_materials.gd")
 const LeafNodes: GDScript = preload("../../nodes/tree_leaf_nodes.gd")
+const LevelNodes: GDScript = preload("../../nodes/tree_level_nodes.gd")
 
 var _session: Session
 var _node: TreeInstance3D
 var _channel: int = 0
+# Whether the further levels of detail are hidden, too.
+var _levels_gone: bool = false
 # Which instances the server was told to show, or to hide: telling it again would make the editor
 # draw.
 var _told: Dictionary[RID, bool] = {}
@@ -23,7 +26,7 @@ func _init(session: Session) -> void:
 func take(node: TreeInstance3D) -> void:
 	if node != _node:
 		if is_instance_valid(_node):
-			_apply(true, true, _node.wind)
+			_apply(true, true, _node.wind, false)
 			_show_channel(0)
 			_node.visibility_changed.disconnect(_forget)
 			_node.tree_entered.disconnect(_forget)
@@ -38,7 +41,9 @@ func take(node: TreeInstance3D) -> void:
 ## To be called once a frame, since the node sets its instances anew on many occasions.
 func update() -> void:
 	if is_instance_valid(_node):
-		_apply(_session.view.mesh, _session.view.leaves, _session.view.wind and _node.wind)
+		var view: Session.ViewState = _session.view
+		var tree: bool = not view.growing
+		_apply(view.mesh and tree, view.leaves and tree, view.wind and _node.wind, view.growing)
 		_show_channel(_session.view.channel)
 
 
@@ -54,7 +59,7 @@ func _forget() -> void:
 	_told.clear()
 
 
-func _apply(bark: bool, leaves: bool, wind: bool) -> void:
+func _apply(bark: bool, leaves: bool, wind: bool, growing: bool) -> void:
 	if not _node.is_inside_tree():
 		return
 	var seen: bool = _node.is_visible_in_tree()
@@ -62,10 +67,22 @@ func _apply(bark: bool, leaves: bool, wind: bool) -> void:
 	var foliage: LeafNodes = _node.get(&"_foliage")
 	for bearer: GeometryInstance3D in foliage.nodes:
 		_set_up(bearer, seen and leaves, wind)
+	if growing or _levels_gone:
+		_levels_gone = growing
+		var levels: LevelNodes = _node.get(&"_levels")
+		var parts: Array[GeometryInstance3D] = levels.get_barks()
+		for of_level: LeafNodes in levels.get_foliage():
+			parts.append_array(of_level.nodes)
+		for part: GeometryInstance3D in parts:
+			_tell(part, seen and not _levels_gone)
 
 
 func _set_up(instance: GeometryInstance3D, seen: bool, wind: bool) -> void:
+	_tell(instance, seen)
+	OwnMaterials.tell(instance, &"tree_wind", 1.0 if wind else 0.0)
+
+
+func _tell(instance: GeometryInstance3D, seen: bool) -> void:
 	if _told.get(instance.get_instance()) != seen:
 		_told[instance.get_instance()] = seen
 		RenderingServer.instance_set_visible(instance.get_instance(), seen)
-	OwnMaterials.tell(instance, &"tree_wind", 1.0 if wind else 0.0)
