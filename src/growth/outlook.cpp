@@ -18,8 +18,8 @@ constexpr int kTilts = 4;  // of a plane between two faces, to the one that leav
 
 // With corners that move by d at most, a face's cross product of edges a and b becomes another one by no more
 // than D = 2 d (|a| + |b|) + 4 d^2: that d, metres, with which D is `spare`.
-double way_of(const Outlook::Scratch::Triangle& one, double spare) {
-    return 0.25 * (std::sqrt(one.around * one.around + 4.0 * spare) - one.around);
+double way_of(double around, double spare) {
+    return 0.25 * (std::sqrt(around * around + 4.0 * spare) - around);
 }
 
 // Metres that all corners may move until two faces with a common edge may fold onto one another. Their
@@ -30,7 +30,7 @@ double hinge_room(const Outlook::Scratch::Triangle& p, const Outlook::Scratch::T
     const double half_fold[2] = {std::sqrt(0.5 * (1.0 + kFold)), std::sqrt(0.5 * (1.0 - kFold))};
     const double half[2] = {std::sqrt(0.5 * (1.0 + cosine)), std::sqrt(0.5 * (1.0 - cosine))};
     const double sine = std::min(half_fold[1] * half[0] - half_fold[0] * half[1], 1.0 - kLeft);
-    return std::min(way_of(p, p.area * sine), way_of(q, q.area * sine));
+    return std::min(way_of(p.around, p.area * sine), way_of(q.around, q.area * sine));
 }
 
 // Until two faces with one common corner may meet elsewhere, where some plane through it lies between them.
@@ -145,28 +145,35 @@ DVec3 Outlook::gather(Vertex vertex, Scratch& scratch) const {
 // A face's cosine to the mean stays above kGraph while D is below |a x b| (cosine - kGraph) / (1 + kGraph).
 double Outlook::flat(Vertex vertex, double step, Scratch& scratch) const {
     const DVec3 mean = gather(vertex, scratch);
-    scratch.triangles.clear();
     double room = reach_;
-    bool graph = true;
     for (const std::vector<Face>* faces : {&scratch.ring, &scratch.near})
         for (const Face face : *faces) {
-            Scratch::Triangle& one = scratch.triangles.emplace_back(triangle(face));
-            const DVec3 a = one.corners[1] - one.corners[0], b = one.corners[2] - one.corners[0];
+            Vertex v[3];
+            surface_.corners(face, v);
+            const DVec3 a = surface_.place(v[1]) - surface_.place(v[0]),
+                        b = surface_.place(v[2]) - surface_.place(v[0]);
             const DVec3 across = glm::cross(a, b);
-            one.area = glm::length(across);
-            if (!(kLeft * one.area > least_)) return -1.0;
-            one.around = glm::length(a) + glm::length(b);
-            const double spare = (glm::dot(across, mean) - kGraph * one.area) / (1.0 + kGraph);
-            graph &= spare > 0.0;
-            if (graph) room = std::min(room, way_of(one, spare));
+            const double area = glm::length(across);
+            if (!(kLeft * area > least_)) return -1.0;
+            const double spare = (glm::dot(across, mean) - kGraph * area) / (1.0 + kGraph);
+            if (!(spare > 0.0)) return flat_by_pairs(step, scratch);
+            room = std::min(room, way_of(glm::length(a) + glm::length(b), spare));
         }
-    return graph ? room : flat_by_pairs(step, scratch);
+    return room;
 }
 
 // On thin wood a ring's neighbours face all ways; then each pair of faces is asked how long it stays apart.
 double Outlook::flat_by_pairs(double step, Scratch& scratch) const {
-    const double enough = kLooksAhead * step;
-    double room = std::min(enough, reach_);
+    scratch.triangles.clear();
+    for (const std::vector<Face>* faces : {&scratch.ring, &scratch.near})
+        for (const Face face : *faces) {
+            Scratch::Triangle& one = scratch.triangles.emplace_back(triangle(face));
+            const DVec3 a = one.corners[1] - one.corners[0], b = one.corners[2] - one.corners[0];
+            one.area = glm::length(glm::cross(a, b));
+            if (!(kLeft * one.area > least_)) return -1.0;
+            one.around = glm::length(a) + glm::length(b);
+        }
+    double room = std::min(kLooksAhead * step, reach_);
     const size_t ring = scratch.ring.size(), all = scratch.triangles.size();
     std::vector<std::pair<uint32_t, uint32_t>>& far = scratch.pairs;
     far.clear();
