@@ -12,12 +12,10 @@ namespace treerec::growth {
 
 namespace {
 
-constexpr double kCell = 1.5;      // of the longest edge
-constexpr double kReach = 0.5;     // of the longest edge
-constexpr double kMargin = 0.1;    // of the longest edge
-constexpr double kGap = 1e-3;      // of the longest edge
-constexpr double kTouch = 1e-9;    // metres between faces that share a corner
-constexpr double kFold = -0.9976;  // cosine between the normals of two faces 4 degrees apart
+constexpr double kCell = 2.5;    // of the longest edge
+constexpr double kReach = 0.5;   // of the longest edge
+constexpr double kMargin = 0.1;  // of the longest edge
+constexpr double kGap = 1e-3;    // of the longest edge
 // Of the reach, squared: twice the area of the least face.
 constexpr double kLeastFace = 1e-7;
 constexpr double kSameSide =
@@ -57,6 +55,7 @@ bool Contact::holds(Face face) const {
 void Contact::list(Face face, const DVec3& normal) {
     FaceCell& cell = surface_.faces[face];
     cell.normal = normal;
+    surface_.measure(face);
     if (cell.listed && holds(face)) return;
     if (cell.listed) grid_.remove(face, cell.middle);
     Vertex v[3];
@@ -99,8 +98,9 @@ void Contact::look_ahead() {
             if (mesh.is_removed(v)) continue;
             Cell& cell = surface_.cells[v];
             if (cell.tissue == Tissue::kApical || cell.velocity == DVec3(0.0)) continue;
-            if (cell.flat_until < odometer_) cell.flat_until = odometer_ - most_ + outlook_.flat(v, *scratch);
-            if (cell.safe_until < odometer_) cell.safe_until = until(outlook_.clear(v, *scratch));
+            if (cell.flat_until < odometer_)
+                cell.flat_until = odometer_ - most_ + outlook_.flat(v, most_, *scratch);
+            if (cell.safe_until < odometer_) cell.safe_until = until(outlook_.clear(v, most_, *scratch));
         }
         const std::lock_guard lock(scratches_mutex_);
         scratches_.push_back(std::move(scratch));
@@ -121,6 +121,7 @@ void Contact::follow() {
             const Face face(static_cast<uint32_t>(i));
             if (mesh.is_removed(face)) continue;
             surface_.faces[face].normal = surface_.normal_of(face);
+            surface_.measure(face);
             if (!holds(face)) gone[begin / kGrain].push_back(face);
         }
     });
@@ -370,8 +371,7 @@ Hold Contact::check_far(const Change& change) {
         Vertex corners[3];
         surface_.corners(face, corners);
         close_.push_back(
-            {surface_.box(face),
-             {surface_.place(corners[0]), surface_.place(corners[1]), surface_.place(corners[2])}});
+            {cell.box, {surface_.place(corners[0]), surface_.place(corners[1]), surface_.place(corners[2])}});
     });
     leave_own_sheet();
     for (size_t i = 0; i < found_.size(); i++)

@@ -84,6 +84,9 @@ struct Box {
 
 struct FaceCell {
     DVec3 normal{0.0};   // unit, outwards
+    Box box;             // of its corners,
+    DVec3 centre{0.0};   // their middle
+    double reach = 0.0;  // and metres from there to the farthest of them
     DVec3 middle{0.0};   // of the ball that it is listed by,
     double round = 0.0;  // and its radius, metres
     uint32_t stamp = 0;
@@ -112,29 +115,27 @@ class Surface {
         v[1] = mesh.target(mesh.next(h));
         v[2] = mesh.source(h);
     }
-    Box box(Face f) const {
-        Vertex v[3];
-        corners(f, v);
-        Box box;
-        for (const Vertex corner : v)
-            box.take(place(corner));
-        return box;
-    }
-    // Metres from a face to what lies both in a box and in a ball; never more than it is. Boxes of slanted
-    // faces side by side overlap, where balls about them don't.
-    double least_distance(Face f, const Box& box, const DVec3& middle, double round) const {
+    // Its box, centre and reach from where its corners are now.
+    void measure(Face f) {
         Vertex v[3];
         corners(f, v);
         const DVec3 p[3] = {place(v[0]), place(v[1]), place(v[2])};
-        const DVec3 centre = (p[0] + p[1] + p[2]) / 3.0;
-        double radius = 0.0;
-        Box own;
+        FaceCell& cell = faces[f];
+        cell.centre = (p[0] + p[1] + p[2]) / 3.0;
+        cell.box = Box();
+        double square = 0.0;
         for (const DVec3& corner : p) {
-            const DVec3 off = corner - centre;
-            radius = std::max(radius, glm::dot(off, off));
-            own.take(corner);
+            const DVec3 off = corner - cell.centre;
+            square = std::max(square, glm::dot(off, off));
+            cell.box.take(corner);
         }
-        return std::max(box.distance(own), glm::distance(centre, middle) - std::sqrt(radius) - round);
+        cell.reach = std::sqrt(square);
+    }
+    // Metres from a face as it was measured to what lies both in a box and in a ball; never more than it is.
+    // Boxes of slanted faces side by side overlap, where balls about them don't.
+    double least_distance(Face f, const Box& box, const DVec3& middle, double round) const {
+        const FaceCell& cell = faces[f];
+        return std::max(box.distance(cell.box), glm::distance(cell.centre, middle) - cell.reach - round);
     }
     // Unit; zero for a face without area.
     DVec3 normal_of(Face f) const {

@@ -7,6 +7,8 @@ namespace treerec::growth {
 
 namespace {
 
+constexpr double kLess = 1.0 - 1e-12;  // so much less is less in spite of rounding
+
 // Whether the axis shows more than `gap` between the two sets of points.
 template <int N, int M>
 bool separates(const DVec3& axis, const DVec3 (&p)[N], const DVec3 (&q)[M], double gap) {
@@ -27,33 +29,35 @@ bool separates(const DVec3& axis, const DVec3 (&p)[N], const DVec3 (&q)[M], doub
     return between > 0.0 && between * between > gap * gap * squared;
 }
 
-// Metres between the two sets along the axis; negative where they overlap, and for no axis.
-double gap_along(const DVec3& axis, const DVec3 (&p)[3], const DVec3 (&q)[3]) {
-    const double squared = glm::dot(axis, axis);
-    if (!(squared > 0.0)) return -1.0;
-    const double a[3] = {glm::dot(axis, p[0]), glm::dot(axis, p[1]), glm::dot(axis, p[2])};
+// The larger of `widest` and the metres between the two sets along the axis. p begins at the origin.
+double wider(double widest, const DVec3& axis, const DVec3 (&p)[3], const DVec3 (&q)[3]) {
+    const double a[2] = {glm::dot(axis, p[1]), glm::dot(axis, p[2])};
     const double b[3] = {glm::dot(axis, q[0]), glm::dot(axis, q[1]), glm::dot(axis, q[2])};
-    const double between = std::max(std::min({a[0], a[1], a[2]}) - std::max({b[0], b[1], b[2]}),
-                                    std::min({b[0], b[1], b[2]}) - std::max({a[0], a[1], a[2]}));
-    return between > 0.0 ? between / std::sqrt(squared) : -1.0;
+    const double between = std::max(std::min({0.0, a[0], a[1]}) - std::max({b[0], b[1], b[2]}),
+                                    std::min({b[0], b[1], b[2]}) - std::max({0.0, a[0], a[1]}));
+    if (!(between > 0.0)) return widest;
+    const double squared = glm::dot(axis, axis);
+    // Most axes show less: that is told without a root.
+    if (!(squared > 0.0) || between * between < kLess * (widest * widest * squared)) return widest;
+    return std::max(widest, between / std::sqrt(squared));
 }
 
 }  // namespace
 
-double triangles_apart(const DVec3 (&p_in)[3], const DVec3 (&q_in)[3]) {
+double triangles_apart(const DVec3 (&p_in)[3], const DVec3 (&q_in)[3], double most) {
     const DVec3 p[3] = {DVec3(0.0), p_in[1] - p_in[0], p_in[2] - p_in[0]};
     const DVec3 q[3] = {q_in[0] - p_in[0], q_in[1] - p_in[0], q_in[2] - p_in[0]};
     const DVec3 pe[3] = {p[1] - p[0], p[2] - p[1], p[0] - p[2]};
     const DVec3 qe[3] = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
     const DVec3 pn = glm::cross(pe[0], pe[1]), qn = glm::cross(qe[0], qe[1]);
-    double widest = std::max({0.0, gap_along(pn, p, q), gap_along(qn, p, q)});
-    for (int i = 0; i < 3; i++) {
-        widest = std::max(
-            {widest, gap_along(glm::cross(pn, pe[i]), p, q), gap_along(glm::cross(qn, qe[i]), p, q)});
+    double widest = wider(wider(0.0, pn, p, q), qn, p, q);
+    for (int i = 0; i < 3 && widest < most; i++) {
+        widest = wider(widest, glm::cross(pn, pe[i]), p, q);
+        widest = wider(widest, glm::cross(qn, qe[i]), p, q);
         for (const DVec3& b : qe)
-            widest = std::max(widest, gap_along(glm::cross(pe[i], b), p, q));
+            widest = wider(widest, glm::cross(pe[i], b), p, q);
     }
-    return widest;
+    return std::min(widest, most);
 }
 
 bool triangles_meet(const DVec3 (&p_in)[3], const DVec3 (&q_in)[3], double gap) {
