@@ -3,12 +3,14 @@ extends SceneTree
 ##
 ##     godot --path project --script tests/captures/barks.gd -- TREE PICTURE [LEAVES [PRESET…]]
 ##
-## TREE: a skeleton. LEAVES: the preset whose bark the tree has; PRESETs: all, if none is named.
+## TREE: a skeleton. LEAVES: the preset whose bark the tree has; PRESETs: all, if none is named. One that ends
+## with .recipe is a file of its own; the cases of papers/001 are in paper/, on paper/trunk.swc.
 
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
 const Stage := preload("sketch_stage.gd")
 const _SIZE: Vector2i = Vector2i(420, 640)
 const _SUPERSAMPLING: int = 2
+const _COLUMNS: int = 6
 # The recipe's first line. A tree with thick limbs would take minutes with shorter edges.
 const _EDGES: String = "edges longest=0.045\n"
 # Of the height at which the highest feature stands, that a picture shows.
@@ -38,11 +40,16 @@ func _draw() -> void:
 			presets.append(preset.name)
 	root.add_child(_stage)
 	await process_frame
+	var columns: int = ceili(presets.size() / ceilf(presets.size() / float(_COLUMNS)))
 	var sheet: Image = Image.create_empty(
-		_SIZE.x * presets.size(), _SIZE.y, false, Image.FORMAT_RGB8
+		_SIZE.x * columns, _SIZE.y * ceili(presets.size() / float(columns)), false, Image.FORMAT_RGB8
 	)
 	for i: int in presets.size():
-		var recipe: String = _EDGES + TreeReconstructor.scale_growth_preset(presets[i], tree)
+		var recipe: String = (
+			FileAccess.get_file_as_string(presets[i])
+			if presets[i].ends_with(".recipe")
+			else _EDGES + TreeReconstructor.scale_growth_preset(presets[i], tree)
+		)
 		var grown: TreeReconstruction = maker.grow_bark(tree, recipe)
 		if grown == null:
 			_end(maker.get_error_message())
@@ -52,7 +59,7 @@ func _draw() -> void:
 		sheet.blit_rect(
 			await _look(tree, recipe, maker.find_bark(tree, recipe)),
 			Rect2i(Vector2i.ZERO, _SIZE),
-			Vector2i(i * _SIZE.x, 0)
+			Vector2i(i % columns, i / columns) * _SIZE
 		)
 		print(presets[i])
 	if arguments[1].get_extension() == "jpg":
