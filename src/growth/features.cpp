@@ -79,7 +79,11 @@ void place_feature(Surface& surface, const GrowthPlan& plan, Vertex apex, double
     const AxisPlace base = place_at(branch, feature.along);
     if (feature.kind == Feature::Kind::kHollow) {
         // Depth counts from the bark of the end, and that has not come out to there yet.
-        feature.deepest -= base.radius - bark_radius(plan, base, step);
+        const WoodSections wood(plan);
+        const auto bark = [&](double when) {
+            return wood.at(feature.branch, base, when).radius(feature.direction);
+        };
+        feature.deepest -= bark(plan.steps) - bark(step);
         feature.rate = std::max(feature.deepest, 0.0) / std::max(feature.last_step - step, kFewSteps);
         feature.placed = true;
         return;
