@@ -107,6 +107,10 @@ double BranchSections::share(double along, double round) const {
     return share(height(along), round);
 }
 
+double pace_of(double share) {
+    return 1.0 + (share - 1.0) / (1.0 - kRound);
+}
+
 WoodSection::WoodSection(double radius, const BranchSections* sections, const AxisPlace& place, double age,
                          const DVec3& x)
     : radius_(radius), sections_(sections) {
@@ -132,7 +136,7 @@ double WoodSection::radius(const DVec3& off) const {
 }
 
 double WoodSection::pace(const DVec3& off) const {
-    return is_round() || !(age_ > 0.0) ? 1.0 : 1.0 + (share(off) - 1.0) / (1.0 - kRound);
+    return is_round() || !(age_ > 0.0) ? 1.0 : pace_of(share(off));
 }
 
 WoodSections::WoodSections(const GrowthPlan& plan) : plan_(plan), coordinates_(plan.branches.size()) {

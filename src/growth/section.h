@@ -49,6 +49,9 @@ class BranchSections {
     std::vector<Row> rows_;
 };
 
+// How many times as fast as round wood grows what is to have this share of its radius.
+double pace_of(double share);
+
 // Wood at one place of a branch, at one time.
 class WoodSection {
   public:
