@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kMouthSides = 32, kPostSides = 16, kWireSides = 8;
 constexpr double kMouthDepth = 0.15;  // of the radius at the end: from where on outwards bark decays
-constexpr double kFades = 4.0;        // radii below an open end, from where on wood becomes round as the tube is
-constexpr double kSeed = 1.7;         // longest edges about the seed that must be free
+constexpr double kFades = 4.0;  // radii below an open end, from where on wood becomes round as the tube is
+constexpr double kSeed = 1.7;   // longest edges about the seed that must be free
 
 struct Spot {
-    int32_t branch = 0;  // of the plan
-    AxisPlace axis;      // there
-    DVec3 out{0.0};      // unit, from the axis
-    double radius = 0.0; // metres, of the wood towards there
+    int32_t branch = 0;   // of the plan
+    AxisPlace axis;       // there
+    DVec3 out{0.0};       // unit, from the axis
+    double radius = 0.0;  // metres, of the wood towards there
 };
 
 // what: "A burl", for the sentence that tells why there is none.
@@ -88,8 +88,7 @@ Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
                     corner += *wanted.at;
         return triangles;
     }
-    const DVec3 middle =
-        wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.radius + wanted.gap);
+    const DVec3 middle = wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.radius + wanted.gap);
     const DVec3 across = glm::cross(spot.axis.direction, spot.out);
     // Unless told: posts stand along the branch, wires run across it, sheets and boxes face it, rings go
     // around it.

@@ -25,7 +25,7 @@ constexpr double kBeside = 1.6;     // radii of a branch about it in which its p
 constexpr double kNear = 1.5;       // where it is not farther from that bark than so many of the parent's
 constexpr double kLeastWood = 1.5;  // longest edges: the radius of wood whose lumps can be shown
 constexpr double kHollowFrom = 0.75, kHollowUntil = 0.95;
-constexpr double kTolerance = 0.015;  // shares of the radius: what sections may leave out
+constexpr double kTolerance = 0.03;  // shares of the radius: what sections may leave out
 constexpr double kLeastPace = 0.1;
 constexpr double kMostGrowth = 20.0;  // that a recipe takes
 

@@ -121,9 +121,9 @@ void take_section(GrowthRecipe& recipe, const EditArguments& arguments) {
         section.radii.push_back(*radius);
     }
     if (section.radii.size() < kFewestRadii || section.radii.size() > kMostRadii)
-        throw Error("A section has " + std::to_string(section.radii.size()) +
-                    " radii, where it needs from " + std::to_string(kFewestRadii) + " to " +
-                    std::to_string(kMostRadii) + ": one in each of so many equal directions.");
+        throw Error("A section has " + std::to_string(section.radii.size()) + " radii, where it needs from " +
+                    std::to_string(kFewestRadii) + " to " + std::to_string(kMostRadii) +
+                    ": one in each of so many equal directions.");
     recipe.sections.push_back(std::move(section));
 }
 
@@ -231,9 +231,8 @@ const std::vector<GrowthCommand>& growth_commands() {
          hollow_parameters(), take_hollow},
         {"section", "The outline of wood that is not round; sections of a branch go over into one another.",
          with_place(
-             0.0,
-             {text_parameter("radii", {"1.2,0.8,1.2,0.8"},
-                             "shares of the branch's radius in equal directions, the first at around")}),
+             0.0, {text_parameter("radii", {"1.2,0.8,1.2,0.8"},
+                                  "shares of the branch's radius in equal directions, the first at around")}),
          take_section},
         {"obstacle", "Something that does not yield; bark stops at it, swells and grows over it.",
          obstacle_parameters(), take_obstacle},

@@ -33,7 +33,7 @@ class BranchSections {
 
     // Between which rows a height is: for many directions at one height.
     struct Height {
-        size_t row = 0;                                      // the lower one
+        size_t row = 0;                                         // the lower one
         double low = 1.0, high = 0.0, leave = 0.0, come = 0.0;  // weights of both, and of their slopes
     };
     Height height(double along) const;

@@ -13,17 +13,18 @@ namespace treerec::growth {
 
 namespace {
 
-constexpr double kDirection = 1.2;  // longest edges from one direction to the next, about,
+constexpr double kDirection = 1.2;   // longest edges from one direction to the next, about,
 constexpr double kOfColumns = 0.75;  // and of the map's columns no more
 constexpr double kFewest = 8.0, kMost = 32.0;
 constexpr double kApart = 0.5, kApartEdges = 1.5;  // radii, and longest edges, between sections
 constexpr double kMostSections = 160.0;
 // Penalties where lengths are told in radii: of bends around, slopes along, and of what is not a circle. They
 // leave waves of some 10 to a round, and along of some 2 or 10 radii.
-constexpr double kBend = 1e-4, kSlope = 0.1, kLongSlope = 3.0, kRound = 2e-3;
-constexpr double kCircle = 0.01;                 // of a circle's radius and middle
+constexpr double kBend = 1e-4, kSlope = 0.1, kLongSlope = 30.0, kRound = 2e-3;
+constexpr double kCircle = 0.01;                  // of a circle's radius and middle
 constexpr double kSmoother[] = {0.1, 1.0, 10.0};  // times bends and slopes
-constexpr double kLeastGain = 0.12;
+constexpr double kLeastGain = 0.12, kLongGain = 0.6;
+constexpr double kNearGain = 0.05, kNear = 4.0;  // of what lies so many radii about a section
 constexpr double kFewCells = 64.0;
 constexpr double kHuber = 2.0, kTukey = 6.0;  // deviations
 constexpr int kHuberTurns = 4, kTukeyTurns = 2;
@@ -118,10 +119,14 @@ class LeastSquares {
 class Fit {
   public:
     Fit(const BarkMap& map, double longest, Along along, const Progress* progress)
-        : map_(map), progress_(progress), slope_(along == Along::kLong ? kLongSlope : kSlope) {
+        : map_(map),
+          progress_(progress),
+          slope_(along == Along::kLong ? kLongSlope : kSlope),
+          least_(along == Along::kLong ? kLongGain : kLeastGain) {
         std::vector<double> radii = map.radius;
         wood_ = quantile(radii, 0.5);
-        const double columns = static_cast<double>(map.columns), length = map.step * static_cast<double>(map.rows);
+        const double columns = static_cast<double>(map.columns),
+                     length = map.step * static_cast<double>(map.rows);
         directions_ = static_cast<size_t>(
             std::clamp(std::round(std::min(2.0 * kPi * wood_ / (kDirection * longest), kOfColumns * columns)),
                        kFewest, kMost));
@@ -138,21 +143,32 @@ class Fit {
     SectionFit fit() {
         SectionFit result;
         if (static_cast<double>(cells_.size()) < kFewCells) return result;
-        double best = kLeastGain, smoother = 0.0;
+        double best = least_, smoother = 0.0;
+        std::vector<std::array<double, 2>> near_best;
         for (const double one : kSmoother) {
             const double gain = cross_validated(one);
             if (gain <= best) continue;
             best = gain;
             smoother = one;
+            near_best = near_;
         }
         if (!(smoother > 0.0)) return result;
         result.gain = best;
         const std::vector<double> shares = fit_to(cells_, smoother);
+        const size_t reach = static_cast<size_t>(std::ceil(kNear * wood_ / apart_));
         for (size_t i = 0; i < count_; i++) {
+            // Where a branch is seen badly what others of its parts gain tells nothing.
+            double before = 0.0, after = 0.0;
+            for (size_t k = i - std::min(i, reach); k <= std::min(i + reach, count_ - 1); k++) {
+                before += near_best[k][0];
+                after += near_best[k][1];
+            }
+            const bool nearer = after < (1.0 - kNearGain) * before;
             FittedSection section;
             section.along = map_.begin + static_cast<double>(i) * apart_;
             for (size_t d = 0; d < directions_; d++)
-                section.shares.push_back(std::clamp(1.0 + shares[i * directions_ + d], kLeastShare, kMostShare));
+                section.shares.push_back(
+                    nearer ? std::clamp(1.0 + shares[i * directions_ + d], kLeastShare, kMostShare) : 1.0);
             result.sections.push_back(std::move(section));
         }
         return result;
@@ -283,7 +299,8 @@ class Fit {
     }
 
     // Half of the bark, in blocks like a chessboard's, tells of the other half.
-    double cross_validated(double smoother) const {
+    double cross_validated(double smoother) {
+        near_.assign(count_, {0.0, 0.0});
         std::vector<size_t> halves[2];
         for (const size_t cell : cells_)
             halves[(cell / map_.columns / kBlock + cell % map_.columns / kBlock) % 2].push_back(cell);
@@ -291,8 +308,14 @@ class Fit {
         for (int half = 0; half < 2; half++) {
             const std::vector<double> shares = fit_to(halves[half], smoother);
             for (const size_t cell : halves[1 - half]) {
-                before += weight_of(cell) * std::abs(value_[cell]);
-                after += weight_of(cell) * std::abs(value_[cell] - sum(taps_of(cell), shares));
+                const double round = weight_of(cell) * std::abs(value_[cell]);
+                const double fitted = weight_of(cell) * std::abs(value_[cell] - sum(taps_of(cell), shares));
+                const auto [low, up] = between(cell / map_.columns);
+                std::array<double, 2>& near = near_[up < 0.5 ? low : low + 1];
+                near[0] += round;
+                near[1] += fitted;
+                before += round;
+                after += fitted;
             }
         }
         return before > 0.0 ? 1.0 - after / before : 0.0;
@@ -300,22 +323,24 @@ class Fit {
 
     const BarkMap& map_;
     const Progress* progress_;
-    const double slope_;
+    const double slope_, least_;
     double wood_ = 0.0;  // metres
     size_t directions_ = 0, count_ = 0;
     double apart_ = 0.0;  // metres, of sections
     std::vector<size_t> cells_;
-    std::vector<double> value_;  // by cell: height over the radius there
+    std::vector<std::array<double, 2>> near_;  // by section: what cells are off round wood, and off the fit
+    std::vector<double> value_;                // by cell: height over the radius there
 };
 
 // Sections between which the one of two indices is told least well by a straight way, and by how much.
 std::pair<size_t, double> farthest(const std::vector<FittedSection>& sections, size_t low, size_t high) {
     std::pair<size_t, double> worst{low, 0.0};
     for (size_t i = low + 1; i < high; i++) {
-        const double t = (sections[i].along - sections[low].along) / (sections[high].along - sections[low].along);
+        const double t =
+            (sections[i].along - sections[low].along) / (sections[high].along - sections[low].along);
         for (size_t d = 0; d < sections[i].shares.size(); d++) {
-            const double off =
-                std::abs(sections[i].shares[d] - glm::mix(sections[low].shares[d], sections[high].shares[d], t));
+            const double off = std::abs(sections[i].shares[d] -
+                                        glm::mix(sections[low].shares[d], sections[high].shares[d], t));
             if (off > worst.second) worst = {i, off};
         }
     }
@@ -359,9 +384,9 @@ std::vector<double> heights_of(const BarkMap& map, const std::vector<FittedSecti
         const BranchSections::Height height = shape.height(map.along(row));
         for (size_t column = 0; column < map.columns; column++)
             heights[map.cell(row, column)] =
-                map.radius[row] * (shape.share(height, (static_cast<double>(column) + 0.5) /
-                                                           static_cast<double>(map.columns)) -
-                                   1.0);
+                map.radius[row] *
+                (shape.share(height, (static_cast<double>(column) + 0.5) / static_cast<double>(map.columns)) -
+                 1.0);
     }
     return heights;
 }

@@ -14,9 +14,9 @@ namespace {
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
 constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
-constexpr double kTension = 0.15;  // and beside wood of what it stands out of its neighbours
+constexpr double kTension = 0.15;       // and beside wood of what it stands out of its neighbours
 constexpr int kPieces = 2, kTries = 6;  // to find where wood that is not round ends
-constexpr double kFlatEnd = 4.0;   // a radius over how far its wood goes on beyond the axis's foot or end
+constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's foot or end
 
 // How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
 // axis, and below its foot and above a closed end as in a flat bowl.
@@ -86,7 +86,8 @@ double way_to_bark(const WoodSection& wood, const Stand& stand, double excess, d
 double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
                      const WoodSection& wood, int step) {
     if (!plan.follow) return axis.speed;
-    const double usual = std::max(wood.pace(stand.off), 1.0) * axis.radius / std::max(plan.steps - axis.step, 1.0);
+    const double usual =
+        std::max(wood.pace(stand.off), 1.0) * axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
     const double most = std::max(kCatchUp * usual, 0.5 * young);
     if (!wood.is_round()) return way_to_bark(wood, stand, cell.excess, most);
