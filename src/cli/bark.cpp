@@ -66,7 +66,9 @@ GrowthRecipe with_lumps(const Tree& tree, const GrowthRecipe& recipe, const Poin
     for (const std::string& remark : proposal.remarks)
         std::fprintf(stderr, "%s\n", remark.c_str());
     if (!quiet)
-        std::fprintf(stderr, "The scan shows %zu burls and %zu hollows.\n", proposal.burls, proposal.hollows);
+        std::fprintf(stderr,
+                     "The scan shows %zu burls, %zu hollows and %zu outlines of wood that is not round.\n",
+                     proposal.burls, proposal.hollows, proposal.sections);
     return read_growth_recipe(tree, recipe.text + proposal.recipe);
 }
 

@@ -81,7 +81,11 @@ void place_feature(Surface& surface, const GrowthPlan& plan, Vertex apex, double
     const AxisPlace base = place_at(branch, feature.along);
     if (feature.kind == Feature::Kind::kHollow) {
         // Depth counts from the bark of the end, and that has not come out to there yet; of a cut, from it.
-        if (!feature.cut) feature.deepest -= base.radius - bark_radius(plan, base, step);
+        const WoodSections wood(plan);
+        const auto bark = [&](double when) {
+            return wood.at(feature.branch, base, when).radius(feature.direction);
+        };
+        if (!feature.cut) feature.deepest -= bark(plan.steps) - bark(step);
         feature.rate = std::max(feature.deepest, 0.0) / std::max(feature.last_step - step, kFewSteps);
         feature.last_step = std::max(feature.last_step, step + (feature.cut ? 1.0 : 0.0));
         feature.placed = true;

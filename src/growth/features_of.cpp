@@ -19,12 +19,14 @@ constexpr double kMouthDepth = 0.15;  // of the radius at the end: from where on
 constexpr double kFace = 0.75;        // of the wood's radius when it is cut: of what is dead of a cut face
 constexpr double kFaceDepth = 0.5;    // radii of a cut end that the region of its dead wood reaches in
 constexpr double kBeforeEnd = 1.6;    // longest edges before its end at which a tip is through
-constexpr double kSeed = 1.7;         // longest edges about the seed that must be free
+constexpr double kFades = 4.0;  // radii below an open end, from where on wood becomes round as the tube is
+constexpr double kSeed = 1.7;   // longest edges about the seed that must be free
 
 struct Spot {
-    int32_t branch = 0;  // of the plan
-    AxisPlace axis;      // there
-    DVec3 out{0.0};      // unit, from the axis
+    int32_t branch = 0;   // of the plan
+    AxisPlace axis;       // there
+    DVec3 out{0.0};       // unit, from the axis
+    double radius = 0.0;  // metres, of the wood towards there
 };
 
 // what: "A burl", for the sentence that tells why there is none.
@@ -53,6 +55,7 @@ std::optional<Spot> find_spot(const Tree& tree, const BranchList& list, const Tr
     }
     spot.axis = place_at(grown, along);
     spot.out = BranchCoordinates(grown).direction(along, place.around / 360.0);
+    spot.radius = spot.axis.radius * grown.sections.share(along, place.around / 360.0);
     return spot;
 }
 
@@ -66,8 +69,8 @@ Region mouth_of(const GrowthFeature& wanted, const Spot& spot) {
     Triangles triangles;
     if (wanted.region.empty()) {
         const DVec3 across = glm::cross(spot.axis.direction, spot.out);
-        const DVec3 inside = spot.axis.position + spot.out * (kMouthDepth * spot.axis.radius),
-                    outside = spot.axis.position + spot.out * (4.0 * spot.axis.radius + wanted.height);
+        const DVec3 inside = spot.axis.position + spot.out * (kMouthDepth * spot.radius),
+                    outside = spot.axis.position + spot.out * (4.0 * spot.radius + wanted.height);
         triangles = prism(inside, outside, across * (0.5 * wanted.width),
                           spot.axis.direction * (0.5 * wanted.height), kMouthSides);
     } else {
@@ -101,8 +104,7 @@ Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
     if (wanted.shape == Shape::kMesh) {
         return placed_mesh(wanted);
     }
-    const DVec3 middle =
-        wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.axis.radius + wanted.gap);
+    const DVec3 middle = wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.radius + wanted.gap);
     const DVec3 across = glm::cross(spot.axis.direction, spot.out);
     // Unless told: posts stand along the branch, wires run across it, sheets and boxes face it, rings go
     // around it.
@@ -129,6 +131,25 @@ Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
 }
 
 }  // namespace
+
+void add_sections(const Tree& tree, const BranchList& list, const GrowthRecipe& recipe,
+                  std::vector<std::string>& remarks, TreePlan& planned) {
+    const size_t count = planned.plan.branches.size();
+    std::vector<BranchSections> sections(count);
+    for (const GrowthSection& wanted : recipe.sections)
+        if (const std::optional<Spot> spot =
+                find_spot(tree, list, planned, recipe, wanted, "A section", remarks))
+            sections[static_cast<size_t>(spot->branch)].add(spot->axis.along, wanted.around / 360.0,
+                                                            wanted.radii);
+    for (size_t b = 0; b < count; b++) {
+        GrowthBranch& branch = planned.plan.branches[b];
+        if (branch.ends_open && !sections[b].empty()) {
+            const AxisPlace& end = branch.axis.back();
+            sections[b].fade(end.along - kFades * end.radius, end.along);
+        }
+        branch.sections = std::move(sections[b]);
+    }
+}
 
 std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const TreePlan& planned,
                                  const GrowthRecipe& recipe, std::vector<std::string>& remarks) {

@@ -11,6 +11,9 @@
 
 namespace treerec::growth {
 
+// Takes the recipe's sections into the plan, before the others are asked.
+void add_sections(const Tree& tree, const BranchList& list, const GrowthRecipe& recipe,
+                  std::vector<std::string>& remarks, TreePlan& planned);
 // What has no place on this tree is left out, with a sentence among the remarks. Both throw Error for files
 // that can't be read.
 std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const TreePlan& planned,

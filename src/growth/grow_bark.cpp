@@ -97,6 +97,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
     const BranchList list = list_branches(tree);
     TreePlan planned = plan_tree(tree, list, recipe.longest, recipe.shortest, recipe.steps);
     planned.plan.twist = recipe.twist;
+    add_sections(tree, list, recipe, result.remarks, planned);
     result.steps = planned.plan.steps;
     Obstacles obstacles(kObstacleCell * recipe.longest);
     add_obstacles(tree, list, planned, recipe, result.remarks, obstacles);

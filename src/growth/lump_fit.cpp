@@ -37,6 +37,29 @@ constexpr double kRim = 0.6;                     // of a dent's rim that the sca
 // together about the wood.
 constexpr double kYounger = 0.5 * (1.0 + kLumpFrom);
 
+// Calls take(cell, share of the height) for all cells within a lump, known or not.
+template <typename Take>
+void each_cell_of(const BarkMap& map, const Lump& lump, Take take) {
+    const double middle = (lump.along - map.begin) / map.step - 0.5;
+    const double reach = lump.radius / map.step;
+    const auto low = static_cast<size_t>(std::max(std::ceil(middle - reach), 0.0));
+    const double high = std::min(std::floor(middle + reach), static_cast<double>(map.rows) - 1.0);
+    if (high < 0.0) return;
+    const double columns = static_cast<double>(map.columns);
+    for (size_t row = low; row <= static_cast<size_t>(high); row++) {
+        const double along = map.along(row) - lump.along;
+        const double wide = 2.0 * kYounger * map.radius[row];
+        for (size_t column = 0; column < map.columns; column++) {
+            const double round =
+                std::remainder((static_cast<double>(column) + 0.5) / columns - lump.around, 1.0);
+            const double across = wide * std::sin(kPi * std::abs(round));
+            const double share =
+                burl_growth(lump.radius, lump.inner, 1.0, std::sqrt(along * along + across * across));
+            if (share > 0.0) take(map.cell(row, column), share);
+        }
+    }
+}
+
 class Fit {
   public:
     Fit(const BarkMap& map, double longest, const Progress* progress)
@@ -65,27 +88,9 @@ class Fit {
     double least_size() const { return std::max(kLeastRadius * longest_, kLeastCells * map_.step); }
     size_t rows_within(double metres) const { return static_cast<size_t>(std::ceil(metres / map_.step)); }
 
-    // Calls take(cell, share of the height) for all cells within a lump, known or not.
     template <typename Take>
     void each_cell(const Lump& lump, Take take) const {
-        const double middle = (lump.along - map_.begin) / map_.step - 0.5;
-        const double reach = lump.radius / map_.step;
-        const auto low = static_cast<size_t>(std::max(std::ceil(middle - reach), 0.0));
-        const double high = std::min(std::floor(middle + reach), static_cast<double>(map_.rows) - 1.0);
-        if (high < 0.0) return;
-        const double columns = static_cast<double>(map_.columns);
-        for (size_t row = low; row <= static_cast<size_t>(high); row++) {
-            const double along = map_.along(row) - lump.along;
-            const double wide = 2.0 * kYounger * map_.radius[row];
-            for (size_t column = 0; column < map_.columns; column++) {
-                const double round =
-                    std::remainder((static_cast<double>(column) + 0.5) / columns - lump.around, 1.0);
-                const double across = wide * std::sin(kPi * std::abs(round));
-                const double share =
-                    burl_growth(lump.radius, lump.inner, 1.0, std::sqrt(along * along + across * across));
-                if (share > 0.0) take(map_.cell(row, column), share);
-            }
-        }
+        each_cell_of(map_, lump, take);
     }
 
     // smoothed_: by a Gaussian of one cell. first: apart_ and banned_, too.
@@ -338,6 +343,22 @@ class Fit {
 Lumps fit_lumps(const BarkMap& map, double longest, const Progress* progress) {
     if (map.rows == 0) return {};
     return Fit(map, longest, progress).find();
+}
+
+void take_off(const Lumps& lumps, BarkMap& map) {
+    for (const Lump& lump : lumps.lumps)
+        each_cell_of(map, lump, [&](size_t cell, double share) { map.height[cell] -= share * lump.height; });
+    const double columns = static_cast<double>(map.columns);
+    for (const Dent& dent : lumps.dents)
+        for (size_t row = 0; row < map.rows; row++) {
+            if (std::abs(map.along(row) - dent.along) > 0.5 * dent.length + map.step) continue;
+            for (size_t column = 0; column < map.columns; column++) {
+                const double round =
+                    std::remainder((static_cast<double>(column) + 0.5) / columns - dent.around, 1.0);
+                if (std::abs(round) * columns * map.width(row) < 0.5 * dent.width + map.width(row))
+                    map.height[map.cell(row, column)] = std::numeric_limits<double>::quiet_NaN();
+            }
+        }
 }
 
 }  // namespace treerec::growth

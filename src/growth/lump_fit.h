@@ -31,4 +31,7 @@ struct Lumps {
 // longest: T_s, metres, below which nothing can be shown. Throws Cancelled.
 Lumps fit_lumps(const BarkMap& map, double longest, const Progress* progress);
 
+// The bark without them: lower by its lumps, and not known in its dents.
+void take_off(const Lumps& lumps, BarkMap& map);
+
 }  // namespace treerec::growth

@@ -9,6 +9,8 @@
 #include "geometry/quantile.h"
 #include "growth/bark_map.h"
 #include "growth/lump_fit.h"
+#include "growth/section.h"
+#include "growth/section_fit.h"
 
 namespace treerec {
 
@@ -23,6 +25,8 @@ constexpr double kBeside = 1.6;     // radii of a branch about it in which its p
 constexpr double kNear = 1.5;       // where it is not farther from that bark than so many of the parent's
 constexpr double kLeastWood = 1.5;  // longest edges: the radius of wood whose lumps can be shown
 constexpr double kHollowFrom = 0.75, kHollowUntil = 0.95;
+constexpr double kTolerance = 0.03;  // shares of the radius: what sections may leave out
+constexpr double kLeastPace = 0.1;
 constexpr double kMostGrowth = 20.0;  // that a recipe takes
 
 // What lies below other wood is hidden by it, or its own: not known.
@@ -123,9 +127,20 @@ class Proposer {
         const double apart = recipe_.longest / std::sqrt(quantile(counts, 0.5));
         BarkMap map = map_with(std::max(kFinest * recipe_.longest, kApart * apart));
         leave_out_forks(tree_, list_, planned_, axes_, branch, map);
-        const Lumps found = fit_lumps(map, recipe_.longest, progress_);
+        // What runs along the branch, as flutes and buttresses do, is no row of lumps.
+        BarkMap rest = map;
+        const SectionFit flutes = fit_sections(map, recipe_.longest, Along::kLong, progress_);
+        const std::vector<double> fluted = heights_of(map, flutes.sections);
+        for (size_t cell = 0; cell < fluted.size(); cell++)
+            rest.height[cell] -= fluted[cell];
+        const Lumps found = fit_lumps(rest, recipe_.longest, progress_);
+        take_off(found, map);
+        const SectionFit outline = fit_sections(map, recipe_.longest, Along::kShort, progress_);
+        BranchSections shape;
+        for (const FittedSection& section : thinned(outline.sections, kTolerance))
+            add_section(branch, section, shape);
         for (const Lump& lump : found.lumps)
-            add_burl(branch, lump);
+            add_burl(branch, lump, shape);
         for (const Dent& dent : found.dents)
             add_hollow(branch, dent);
         return true;
@@ -150,13 +165,30 @@ class Proposer {
     }
     void end_line() { proposal_.recipe += line_ + "\n"; }
 
+    void add_section(int32_t branch, const FittedSection& section, BranchSections& shape) {
+        begin_line("section", branch, section.along, 0.0);
+        std::string radii;
+        std::vector<double> shares;
+        const bool round = std::all_of(section.shares.begin(), section.shares.end(),
+                                       [](double share) { return std::abs(share - 1.0) < 0.5 * kTolerance; });
+        for (size_t i = 0; i < (round ? 3 : section.shares.size()); i++) {
+            shares.push_back(round ? 1.0 : std::round(1000.0 * section.shares[i]) / 1000.0);
+            radii += (i > 0 ? "," : "") + number_text(shares.back());
+        }
+        append_word(line_, "radii", radii);
+        end_line();
+        shape.add(section.along, 0.0, shares);
+        proposal_.sections++;
+    }
+
     // Height is k S_c times the steps that are left (papers/001, equation 6).
-    void add_burl(int32_t branch, const Lump& lump) {
+    void add_burl(int32_t branch, const Lump& lump, const BranchSections& shape) {
         const GrowthPlan& plan = planned_.plan;
         const AxisPlace place = place_at(plan.branches[static_cast<size_t>(branch)], lump.along);
         const double age = std::max(plan.steps - place.step, 1.0);
         const double left = plan.steps - std::ceil(place.step + kLumpFrom * age);
-        const double speed = (place.radius - std::min(plan.young, place.radius)) / age;
+        const double pace = std::max(pace_of(shape.share(lump.along, lump.around)), kLeastPace);
+        const double speed = pace * (place.radius - std::min(plan.young, place.radius)) / age;
         const double growth = lump.height / (std::max(left, 1.0) * std::max(speed, 1e-9));
         begin_line("burl", branch, lump.along, lump.around);
         put("radius", lump.radius, 1000.0);

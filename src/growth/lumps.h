@@ -15,7 +15,7 @@ namespace treerec {
 
 struct GrowthProposal {
     std::string recipe;  // a line each, thickest branch first, to be added to the recipe
-    size_t burls = 0, hollows = 0;
+    size_t burls = 0, hollows = 0, sections = 0;
     std::vector<std::string> remarks;  // sentences for the user
 };
 

@@ -50,14 +50,9 @@ AxisPlace next_place(const GrowthBranch& branch, double along, int step) {
     return next.along > along + kCatchUp * pace ? place_at(branch, along + kCatchUp * pace) : next;
 }
 
-namespace {
-
-// 0 where the tip is, 1 at the end.
 double age_of(const GrowthPlan& plan, const AxisPlace& place, double step) {
     return std::clamp((step - place.step) / std::max(plan.steps - place.step, 1.0), 0.0, 1.0);
 }
-
-}  // namespace
 
 DVec3 wood_centre(const GrowthPlan& plan, const AxisPlace& place, double step) {
     return glm::mix(place.pith, place.position, age_of(plan, place, step));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/vec.h"
+#include "growth/section.h"
 
 namespace treerec::growth {
 
@@ -24,6 +25,7 @@ struct GrowthBranch {
     double parent_along = 0.0;    // metres of the parent's axis, where it leaves it
     std::vector<AxisPlace> axis;  // two places or more
     bool ends_open = false;       // a thinner tube goes on from the tip
+    BranchSections sections;      // none: it is round
 
     double first_step() const { return axis.front().step; }
     double last_step() const { return axis.back().step; }
@@ -46,9 +48,11 @@ AxisPlace tip_at(const GrowthBranch& branch, double step);
 // Where a tip goes in a step that has come `along` metres: where it should be by then. One that was held up
 // comes after at twice its pace.
 AxisPlace next_place(const GrowthBranch& branch, double along, int step);
+// 0 where the tip is, 1 at the end.
+double age_of(const GrowthPlan& plan, const AxisPlace& place, double step);
 // Where the middle of plain wood at `place` of a branch is at a step: at first the pith, in the end the axis.
 DVec3 wood_centre(const GrowthPlan& plan, const AxisPlace& place, double step);
-// Metres: how thick plain wood at `place` of a branch is at a step.
+// Metres: how thick plain round wood at `place` of a branch is at a step.
 double bark_radius(const GrowthPlan& plan, const AxisPlace& place, double step);
 
 }  // namespace treerec::growth

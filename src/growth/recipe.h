@@ -4,6 +4,7 @@
 //     edges longest=0.035 shortest=0.015
 //     burl along=1.3 around=90 radius=0.3 inner=0.16 growth=0.5
 //     hollow along=0.9 width=0.2 height=0.5 depth=0.15
+//     section along=0.2 radii=1.3,0.8,1.3,0.8,1.3,0.8
 //     obstacle shape=post around=180 gap=-0.02 radius=0.05
 #pragma once
 
@@ -76,6 +77,11 @@ struct GrowthCuts {
     GrowthLip lip;
 };
 
+// What the wood's outline is there.
+struct GrowthSection : GrowthPlace {
+    std::vector<double> radii;  // shares of the axis's radius in equal directions, the first at `around`
+};
+
 struct GrowthRecipe {
     double longest = 0.035;   // T_s, metres
     double shortest = 0.015;  // T_m, metres
@@ -84,7 +90,8 @@ struct GrowthRecipe {
     std::vector<GrowthFeature> features;
     std::vector<GrowthObstacle> obstacles;
     std::optional<GrowthCuts> cuts;  // that heal
-    std::string text;                // its lines as found on this tree
+    std::vector<GrowthSection> sections;
+    std::string text;  // its lines as found on this tree
 };
 
 // How a written recipe begins, before the number of its version.

@@ -12,6 +12,8 @@ namespace {
 constexpr double kLeastEdge = 0.002, kLargestEdge = 1.0;  // metres
 constexpr double kFarthest = 1000.0;                      // metres
 constexpr double kLargest = 10.0;                         // metres, of lumps and mouths
+constexpr size_t kFewestRadii = 3, kMostRadii = 64;       // of a section
+constexpr double kLeastRadius = 0.2, kLargestRadius = 5.0;
 
 void take_edges(GrowthRecipe& recipe, const EditArguments& arguments) {
     recipe.longest = arguments.number("longest");
@@ -118,6 +120,24 @@ void take_obstacle(GrowthRecipe& recipe, const EditArguments& arguments) {
         throw Error("An obstacle is of a file= or of a mesh=, not of both.");
     obstacle.lip = lip_of(arguments);
     recipe.obstacles.push_back(obstacle);
+}
+
+void take_section(GrowthRecipe& recipe, const EditArguments& arguments) {
+    GrowthSection section;
+    static_cast<GrowthPlace&>(section) = place_of(arguments);
+    for (const std::string_view word : split(arguments.text("radii"), ',')) {
+        const std::optional<double> radius = read_number(word);
+        if (!radius || !(*radius >= kLeastRadius && *radius <= kLargestRadius))
+            throw Error("radii has " + quote_word(word) + ", where shares of the branch's radius from " +
+                        number_text(kLeastRadius) + " to " + number_text(kLargestRadius) +
+                        " belong, with commas between them: radii=1.2,0.9,1.1.");
+        section.radii.push_back(*radius);
+    }
+    if (section.radii.size() < kFewestRadii || section.radii.size() > kMostRadii)
+        throw Error("A section has " + std::to_string(section.radii.size()) + " radii, where it needs from " +
+                    std::to_string(kFewestRadii) + " to " + std::to_string(kMostRadii) +
+                    ": one in each of so many equal directions.");
+    recipe.sections.push_back(std::move(section));
 }
 
 std::vector<Parameter> with_place(double along, std::vector<Parameter> rest) {
@@ -240,6 +260,11 @@ const std::vector<GrowthCommand>& growth_commands() {
          hollow_parameters(), take_hollow},
         {"cuts", "Callus that grows over stubs and other ends where wood was cut.", cuts_parameters(),
          take_cuts},
+        {"section", "The outline of wood that is not round; sections of a branch go over into one another.",
+         with_place(
+             0.0, {text_parameter("radii", {"1.2,0.8,1.2,0.8"},
+                                  "shares of the branch's radius in equal directions, the first at around")}),
+         take_section},
         {"obstacle", "Something that does not yield; bark stops at it, swells and grows over it.",
          obstacle_parameters(), take_obstacle},
     };

@@ -14,8 +14,9 @@ namespace {
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
 constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
-constexpr double kTension = 0.15;  // and beside wood of what it stands out of its neighbours
-constexpr double kFlatEnd = 4.0;   // a radius over how far its wood goes on beyond the axis's foot or end
+constexpr double kTension = 0.15;       // and beside wood of what it stands out of its neighbours
+constexpr int kPieces = 2, kTries = 6;  // to find where wood that is not round ends
+constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's foot or end
 
 // How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
 // axis, and below its foot and above a closed end as in a flat bowl.
@@ -41,14 +42,55 @@ Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPla
     return stand;
 }
 
+// Metres over the length of `stand.normal`, which is told in it, to where it first comes to bark that is not
+// round, and of it no more than `most`. excess: metres that bark there lies farther outside. Along a radius
+// alone valleys would be left behind, where what is on both sides grows towards one another.
+double way_to_bark(const WoodSection& wood, const Stand& stand, double excess, double most) {
+    const auto outside = [&](double t) {
+        const DVec3 at = stand.off + t * stand.normal;
+        return glm::length(at) - wood.radius(at) - excess;
+    };
+    double low = 0.0, high = 0.0, below = outside(0.0), above = below;
+    if (below >= 0.0) return 0.0;
+    for (int piece = 1; piece <= kPieces; piece++) {
+        high = most * piece / kPieces;
+        above = outside(high);
+        if (above >= 0.0) break;
+        low = high;
+        below = above;
+    }
+    if (above < 0.0) return most;
+    // The Illinois variant of regula falsi (Dowell and Jarratt 1971).
+    double at = high;
+    int side = 0;
+    for (int i = 0; i < kTries; i++) {
+        at = (low * above - high * below) / (above - below);
+        const double here = outside(at);
+        if (here < 0.0) {
+            low = at;
+            below = here;
+            if (side < 0) above *= 0.5;
+            side = -1;
+        } else {
+            high = at;
+            above = here;
+            if (side > 0) below *= 0.5;
+            side = 1;
+        }
+    }
+    return at;
+}
+
 // S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The
 // pith need not lie on the axis: what grows from it towards the axis has farther to go.
 double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
-                     int step) {
+                     const WoodSection& wood, int step) {
     if (!plan.follow) return axis.speed;
-    const double usual = axis.radius / std::max(plan.steps - axis.step, 1.0);
+    const double usual =
+        std::max(wood.pace(stand.off), 1.0) * axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
     const double most = std::max(kCatchUp * usual, 0.5 * young);
+    if (!wood.is_round()) return way_to_bark(wood, stand, cell.excess, most);
     const double bark = bark_radius(plan, axis, step + 1.0) + cell.excess;
     const double inside = bark * bark - glm::dot(stand.off, stand.off);
     if (!(inside > 0.0)) return 0.0;
@@ -105,13 +147,14 @@ double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool call
 
 // Equation 8, as far as the hollow may reach.
 DVec3 decay_velocity(const Surface& surface, Vertex v, const Feature& hollow, const DVec3& from_axis,
-                     double bark) {
+                     const WoodSection& wood) {
     const double sinks = std::min(hollow.rate, hollow.deepest - surface.cells[v].sunk);
     if (!(sinks > 0.0)) return DVec3(0.0);
     const DVec3 velocity = -sinks * vertex_normal(surface, v);
     // What goes away from the axis comes nearer to the bark on another side.
     const bool outwards = glm::dot(velocity, from_axis) > 0.0;
-    return outwards && glm::length(from_axis + velocity) > bark - hollow.wall ? DVec3(0.0) : velocity;
+    const DVec3 next = from_axis + velocity;
+    return outwards && glm::length(next) > wood.radius(next) - hollow.wall ? DVec3(0.0) : velocity;
 }
 
 }  // namespace
@@ -125,6 +168,14 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             feature.reach.take(Box{centre, centre}.grown(sphere.radius));
         }
     }
+    const WoodSections wood(plan);
+    // What grew along a slanting normal is no longer as high as it was born.
+    const auto wood_at = [&](const Cell& cell, const AxisPlace& axis, const DVec3& off) {
+        const GrowthBranch& branch = plan.branches[static_cast<size_t>(cell.owner)];
+        if (branch.sections.empty()) return wood.at(cell.owner, axis, step + 1.0);
+        const double along = axis.along + glm::dot(off, axis.direction);
+        return wood.at(cell.owner, place_at(branch, along), step + 1.0);
+    };
     constexpr size_t kGrain = 512;
     const size_t count = surface.mesh.num_vertices();
     std::vector<double> fastest((count + kGrain - 1) / kGrain, 0.0);
@@ -148,7 +199,7 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                         cell.velocity =
                             end.direction *
                             cambium_speed(cell, end, stand_of(plan, branch, end, place, end.direction, step),
-                                          plan, step);
+                                          plan, wood.at(cell.owner, end, step + 1.0), step);
                     continue;
                 }
                 // One that the bark has overtaken waits until its axis has come out of it.
@@ -166,11 +217,11 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
             if (cell.tissue == Tissue::kDecayed) {
                 cell.speed = 0.0;
                 cell.velocity = decay_velocity(surface, v, features[static_cast<size_t>(cell.hollow)],
-                                               from_axis, bark_radius(plan, axis, step));
+                                               from_axis, wood.at(cell.owner, axis, step));
             } else {
                 const DVec3 normal = vertex_normal(surface, v);
-                cell.speed =
-                    cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step), plan, step);
+                cell.speed = cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step),
+                                           plan, wood_at(cell, axis, off), step);
                 Lips::Growth lip = lips.at(place, normal);
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;

@@ -277,6 +277,7 @@ std::string growth_proposal_json(const GrowthProposal& proposal) {
     Json json;
     json["burls"] = proposal.burls;
     json["hollows"] = proposal.hollows;
+    json["sections"] = proposal.sections;
     json["warnings"] = proposal.remarks;
     return dump(json);
 }

@@ -88,7 +88,7 @@ std::string skeleton_report_json(const SkeletonReport& report);
 // Of bark that was grown: steps, branches (that it covers), vertices, triangles, warnings [sentence].
 std::string growth_report_json(const GrownTree& grown);
 
-// Of what a scan shows beside round wood: burls, hollows (their numbers), warnings [sentence].
+// Of what a scan shows beside round wood: burls, hollows, sections (their numbers), warnings [sentence].
 std::string growth_proposal_json(const GrowthProposal& proposal);
 
 // By what a report of how true grown bark is to its scan is known.

@@ -16,6 +16,12 @@ const PATTERNS: PackedStringArray = [
 	"%s found no bark %s m along its branch and was left out.",
 	"A burl",
 	"A hollow",
+	"A section",
+	(
+		"radii has %s, where shares of the branch's radius from %s to %s belong, with commas between"
+		+ " them: radii=1.2,0.9,1.1."
+	),
+	"A section has %s radii, where it needs from %s to %s: one in each of so many equal directions.",
 	"An obstacle",
 	(
 		"An obstacle stands where the trunk begins, below the ground: nothing can grow there. Move it"
