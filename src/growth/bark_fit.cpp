@@ -21,6 +21,8 @@ using namespace growth;
 constexpr double kSlice = 0.1;       // metres
 constexpr size_t kDirections = 24;   // of a slice
 constexpr double kSeen = 0.75;       // of them
+constexpr double kHalf = 0.5;        // of them, that must be seen for the diameter at breast height,
+constexpr double kBeside = 0.25;     // metres above and below it
 constexpr double kGridCell = 0.05;   // metres
 constexpr double kNearest = 0.02;    // metres: where a triangle is looked for first
 constexpr double kFarthest = 100.0;  // metres
@@ -144,6 +146,52 @@ std::pair<double, double> radii_of(const BarkMap& scan, const BarkMap& grown, si
     return {a / seen, b / seen};
 }
 
+struct Diameters {
+    double scan = 0.0, grown = 0.0;  // metres
+};
+
+// Of the slice at `height` metres where enough of the round is seen, else by slices beside it, too: by how
+// far the grown bark is outside of the scan's, fitted by a circle off the axis, so that what one side alone
+// shows does not count for the other. Nothing where less than half is seen.
+Diameters diameters(const BarkMap& scan, const BarkMap& grown, double height) {
+    std::vector<uint8_t> seen(scan.columns, 0);
+    glm::dmat3 normal(0.0);
+    DVec3 right(0.0);
+    double sum = 0.0, count = 0.0;
+    Diameters found;
+    if (height < scan.begin || height > scan.begin + scan.step * static_cast<double>(scan.rows)) return found;
+    const size_t own = std::min(static_cast<size_t>((height - scan.begin) / scan.step), scan.rows - 1);
+    for (size_t row = 0; row < scan.rows; row++) {
+        if (std::abs(scan.along(row) - height) > kBeside + 0.5 * kSlice) continue;
+        if (row == own) {
+            const auto [r_scan, r_grown] = radii_of(scan, grown, row);
+            if (r_scan > 0.0) return {2.0 * r_scan, 2.0 * r_grown};
+        }
+        for (size_t column = 0; column < scan.columns; column++) {
+            const double x = scan.height[scan.cell(row, column)], y = grown.height[grown.cell(row, column)];
+            if (std::isnan(y)) continue;
+            if (row == own) {
+                sum += grown.radius[row] + y;
+                count += 1.0;
+            }
+            if (std::isnan(x)) continue;
+            seen[column] = 1;
+            const double angle = 2.0 * kPi * (static_cast<double>(column) + 0.5) / scan.columns;
+            const DVec3 shape(1.0, std::cos(angle), std::sin(angle));
+            normal += glm::outerProduct(shape, shape);
+            right += shape * (y - x);
+        }
+    }
+    const double known = static_cast<double>(std::count(seen.begin(), seen.end(), 1));
+    if (known < kHalf * static_cast<double>(scan.columns) ||
+        count < kSeen * static_cast<double>(scan.columns))
+        return {};
+    const double outside = (glm::inverse(normal) * right).x;
+    found.grown = 2.0 * sum / count;
+    found.scan = found.grown - 2.0 * outside;
+    return found;
+}
+
 class Judge {
   public:
     Judge(const Tree& tree, const GrowthRecipe& recipe, Progress* progress)
@@ -199,10 +247,11 @@ class Judge {
             const auto [r_scan, r_grown] = radii_of(scan, grown, row);
             if (r_scan <= 0.0) continue;
             radii_.push_back(std::abs(r_grown / r_scan - 1.0));
-            if (branch == 0 && std::abs(scan.along(row) - kBreastHeight) <= 0.5 * kSlice) {
-                fit_.dbh_scan = 2.0 * r_scan;
-                fit_.dbh_grown = 2.0 * r_grown;
-            }
+        }
+        if (branch == 0) {
+            const Diameters breast = diameters(scan, grown, kBreastHeight);
+            fit_.dbh_scan = breast.scan;
+            fit_.dbh_grown = breast.grown;
         }
         // Finer cells tell what is a sheet.
         const double cell = recipe_.longest;

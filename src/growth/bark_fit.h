@@ -34,7 +34,7 @@ struct BarkFit {
     // |r_grown / r_scan - 1|, r the mean over those directions.
     size_t slices = 0;
     double radius_median = 0.0, radius_p95 = 0.0;
-    // At breast height; 0 where the scan does not show it.
+    // At breast height; 0 where the scan shows less than half of it.
     double dbh_scan = 0.0, dbh_grown = 0.0;
 };
 

@@ -251,7 +251,7 @@ TEST(GrowthObstacle, TipsGoAroundWhatStandsInTheirWay) {
              "shape=sheet gap=-0.15 direction=0,1,0 width=0.08 length=1",
          }) {
         SCOPED_TRACE(line);
-        const GrownTree grown = grow(std::string("obstacle along=0.6 ") + line, 60);
+        const GrownTree grown = grow(std::string("obstacle along=0.6 ") + line, 30);
         expect_sound(grown);
         EXPECT_TRUE(std::isinf(grown.bark.branches[0].until));
         EXPECT_GT(test::radii(grown.bark, 1.0, 1.15).size(), 20U);

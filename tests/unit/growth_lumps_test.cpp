@@ -265,6 +265,21 @@ TEST(GrowthLumps, GrownByThemBarkIsNearerToTheScan) {
     EXPECT_LT(fit.lumpy.grown.mean, 0.75 * without.lumpy.grown.mean);
 }
 
+TEST(GrowthLumps, HalfOfTheRoundTellsTheDiameter) {
+    const Tree tree = test::cylinder(0.15, 2.0);
+    const GrowthRecipe recipe = read_growth_recipe(tree, kCoarse);
+    const GrownBark bark = grow_bark(tree, recipe).bark;
+    for (const double wood : {0.14, 0.15, 0.16}) {
+        const BarkFit half =
+            measure_bark_fit(tree, recipe, bark, cylinder_scan(wood, 2.0, 0.003, 0.6, 40000, 4));
+        EXPECT_NEAR(half.dbh_scan, 2.0 * wood, 0.01 * 2.0 * wood);
+        EXPECT_NEAR(half.dbh_grown, 0.3, 0.01 * 0.3);
+        const BarkFit third =
+            measure_bark_fit(tree, recipe, bark, cylinder_scan(wood, 2.0, 0.003, 0.3, 40000, 4));
+        EXPECT_EQ(third.dbh_scan, 0.0);
+    }
+}
+
 TEST(GrowthLumps, DeepDentsBecomeHollows) {
     const double wood = 0.2;
     const Tree tree = test::cylinder(wood, 2.0);
