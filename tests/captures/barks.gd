@@ -3,8 +3,8 @@ extends SceneTree
 ##
 ##     godot --path project --script tests/captures/barks.gd -- TREE PICTURE [LEAVES [PRESET…]]
 ##
-## TREE: a skeleton. LEAVES: the preset whose bark the tree has; PRESETs: all, if none is named. One that ends
-## with .recipe is a file of its own; the cases of papers/001 are in paper/, on paper/trunk.swc.
+## TREE: a skeleton. LEAVES: the preset whose bark the tree has; PRESETs: all, if none is named.
+## One that ends with .recipe is a file; those of papers/001 are in paper/, for paper/trunk.swc.
 
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
 const Stage := preload("sketch_stage.gd")
@@ -42,7 +42,10 @@ func _draw() -> void:
 	await process_frame
 	var columns: int = ceili(presets.size() / ceilf(presets.size() / float(_COLUMNS)))
 	var sheet: Image = Image.create_empty(
-		_SIZE.x * columns, _SIZE.y * ceili(presets.size() / float(columns)), false, Image.FORMAT_RGB8
+		_SIZE.x * columns,
+		_SIZE.y * ceili(presets.size() / float(columns)),
+		false,
+		Image.FORMAT_RGB8
 	)
 	for i: int in presets.size():
 		var recipe: String = (
@@ -126,6 +129,9 @@ func _put(line: Recipe.Line, place: Dictionary) -> void:
 	var up: Vector3 = Vector3.UP
 	if wire:
 		up = (place.direction as Vector3).cross(place.out as Vector3)
+	if line.values.has("direction"):
+		var way: PackedFloat64Array = line.values["direction"].split_floats(",")
+		up = Vector3(way[0], way[1], way[2])
 	var gap: float = float(line.values.get("gap", "0"))
 	thing.basis = Basis(Quaternion(Vector3.UP, up.normalized()))
 	thing.position = place.axis + place.out * (place.radius + gap)

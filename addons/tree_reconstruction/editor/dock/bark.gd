@@ -452,7 +452,13 @@ func _on_remove_pressed() -> void:
 
 func _on_proposed(lines: String) -> void:
 	_recipe = _work.get_recipe()
-	_recipe.lines.append_array(Recipe.new(lines).lines)
+	var found: Recipe = Recipe.new(lines)
+	# Outlines of an earlier time would count beside the new ones.
+	if found.find("section") != null:
+		_recipe.lines = _recipe.lines.filter(
+			func(line: Recipe.Line) -> bool: return line.command != "section"
+		)
+	_recipe.lines.append_array(found.lines)
 	_note_draft(tr("From the Scan"))
 	_show_recipe()
 

@@ -103,6 +103,14 @@ func _on_found(
 			),
 			Session.Kind.INFO
 		)
+		if report.sections > 0:
+			_session.say(
+				(
+					tr("Where the wood is not round, it takes the scan's outline: at %d places.")
+					% report.sections
+				),
+				Session.Kind.INFO
+			)
 	elif report.warnings.is_empty():
 		_session.say(tr("The scan shows no lumps on this tree's bark."), Session.Kind.INFO)
 	proposed.emit(lines)

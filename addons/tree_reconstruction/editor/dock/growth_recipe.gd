@@ -83,12 +83,13 @@ func find(command: String, wanted: bool = false) -> Line:
 	return made
 
 
-## The lines that say what grows where, such as burls: all but those about the whole surface.
+## The lines that say what grows where, such as burls: all but those about the whole surface and the
+## outlines of the wood beneath, of which there may be very many.
 func get_features() -> Array[Line]:
 	return lines.filter(
 		func(line: Line) -> bool:
 			return (
-				line.command not in ["edges", "steps", "grain"]
+				line.command not in ["edges", "steps", "grain", "section"]
 				and not line.command.strip_edges().begins_with("#")
 			)
 	)
