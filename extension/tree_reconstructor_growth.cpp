@@ -253,6 +253,19 @@ static void append(treerec::Mesh& p_all, const treerec::Mesh& p_one) {
     }
 }
 
+// What `draw` makes of a recipe's features of one kind, as one surface.
+template <typename Draw>
+static Array draw_features(const treerec::GrowthRecipe& p_recipe, treerec::GrowthFeature::Kind p_kind,
+                           Draw draw) {
+    treerec::Mesh all;
+    for (const treerec::GrowthFeature& feature : p_recipe.features) {
+        if (feature.kind == p_kind) {
+            append(all, draw(feature));
+        }
+    }
+    return to_surface_arrays(all);
+}
+
 Array TreeReconstructor::sink_bark(const Ref<TreeReconstruction>& p_tree, const String& p_recipe) {
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), Array(), "There is no tree whose bark could sink.");
     const std::shared_ptr<const treerec::Tree> tree = p_tree->get_tree();
@@ -261,13 +274,8 @@ Array TreeReconstructor::sink_bark(const Ref<TreeReconstruction>& p_tree, const 
     }
     const treerec::GrowthRecipe recipe = recipe_of(*tree, p_recipe);
     const treerec::BarkPlaces& places = _places_of(tree, recipe.longest, recipe.shortest);
-    treerec::Mesh all;
-    for (const treerec::GrowthFeature& feature : recipe.features) {
-        if (feature.kind == treerec::GrowthFeature::Kind::kHollow) {
-            append(all, places.mouth(feature));
-        }
-    }
-    return to_surface_arrays(all);
+    return draw_features(recipe, treerec::GrowthFeature::Kind::kHollow,
+                         [&](const treerec::GrowthFeature& hollow) { return places.mouth(hollow); });
 }
 
 Array TreeReconstructor::lift_bark(const Ref<TreeReconstruction>& p_tree, const String& p_recipe) {
@@ -278,12 +286,6 @@ Array TreeReconstructor::lift_bark(const Ref<TreeReconstruction>& p_tree, const 
     }
     const treerec::GrowthRecipe recipe = recipe_of(*tree, p_recipe);
     const treerec::BarkPlaces& places = _places_of(tree, recipe.longest, recipe.shortest);
-    treerec::Mesh all;
-    for (const treerec::GrowthFeature& feature : recipe.features) {
-        if (feature.kind != treerec::GrowthFeature::Kind::kBurl) {
-            continue;
-        }
-        append(all, places.lift(feature, recipe.twist));
-    }
-    return to_surface_arrays(all);
+    return draw_features(recipe, treerec::GrowthFeature::Kind::kBurl,
+                         [&](const treerec::GrowthFeature& burl) { return places.lift(burl, recipe.twist); });
 }

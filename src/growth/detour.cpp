@@ -17,11 +17,6 @@ constexpr int kWays = 16;           // that are tried about the axis,
 constexpr int kTries = 16;          // and how far on each
 constexpr double kThin = 1e-3;      // metres: how wide the strips are that obstacles are asked with
 
-double ease(double t) {
-    t = std::clamp(t, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // A branch's pith, which may be moved aside between two places of its axis.
 class Way {
   public:
@@ -63,8 +58,8 @@ class Way {
             const double along = axis_[i].along;
             if (along < begin - over || along > end + over) continue;
             from = std::min(from, i);
-            const double share =
-                std::min(ease((along - begin + over) / over), ease((end + over - along) / over));
+            const double share = std::min(glm::smoothstep(begin - over, begin, along),
+                                          1.0 - glm::smoothstep(end, end + over, along));
             moved_.push_back(axis_[i].pith + share * aside);
         }
         for (size_t i = 0; i + 1 < moved_.size(); i++)

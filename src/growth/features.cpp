@@ -80,14 +80,18 @@ void place_feature(Surface& surface, const GrowthPlan& plan, Vertex apex, double
         return;
     const AxisPlace base = place_at(branch, feature.along);
     if (feature.kind == Feature::Kind::kHollow) {
-        // Depth counts from the bark of the end, and that has not come out to there yet; of a cut, from it.
-        const WoodSections wood(plan);
-        const auto bark = [&](double when) {
-            return wood.at(feature.branch, base, when).radius(feature.direction);
-        };
-        if (!feature.cut) feature.deepest -= bark(plan.steps) - bark(step);
+        if (feature.cut) {
+            // A tip that was late is cut once it is there.
+            feature.last_step = std::max(feature.last_step, step + 1.0);
+        } else {
+            // Depth counts from the bark of the end, and that has not come out to there yet.
+            const WoodSections wood(plan);
+            const auto bark = [&](double when) {
+                return wood.at(feature.branch, base, when).radius(feature.direction);
+            };
+            feature.deepest -= bark(plan.steps) - bark(step);
+        }
         feature.rate = std::max(feature.deepest, 0.0) / std::max(feature.last_step - step, kFewSteps);
-        feature.last_step = std::max(feature.last_step, step + (feature.cut ? 1.0 : 0.0));
         feature.placed = true;
         return;
     }

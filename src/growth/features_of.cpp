@@ -101,9 +101,7 @@ Triangles placed_mesh(const GrowthObstacle& wanted) {
 
 Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
     using Shape = GrowthObstacle::Shape;
-    if (wanted.shape == Shape::kMesh) {
-        return placed_mesh(wanted);
-    }
+    if (wanted.shape == Shape::kMesh) return placed_mesh(wanted);
     const DVec3 middle = wanted.at ? *wanted.at : spot.axis.position + spot.out * (spot.radius + wanted.gap);
     const DVec3 across = glm::cross(spot.axis.direction, spot.out);
     // Unless told: posts stand along the branch, wires run across it, sheets and boxes face it, rings go
@@ -127,6 +125,35 @@ Triangles triangles_of(const GrowthObstacle& wanted, const Spot& spot) {
             return sheet(middle, x * (0.5 * wanted.width), y * half);
         default:
             return torus(middle, z, wanted.radius, wanted.thickness);
+    }
+}
+
+// Hollows at the covered branches' ends that are as thick as cut ones.
+void add_cuts(const TreePlan& planned, const GrowthCuts& cuts, double longest,
+              std::vector<Feature>& features) {
+    for (size_t b = 0; b < planned.plan.branches.size(); b++) {
+        const GrowthBranch& branch = planned.plan.branches[b];
+        const AxisPlace& end = branch.axis.back();
+        if (branch.ends_open || end.radius < cuts.least) continue;
+        Feature feature;
+        feature.kind = Feature::Kind::kHollow;
+        feature.cut = true;
+        feature.branch = static_cast<int32_t>(b);
+        feature.along = std::max(end.along - kBeforeEnd * longest, branch.axis.front().along);
+        feature.direction = any_perpendicular(end.direction);
+        feature.first_step = std::min(glm::mix(end.step, static_cast<double>(planned.plan.steps), cuts.from),
+                                      planned.plan.steps - 1.0);
+        feature.last_step = feature.first_step + 1.0;
+        const double radius = kFace * bark_radius(planned.plan, end, feature.first_step);
+        const DVec3 x = feature.direction, y = glm::cross(end.direction, x);
+        for (const std::array<DVec3, 3>& triangle :
+             prism(end.position - end.direction * (kFaceDepth * end.radius),
+                   end.position + end.direction * (4.0 * end.radius + longest), x * radius, y * radius,
+                   kMouthSides))
+            feature.region.add(triangle[0], triangle[1], triangle[2]);
+        feature.deepest = cuts.depth;
+        feature.lip = lip_of(cuts.lip, longest);
+        features.push_back(std::move(feature));
     }
 }
 
@@ -182,34 +209,6 @@ std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const
     }
     if (recipe.cuts) add_cuts(planned, *recipe.cuts, recipe.longest, features);
     return features;
-}
-
-void add_cuts(const TreePlan& planned, const GrowthCuts& cuts, double longest,
-              std::vector<Feature>& features) {
-    for (size_t b = 0; b < planned.plan.branches.size(); b++) {
-        const GrowthBranch& branch = planned.plan.branches[b];
-        const AxisPlace& end = branch.axis.back();
-        if (branch.ends_open || end.radius < cuts.least) continue;
-        Feature feature;
-        feature.kind = Feature::Kind::kHollow;
-        feature.cut = true;
-        feature.branch = static_cast<int32_t>(b);
-        feature.along = std::max(end.along - kBeforeEnd * longest, branch.axis.front().along);
-        feature.direction = any_perpendicular(end.direction);
-        feature.first_step =
-            std::min(glm::mix(end.step, double(planned.plan.steps), cuts.from), planned.plan.steps - 1.0);
-        feature.last_step = feature.first_step + 1.0;
-        const double radius = kFace * bark_radius(planned.plan, end, feature.first_step);
-        const DVec3 x = feature.direction, y = glm::cross(end.direction, x);
-        for (const std::array<DVec3, 3>& triangle :
-             prism(end.position - end.direction * (kFaceDepth * end.radius),
-                   end.position + end.direction * (4.0 * end.radius + longest), x * radius, y * radius,
-                   kMouthSides))
-            feature.region.add(triangle[0], triangle[1], triangle[2]);
-        feature.deepest = cuts.depth;
-        feature.lip = lip_of(cuts.lip, longest);
-        features.push_back(std::move(feature));
-    }
 }
 
 void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& planned,

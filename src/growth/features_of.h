@@ -18,9 +18,6 @@ void add_sections(const Tree& tree, const BranchList& list, const GrowthRecipe& 
 // that can't be read.
 std::vector<Feature> features_of(const Tree& tree, const BranchList& list, const TreePlan& planned,
                                  const GrowthRecipe& recipe, std::vector<std::string>& remarks);
-// Hollows at the covered branches' ends that are as thick as cut ones.
-void add_cuts(const TreePlan& planned, const GrowthCuts& cuts, double longest,
-              std::vector<Feature>& features);
 // Throws Error, too, for one that stands where the tree's seed lies.
 void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& planned,
                    const GrowthRecipe& recipe, std::vector<std::string>& remarks, Obstacles& obstacles);

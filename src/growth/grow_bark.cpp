@@ -20,6 +20,7 @@ namespace {
 using namespace growth;
 
 constexpr double kObstacleCell = 1.5;  // of the longest edge
+constexpr double kAbout = 4.0;         // radii of wood and lumps about it, and a metre, that bark may come to
 constexpr double kThrough = 3.0;       // longest edges from its axis's end within which a tip is through
 
 // Metres along its axis that a branch has come, whose tip may have met what it could not pass; infinite where
@@ -38,6 +39,22 @@ double reached(const Surface& surface, const GrowthBranch& branch, int32_t index
         return std::max(nearest->along - longest, 0.0);
     }
     return 0.0;
+}
+
+// Where bark may come to.
+Box reach_of(const GrowthPlan& plan, const GrowthRecipe& recipe) {
+    Box box;
+    double thickest = 0.0, swells = 0.0;
+    for (const GrowthBranch& branch : plan.branches)
+        for (const AxisPlace& place : branch.axis) {
+            box.take(place.position);
+            thickest = std::max(thickest, place.radius);
+        }
+    for (const GrowthFeature& feature : recipe.features)
+        swells = std::max({swells, feature.radius, feature.lip.radius});
+    for (const GrowthObstacle& obstacle : recipe.obstacles)
+        swells = std::max(swells, obstacle.lip.radius);
+    return box.grown(kAbout * (thickest + swells) + 1.0);
 }
 
 std::vector<BranchCoordinates> coordinates_of(const GrowthPlan& plan) {
@@ -99,7 +116,7 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
     planned.plan.twist = recipe.twist;
     add_sections(tree, list, recipe, result.remarks, planned);
     result.steps = planned.plan.steps;
-    Obstacles obstacles(kObstacleCell * recipe.longest);
+    Obstacles obstacles(kObstacleCell * recipe.longest, reach_of(planned.plan, recipe));
     add_obstacles(tree, list, planned, recipe, result.remarks, obstacles);
     go_around(planned.plan, obstacles, recipe.shortest);
     Run run(planned.plan, features_of(tree, list, planned, recipe, result.remarks), recipe.longest,

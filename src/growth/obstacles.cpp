@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "error.h"
 #include "growth/triangle_tests.h"
 
 namespace treerec::growth {
@@ -12,8 +13,14 @@ int32_t Obstacles::begin(const Lip& lip) {
 }
 
 void Obstacles::add(const DVec3& a, const DVec3& b, const DVec3& c) {
+    Box box;
+    for (const DVec3& p : {a, b, c})
+        box.take(p);
     const double ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
     const double longest = std::max({ab, bc, ca});
+    if (!(ab + bc + ca < 1e300))
+        throw Error("An obstacle has corners that are no numbers: give it a mesh that has its place.");
+    if (!within_.meets(box)) return;
     if (longest > most_) {
         const DVec3 &p = longest == ab   ? a
                          : longest == bc ? b
@@ -30,9 +37,6 @@ void Obstacles::add(const DVec3& a, const DVec3& b, const DVec3& c) {
         return;
     }
     if (lips_.empty()) begin({});
-    Box box;
-    for (const DVec3& p : {a, b, c})
-        box.take(p);
     grid_.add(static_cast<uint32_t>(triangles_.size()), box);
     triangles_.push_back({a, b, c});
     owners_.push_back(static_cast<int32_t>(lips_.size()) - 1);

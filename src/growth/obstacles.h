@@ -11,14 +11,16 @@
 
 namespace treerec::growth {
 
-// Triangles, metres, tree space; open sheets and wires, too.
+// Triangles, metres, tree space; open sheets and wires, too. Of large ones only what bark may come to is
+// kept.
 class Obstacles {
   public:
-    // cell: metres, about as large as the triangles that are asked with.
-    explicit Obstacles(double cell) : most_(4.0 * cell), grid_(cell) {}
+    // cell: metres, about as large as the triangles that are asked with. within: where bark may come to.
+    Obstacles(double cell, const Box& within) : most_(4.0 * cell), within_(within), grid_(cell) {}
 
     // What follows belongs to an obstacle of its own, beside which bark swells so. Returns its index.
     int32_t begin(const Lip& lip);
+    // Throws Error for corners that are no numbers.
     void add(const DVec3& a, const DVec3& b, const DVec3& c);
     bool empty() const { return triangles_.empty(); }
     const std::vector<std::array<DVec3, 3>>& triangles() const { return triangles_; }
@@ -30,6 +32,7 @@ class Obstacles {
 
   private:
     const double most_;  // metres: longer edges are cut for the grid
+    const Box within_;
     std::vector<Lip> lips_;
     std::vector<int32_t> owners_;  // by triangle
     std::vector<std::array<DVec3, 3>> triangles_;

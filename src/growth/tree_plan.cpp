@@ -25,11 +25,6 @@ constexpr int kEvenPlaces = 8;        // at so many places,
 constexpr double kAside = 0.5;        // and of the radius how far it may lie from the axis
 constexpr double kLeastLength = 3.0;  // longest edges that a branch is covered at least
 
-double ease(double t) {
-    t = std::clamp(t, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // What is thick is not as crooked inside as a skeleton that a scan led astray: a thin young tip could not
 // follow each kink, and would run into itself. The bark comes to the axis's own radius all the same.
 void even_out(GrowthBranch& branch, double longest, double shortest) {
@@ -72,7 +67,8 @@ std::vector<AxisPlace> cover(const std::vector<AxisPoint>& points, double longes
         const double end = axis.back().along, begin = std::max(end - kSinks * longest, 0.0);
         for (AxisPlace& place : axis)
             place.radius *=
-                glm::mix(kAbove, kSunk, ease((place.along - begin) / std::max(end - begin, 1e-9)));
+                glm::mix(kAbove, kSunk,
+                         glm::smoothstep(0.0, 1.0, (place.along - begin) / std::max(end - begin, 1e-9)));
     }
     return axis;
 }

@@ -9,6 +9,7 @@ extends SceneTree
 const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
 const Stage := preload("sketch_stage.gd")
+const Things := preload("bark_things.gd")
 const _SIZE: Vector2i = Vector2i(360, 480)
 const _SUPERSAMPLING: int = 2
 const _PRESET: String = "fence_post_swallowed"
@@ -61,7 +62,7 @@ func _film() -> void:
 	var height: float = 0.0
 	for i: int in lines.size():
 		if lines[i].command == "obstacle":
-			_put(lines[i], places[i])
+			_stage.shown.add_child(Things.make(lines[i], places[i]))
 			out += places[i].out
 			height = maxf(height, (places[i].along as float) * _HEADROOM)
 	_stage.camera.size = height
@@ -91,26 +92,3 @@ func _keep(height: float) -> void:
 	picture.convert(Image.FORMAT_RGB8)
 	picture.save_png(_folder.path_join("%04d.png" % _count))
 	_count += 1
-
-
-# A post along its branch, or a wire across it.
-func _put(line: Recipe.Line, place: Dictionary) -> void:
-	var wire: bool = line.values["shape"] == "wire"
-	var shape: CylinderMesh = CylinderMesh.new()
-	shape.top_radius = (
-		0.5 * float(line.values.get("thickness", "0.004")) if wire else float(line.values["radius"])
-	)
-	shape.bottom_radius = shape.top_radius
-	shape.height = float(line.values["length"])
-	var material: StandardMaterial3D = StandardMaterial3D.new()
-	material.albedo_color = Color(0.4, 0.39, 0.38) if wire else Color(0.36, 0.29, 0.22)
-	material.roughness = 0.9
-	shape.material = material
-	var thing: MeshInstance3D = MeshInstance3D.new()
-	thing.mesh = shape
-	var up: Vector3 = Vector3.UP
-	if wire:
-		up = (place.direction as Vector3).cross(place.out as Vector3)
-	thing.basis = Basis(Quaternion(Vector3.UP, up.normalized()))
-	thing.position = (place.axis + place.out * (place.radius + float(line.values.get("gap", "0"))))
-	_stage.shown.add_child(thing)

@@ -8,6 +8,7 @@ extends SceneTree
 
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
 const Stage := preload("sketch_stage.gd")
+const Things := preload("bark_things.gd")
 const _SIZE: Vector2i = Vector2i(420, 640)
 const _SUPERSAMPLING: int = 2
 const _COLUMNS: int = 6
@@ -92,7 +93,8 @@ func _look(tree: TreeReconstruction, recipe: String, places: Array[Dictionary]) 
 		out += place.out
 		highest = maxf(highest, place.along)
 		if i < lines.size() and lines[i].command == "obstacle":
-			_put(lines[i], place)
+			_things.append(Things.make(lines[i], place))
+			_stage.shown.add_child(_things.back())
 	out = Vector3(out.x, 0.0, out.z).normalized() if out.length() > 0.3 else Vector3.BACK
 	# Turned to the camera and the sun; a little aside and from above, so that lumps stand out.
 	var turn: Basis = Basis(Vector3.UP, -atan2(out.x, out.z) - _ASIDE)
@@ -109,31 +111,3 @@ func _look(tree: TreeReconstruction, recipe: String, places: Array[Dictionary]) 
 	picture.resize(_SIZE.x, _SIZE.y, Image.INTERPOLATE_LANCZOS)
 	picture.convert(Image.FORMAT_RGB8)
 	return picture
-
-
-# A post along its branch, or a wire across it.
-func _put(line: Recipe.Line, place: Dictionary) -> void:
-	var wire: bool = line.values["shape"] == "wire"
-	var shape: CylinderMesh = CylinderMesh.new()
-	shape.top_radius = (
-		0.5 * float(line.values.get("thickness", "0.004")) if wire else float(line.values["radius"])
-	)
-	shape.bottom_radius = shape.top_radius
-	shape.height = float(line.values["length"])
-	var look: StandardMaterial3D = StandardMaterial3D.new()
-	look.albedo_color = Color(0.32, 0.31, 0.3) if wire else Color(0.42, 0.36, 0.29)
-	look.roughness = 0.9
-	shape.material = look
-	var thing: MeshInstance3D = MeshInstance3D.new()
-	thing.mesh = shape
-	var up: Vector3 = Vector3.UP
-	if wire:
-		up = (place.direction as Vector3).cross(place.out as Vector3)
-	if line.values.has("direction"):
-		var way: PackedFloat64Array = line.values["direction"].split_floats(",")
-		up = Vector3(way[0], way[1], way[2])
-	var gap: float = float(line.values.get("gap", "0"))
-	thing.basis = Basis(Quaternion(Vector3.UP, up.normalized()))
-	thing.position = place.axis + place.out * (place.radius + gap)
-	_stage.shown.add_child(thing)
-	_things.append(thing)

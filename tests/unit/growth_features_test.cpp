@@ -288,6 +288,27 @@ TEST(GrowthObstacle, ComesFromFiles) {
 }
 
 // Equation 7: a ridge on the sap links, and the bark's picture, go around with the grain.
+TEST(GrowthObstacle, MayBeAsLargeAsTheWorldButMustHaveNumbers) {
+    // A wall beside the trunk, whose other end is far away.
+    const auto grown = [](double far) {
+        const Tree tree = trunk();
+        GrowthRecipe recipe =
+            read_growth_recipe(tree, "edges longest=0.045\nobstacle shape=mesh mesh=wall growth=0 wrap=0");
+        const DVec3 a(0.13, 0.5, -far), b(0.13, far, -far), c(0.13, far, far), d(0.13, 0.5, far);
+        recipe.obstacles[0].triangles = {{a, b, c}, {a, c, d}};
+        return grow_bark(tree, recipe);
+    };
+    for (const double far : {10.0, 1e5, 1e30}) {
+        double most = 0.0;
+        for (const GrownBark::Vertex& vertex : grown(far).bark.vertices)
+            if (vertex.position.y > 0.55f) most = std::max(most, static_cast<double>(vertex.position.x));
+        EXPECT_LT(most, 0.13) << far;
+        EXPECT_GT(most, 0.12) << far;
+    }
+    EXPECT_THROW(grown(std::nan("")), Error);
+    EXPECT_THROW(grown(HUGE_VAL), Error);
+}
+
 TEST(GrowthGrain, WindsRidgesAndTheBarksPicture) {
     for (const double twist : {0.0, 3.0, -3.0}) {
         const GrownTree grown =

@@ -16,6 +16,7 @@ const PATTERNS: PackedStringArray = [
 	"%s found no bark %s m along its branch and was left out.",
 	"A burl",
 	"A hollow",
+	"A cut",
 	"A section",
 	(
 		"radii has %s, where shares of the branch's radius from %s to %s belong, with commas between"
@@ -27,6 +28,7 @@ const PATTERNS: PackedStringArray = [
 		"An obstacle stands where the trunk begins, below the ground: nothing can grow there. Move it"
 		+ " aside."
 	),
+	"An obstacle has corners that are no numbers: give it a mesh that has its place.",
 	"%s=%s is larger than %s=%s: make it smaller.",
 	"A hollow that begins at from=%s must end later: give until= more than that.",
 	"An obstacle with shape=mesh needs file=, a Wavefront OBJ file.",
