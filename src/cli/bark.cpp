@@ -190,6 +190,7 @@ void run_bark(const std::vector<std::string>& words) {
         std::printf("%zu branches covered in %d steps: %zu vertices, %zu triangles\n",
                     grown.bark.branches.size(), grown.steps, grown.bark.vertices.size(),
                     grown.bark.indices.size() / 3);
+        if (recipe.fuse) std::printf("fused in %zu places: chi %ld\n", grown.fused, grown.chi);
         for (const std::string& out : outs)
             std::printf("wrote %s\n", out.c_str());
         if (fit) print_fit(*fit);

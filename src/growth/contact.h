@@ -58,6 +58,11 @@ class Contact {
     int32_t touched() const { return touched_; }
     // Whether the change leaves a surface without folds that meets nothing.
     Hold check(const Change& change);
+    // Calls take(face) for each face that may come into a ball; metres.
+    template <typename Take>
+    void visit(const DVec3& middle, double radius, Take take) const {
+        grid_.visit(middle, radius, [&](uint32_t item) { take(Face(item)); });
+    }
     // Of what changed its corners: its vertices must look around again,
     void look_again(Vertex vertex);
     // and with them those around it.

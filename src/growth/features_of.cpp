@@ -226,6 +226,12 @@ void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& pla
         for (const std::array<DVec3, 3>& triangle : triangles_of(wanted, spot))
             obstacles.add(triangle[0], triangle[1], triangle[2]);
     }
+    for (const std::array<DVec3, 3>& own : planned.plan.seed) {
+        const DVec3 triangle[3] = {own[0], own[1], own[2]};
+        if (obstacles.meets(triangle, 0.0) >= 0)
+            throw Error("An obstacle stands in the seed that bark starts from. Move one of them aside.");
+    }
+    if (!planned.plan.seed.empty()) return;
     const DVec3& foot = planned.plan.branches.front().axis.front().position;
     if (obstacles.distance(Box{foot, foot}, kSeed * recipe.longest) < kSeed * recipe.longest)
         throw Error(

@@ -9,6 +9,7 @@
 #include "growth/judge.h"
 #include "growth/levels.h"
 #include "growth/run.h"
+#include "growth/shapes.h"
 #include "growth/texture.h"
 #include "growth/trace.h"
 #include "growth/tree_plan.h"
@@ -114,6 +115,8 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
     const BranchList list = list_branches(tree);
     TreePlan planned = plan_tree(tree, list, recipe.longest, recipe.shortest, recipe.steps);
     planned.plan.twist = recipe.twist;
+    planned.plan.fuse = recipe.fuse;
+    if (!recipe.seed.empty()) planned.plan.seed = read_triangles(recipe.seed);
     add_sections(tree, list, recipe, result.remarks, planned);
     result.steps = planned.plan.steps;
     Obstacles obstacles(kObstacleCell * recipe.longest, reach_of(planned.plan, recipe));
@@ -143,6 +146,8 @@ GrownTree grow_bark(const Tree& tree, const GrowthRecipe& recipe, const GrowBark
             options.watcher->take(run.step(), bark);
         }
     }
+    result.fused = run.fused();
+    result.chi = chi_of(run.count());
     for (const Feature& feature : run.features())
         if (!feature.placed)
             result.remarks.push_back(std::string(feature.cut                              ? "A cut"

@@ -39,6 +39,8 @@ struct GrowBarkOptions {
 struct GrownTree {
     GrownBark bark;
     int steps = 0;
+    size_t fused = 0;  // places where surfaces became one
+    long chi = 0;      // of the last step: V - E + F
     std::vector<GrowthStep> checks;
     std::vector<std::string> remarks;  // sentences for the user
 };

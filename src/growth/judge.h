@@ -7,6 +7,13 @@
 
 namespace treerec::growth {
 
+struct Soundness {
+    bool closed = false, outward = false;
+    size_t components = 0;
+    size_t intersections = 0;  // pairs of faces
+};
+
+Soundness judge_surface(const Surface& surface);
 GrowthStep judge(const Run& run, double longest);
 
 }  // namespace treerec::growth

@@ -1,6 +1,7 @@
 // Where and when branches grow: what the surface follows.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct GrowthPlan {
     // cambium, as burls, comes on top.
     bool follow = false;
     double twist = 0.0;  // theta_p of equation 7, radians a metre: how the grain winds about its branch
+    // A closed mesh that it starts from, metres, tree space; none: figure 4's prism.
+    std::vector<std::array<DVec3, 3>> seed;
+    bool fuse = false;   // surfaces that meet become one
     double young = 0.0;  // metres: of the axes' radii, what their tips have at once where `follow` is on
 };
 

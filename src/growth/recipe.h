@@ -89,6 +89,8 @@ struct GrowthRecipe {
     double twist = 0.0;       // theta_p, radians a metre
     std::vector<GrowthFeature> features;
     std::vector<GrowthObstacle> obstacles;
+    std::string seed;                // a closed mesh that it starts from, a file; none: a small prism
+    bool fuse = false;               // surfaces that meet become one
     std::optional<GrowthCuts> cuts;  // that heal
     std::vector<GrowthSection> sections;
     std::string text;  // its lines as found on this tree

@@ -140,6 +140,14 @@ void take_section(GrowthRecipe& recipe, const EditArguments& arguments) {
     recipe.sections.push_back(std::move(section));
 }
 
+void take_seed(GrowthRecipe& recipe, const EditArguments& arguments) {
+    recipe.seed = arguments.text("file");
+}
+
+void take_fuse(GrowthRecipe& recipe, const EditArguments&) {
+    recipe.fuse = true;
+}
+
 std::vector<Parameter> with_place(double along, std::vector<Parameter> rest) {
     Parameter node = node_parameter("node", "on whose branch it is");
     node.standard = "root";
@@ -260,6 +268,11 @@ const std::vector<GrowthCommand>& growth_commands() {
          hollow_parameters(), take_hollow},
         {"cuts", "Callus that grows over stubs and other ends where wood was cut.", cuts_parameters(),
          take_cuts},
+        {"seed",
+         "What it starts from: a closed mesh that the trunk begins in, instead of a small prism.",
+         {text_parameter("file", {"stump.obj"}, "an OBJ file in the tree's space, metres")},
+         take_seed},
+        {"fuse", "Surfaces that meet become one, instead of only looking as one.", {}, take_fuse},
         {"section", "The outline of wood that is not round; sections of a branch go over into one another.",
          with_place(
              0.0, {text_parameter("radii", {"1.2,0.8,1.2,0.8"},

@@ -6,17 +6,15 @@
 #include <cmath>
 
 #include "geometry/parallel.h"
+#include "growth/seed.h"
 #include "growth/velocity.h"
 
 namespace treerec::growth {
 
 namespace {
 
-constexpr int kSides = 6;          // of the seed
-constexpr double kSeedEdge = 0.7;  // of the longest edge
 constexpr size_t kGrain = 512;
 constexpr double kTurned = 0.999;  // cosine between a velocity and the normal, from which on they are alike
-constexpr double kSeedTip = 1.7;   // such edges above its foot
 
 }  // namespace
 
@@ -29,48 +27,21 @@ Run::Run(const GrowthPlan& plan, std::vector<Feature> features, double longest, 
       shortest_(shortest),
       contact_(surface_, longest, obstacles),
       optimiser_(surface_, contact_, plan_, longest, shortest),
+      fuser_(surface_, contact_, longest, shortest),
       apex_(plan.branches.size(), SurfaceMesh::null_vertex()) {
-    plant();
-}
-
-// Figure 4: a prism, closed by a point above; what grows up from it is the trunk.
-void Run::plant() {
-    SurfaceMesh& mesh = surface_.mesh;
-    const AxisPlace& foot = plan_.branches.front().axis.front();
-    const DVec3 up = foot.direction, x = any_perpendicular(up), z = glm::cross(up, x);
-    const double edge = kSeedEdge * longest_;
-    const auto add = [&](const DVec3& place, Tissue tissue, double along) {
-        const Vertex v = mesh.add_vertex(place);
-        Cell& cell = surface_.cells[v];
-        cell.id = surface_.next_id++;
-        cell.previous = place;
-        cell.tissue = tissue;
-        cell.along = along;
-        cell.tip_along = foot.along + kSeedTip * edge;
-        return v;
-    };
-    Vertex ring[2][kSides];
-    for (int row = 0; row < 2; row++)
-        for (int side = 0; side < kSides; side++) {
-            const double angle = 2.0 * kPi * side / kSides;
-            ring[row][side] =
-                add(foot.pith + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
-                    Tissue::kCambium, foot.along + edge * row);
-        }
-    const Vertex below = add(foot.pith, Tissue::kCambium, foot.along);
-    const Vertex above =
-        add(foot.pith + up * (kSeedTip * edge), Tissue::kApical, foot.along + kSeedTip * edge);
-    for (int side = 0; side < kSides; side++) {
-        const int next = (side + 1) % kSides;
-        mesh.add_face(below, ring[0][next], ring[0][side]);
-        mesh.add_face(ring[0][side], ring[0][next], ring[1][next]);
-        mesh.add_face(ring[0][side], ring[1][next], ring[1][side]);
-        mesh.add_face(above, ring[1][side], ring[1][next]);
-        surface_.links[mesh.edge(mesh.halfedge(ring[0][side], ring[1][side]))] = true;
-        surface_.links[mesh.edge(mesh.halfedge(ring[1][side], above))] = true;
+    const GrowthBranch& trunk = plan_.branches.front();
+    if (plan_.seed.empty()) {
+        apex_[0] = plant_prism(surface_, plan_, longest_);
+        contact_.list_all();
+    } else {
+        apex_[0] = plant_mesh(surface_, plan_, shortest_);
+        contact_.list_all();
+        optimiser_.run();
+        follow(optimiser_.merged());
+        // As old as a trunk that reaches out of it.
+        step_ = std::clamp(static_cast<int>(place_at(trunk, surface_.cells[apex_[0]].along).step), 0,
+                           std::max(plan_.steps - 1, 0));
     }
-    apex_[0] = above;
-    contact_.list_all();
 }
 
 void Run::advance(const std::function<void(const Surface&)>& moved) {
@@ -88,8 +59,12 @@ void Run::advance(const std::function<void(const Surface&)>& moved) {
     contact_.advance(set_velocities(surface_, plan_, features_, lips_, step_));
     move_all();
     if (moved) moved(surface_);
+    if (plan_.fuse) {
+        fuser_.run();
+        follow(fuser_.merged());
+    }
     optimiser_.run();
-    follow_merges();
+    follow(optimiser_.merged());
     step_++;
     count_.vertices = surface_.mesh.number_of_vertices();
     count_.edges = surface_.mesh.number_of_edges();
@@ -208,8 +183,8 @@ void Run::sprout() {
     }
 }
 
-void Run::follow_merges() {
-    for (const auto& [gone, kept] : optimiser_.merged()) {
+void Run::follow(const std::vector<std::pair<Vertex, Vertex>>& merged) {
+    for (const auto& [gone, kept] : merged) {
         for (Vertex& apex : apex_)
             if (apex == gone) apex = kept;
         for (Feature& feature : features_)

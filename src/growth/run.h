@@ -7,6 +7,7 @@
 
 #include "growth/contact.h"
 #include "growth/features.h"
+#include "growth/fuse.h"
 #include "growth/lips.h"
 #include "growth/obstacles.h"
 #include "growth/optimise.h"
@@ -23,6 +24,11 @@ struct StepCount {
     ShortEdges short_edges;
 };
 
+inline long chi_of(const StepCount& count) {
+    return static_cast<long>(count.vertices) - static_cast<long>(count.edges) +
+           static_cast<long>(count.faces);
+}
+
 class Run {
   public:
     // longest, shortest: T_s and T_m, metres. obstacles: null for none; must outlive this.
@@ -36,13 +42,13 @@ class Run {
     const Surface& surface() const { return surface_; }
     const std::vector<Feature>& features() const { return features_; }
     const StepCount& count() const { return count_; }
+    size_t fused() const { return fuser_.joined(); }  // so far
 
   private:
-    void plant();
     void choose_buds();
     void sprout();
     void move_all();
-    void follow_merges();
+    void follow(const std::vector<std::pair<Vertex, Vertex>>& merged);
 
     const GrowthPlan plan_;
     std::vector<Feature> features_;
@@ -52,6 +58,7 @@ class Run {
     Surface surface_;
     Contact contact_;
     Optimiser optimiser_;
+    Fuser fuser_;
     std::vector<Vertex> apex_;  // by branch: its apical vertex or bud
     StepCount count_;
     int step_ = 0;

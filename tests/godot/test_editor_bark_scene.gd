@@ -45,7 +45,7 @@ func _close() -> void:
 
 
 func _grow() -> void:
-	_bark().edge.value = 0.08
+	_bark().surface.edge.value = 0.08
 	_bark().grow.pressed.emit()
 	await _finish()
 	_frame()

@@ -11,7 +11,7 @@ func _timeline() -> Timeline:
 
 
 func _grow() -> void:
-	(_dock.sections[&"bark"] as Bark).edge.value = 0.08
+	(_dock.sections[&"bark"] as Bark).surface.edge.value = 0.08
 	(_dock.sections[&"bark"] as Bark).grow.pressed.emit()
 	await _finish()
 	_frame()

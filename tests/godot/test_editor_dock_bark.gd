@@ -14,7 +14,7 @@ func _bark() -> Bark:
 
 # Coarse, so that it is quick.
 func _grow() -> void:
-	_bark().edge.value = 0.08
+	_bark().surface.edge.value = 0.08
 	_bark().grow.pressed.emit()
 	await _finish()
 	_frame()
@@ -109,7 +109,7 @@ func test_a_burl_goes_to_the_selected_branch_and_away() -> void:
 func test_what_is_edited_meanwhile_is_told() -> void:
 	var of: TreeReconstruction = GrownBark.stout()
 	_begin(of)
-	_bark().edge.value = 0.08
+	_bark().surface.edge.value = 0.08
 	_bark().grow.pressed.emit()
 	check(_bark().grow.disabled, "It can be grown twice at once.")
 	_session.run("Cut", "cut node=13")
@@ -124,7 +124,7 @@ func test_it_is_cancelled_and_a_bad_recipe_is_told() -> void:
 	var of: TreeReconstruction = GrownBark.stout()
 	_begin(of)
 	var shown: Bark = _bark()
-	shown.edge.value = 0.012
+	shown.surface.edge.value = 0.012
 	shown.grow.pressed.emit()
 	await tree.process_frame
 	_session.jobs.cancel(_session.jobs.get_running()[0])
@@ -134,7 +134,7 @@ func test_it_is_cancelled_and_a_bad_recipe_is_told() -> void:
 	check(not shown.grow.disabled, "It can't be grown any more.")
 	check_equal(_undo.get_history_count(), 0, "steps")
 	_said.clear()
-	shown.edge.value = 1.0
+	shown.surface.edge.value = 1.0
 	shown.grow.pressed.emit()
 	await _finish()
 	check("thick enough" in str(_said), str(_said))
@@ -228,7 +228,7 @@ func test_other_features_are_added_and_changed_by_their_fields() -> void:
 	await tree.process_frame
 	check(shown.fields.has("thickness") and not shown.fields.has("radius"), "of a wire")
 	shown.fields["thickness"].value = 0.02
-	shown.twist.value = 1.5
+	shown.surface.twist.value = 1.5
 	check_equal(_undo.get_history_count(), 0, "steps before it grows")
 	await _grow()
 	check(
@@ -239,19 +239,40 @@ func test_other_features_are_added_and_changed_by_their_fields() -> void:
 	_end()
 
 
+func test_fusing_and_healing_are_switches_of_the_recipe() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	shown.surface.edge.value = 0.08
+	shown.surface.fuse.button_pressed = true
+	shown.surface.cuts.button_pressed = true
+	check_equal(shown.list.item_count, 0, "They are no features.")
+	await _grow()
+	check("fuse\n" in of.growth_recipe and "cuts" in of.growth_recipe, of.growth_recipe)
+	_undo.undo()
+	check(not shown.surface.fuse.button_pressed, "after undo")
+	_undo.redo()
+	shown.update()
+	check(shown.surface.fuse.button_pressed and shown.surface.cuts.button_pressed, "after redo")
+	shown.surface.cuts.button_pressed = false
+	await _grow()
+	check("fuse" in of.growth_recipe and "cuts" not in of.growth_recipe, of.growth_recipe)
+	_end()
+
+
 func test_a_preset_comes_instead_and_keeps_the_edges() -> void:
 	var of: TreeReconstruction = GrownBark.stout()
 	_begin(of)
 	var shown: Bark = _bark()
 	var menu: PopupMenu = shown.more.get_popup()
-	shown.edge.value = 0.08
+	shown.surface.edge.value = 0.08
 	shown.add.pressed.emit()
 	for i: int in menu.item_count:
 		if menu.get_item_text(i) == "Old Oak":
 			menu.id_pressed.emit(menu.get_item_id(i))
 	check_equal(shown.list.item_count, 5, "features")
-	check_near(shown.edge.value, 0.08, 1e-6, "the edges")
-	check_near(shown.twist.value, 0.8 * 0.22 / 0.108, 0.02, "the grain's twist")
+	check_near(shown.surface.edge.value, 0.08, 1e-6, "the edges")
+	check_near(shown.surface.twist.value, 0.8 * 0.22 / 0.108, 0.02, "the grain's twist")
 	await _grow()
 	check(of.has_grown_bark(), "It has not grown: %s" % _said)
 	_end()

@@ -10,6 +10,7 @@ const Obstacles := preload("bark_obstacles.gd")
 const Timeline := preload("bark_timeline.gd")
 const Recipe := preload("growth_recipe.gd")
 const FromScan := preload("bark_from_scan.gd")
+const Surface := preload("bark_surface.gd")
 
 # Of the presets in the menu, after the features.
 const _PRESETS: int = 100
@@ -22,7 +23,7 @@ const _MINIMUM_BURL: float = 0.05
 var list: ItemList = ItemList.new()
 var add: Button
 var remove: Button
-var edge: SpinBox
+var surface: Surface
 var grow: Button
 var back: Button
 var from_scan: FromScan
@@ -32,7 +33,6 @@ var timeline: Timeline
 var fields: Dictionary[String, SpinBox] = {}
 
 var more: MenuButton
-var twist: SpinBox
 ## Those of its fields that are no numbers.
 var choices: Dictionary[String, Control] = {}
 
@@ -93,36 +93,13 @@ func _build_surface() -> void:
 	body.add_child(buttons([grow, back]))
 	timeline = Timeline.new(session, _work)
 	body.add_child(timeline)
-	edge = _make_number(_parameter("edges", "longest"))
-	edge.value_changed.connect(_on_edge_changed)
-	(
-		body
-		. add_child(
-			(
-				Widgets
-				. line(
-					"Edge Length",
-					(
-						"How fine the surface is: its edges are split above this length. Half of it takes about"
-						+ " eight times as long."
-					),
-					edge
-				)
-			)
-		)
+	surface = Surface.new(
+		func(command: String, name: String) -> SpinBox:
+			return _make_number(_parameter(command, name)),
+		_work.get_default
 	)
-	twist = _make_number(_parameter("grain", "twist"))
-	twist.value_changed.connect(_on_twist_changed)
-	body.add_child(
-		Widgets.line(
-			"Grain Twist",
-			(
-				"How the grain winds about trunk and branches, and the ridges on it, in radians a"
-				+ " metre."
-			),
-			twist
-		)
-	)
+	surface.changed.connect(_on_surface_changed)
+	body.add_child(surface)
 
 
 # The features, and the fields of the one that is selected.
@@ -243,13 +220,7 @@ func _show_recipe() -> void:
 		list.add_item(_words.title_of(line, _work.get_default))
 		list.set_item_metadata(list.item_count - 1, line)
 	_select()
-	for field: Array in [[edge, "edges", "longest"], [twist, "grain", "twist"]]:
-		var given: Recipe.Line = _recipe.find(field[1])
-		var standard: String = _work.get_default(field[1], field[2])
-		var value: String = standard if given != null or field[0] == edge else "0"
-		if given != null:
-			value = given.values.get(field[2], standard)
-		(field[0] as SpinBox).set_value_no_signal(value.to_float())
+	surface.show_recipe(_recipe)
 	_show_fields()
 
 
@@ -416,17 +387,9 @@ func _on_written(value: String, name: String) -> void:
 		_show_recipe.call_deferred()
 
 
-func _on_edge_changed(value: float) -> void:
-	var line: Recipe.Line = _recipe.find("edges", true)
-	line.values["longest"] = Recipe.written(value)
-	# The shortest goes with it.
-	line.values.erase("shortest")
-	_note_draft(tr("Change on the Bark"), [session.tree.get_instance_id(), "edges"])
-
-
-func _on_twist_changed(value: float) -> void:
-	_recipe.find("grain", true).values["twist"] = Recipe.written(value)
-	_note_draft(tr("Change on the Bark"), [session.tree.get_instance_id(), "grain"])
+func _on_surface_changed(about: Array) -> void:
+	var merged: Array = [] if about.is_empty() else [session.tree.get_instance_id()] + about
+	_note_draft(tr("Change on the Bark"), merged)
 
 
 func _on_more_chosen(id: int) -> void:

@@ -55,6 +55,9 @@ class Line:
 		return words
 
 
+# What is about the whole surface.
+const _WHOLE: PackedStringArray = ["edges", "steps", "grain", "section", "seed", "fuse", "cuts"]
+
 var lines: Array[Line] = []
 
 
@@ -88,10 +91,7 @@ func find(command: String, wanted: bool = false) -> Line:
 func get_features() -> Array[Line]:
 	return lines.filter(
 		func(line: Line) -> bool:
-			return (
-				line.command not in ["edges", "steps", "grain", "section"]
-				and not line.command.strip_edges().begins_with("#")
-			)
+			return line.command not in _WHOLE and not line.command.strip_edges().begins_with("#")
 	)
 
 

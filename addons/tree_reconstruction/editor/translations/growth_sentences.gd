@@ -48,6 +48,18 @@ const PATTERNS: PackedStringArray = [
 		+ " this tree was made of?"
 	),
 	"The saved bark is damaged. Grow it again.",
+	"The seed has corners that are no numbers: give a mesh that has its place.",
+	"The seed has %s triangles, and can have %s: simplify it.",
+	(
+		"The seed is not one surface: at each edge two triangles must meet, and they must face the same"
+		+ " way. Weld its vertices, and recalculate its normals outside."
+	),
+	"The seed has holes: bark grows from a closed mesh. Fill them.",
+	"The seed has %s parts that don't hang together: join them, or leave all but one out.",
+	"The seed goes through itself in %s places: mend it, for example by remeshing.",
+	"The trunk does not begin in the seed: move it so that it holds %s.",
+	"The trunk does not come out of the seed: nothing is left to grow.",
+	"An obstacle stands in the seed that bark starts from. Move one of them aside.",
 	# Of a recipe.
 	"Line %s of the recipe: %s",
 	(
