@@ -250,6 +250,7 @@ func test_fusing_and_healing_are_switches_of_the_recipe() -> void:
 	await _grow()
 	check("fuse\n" in of.growth_recipe and "cuts" in of.growth_recipe, of.growth_recipe)
 	_undo.undo()
+	shown.update()
 	check(not shown.surface.fuse.button_pressed, "after undo")
 	_undo.redo()
 	shown.update()
