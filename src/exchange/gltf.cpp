@@ -7,9 +7,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
 #include "error.h"
 #include "exchange/finite.h"
+#include "exchange/quiet_tiny_gltf.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 
@@ -17,18 +19,14 @@ namespace treerec {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr size_t kLargestFile = 0xFFFFFF00;  // a .glb counts its bytes in 32 bits
 constexpr size_t kChunk = 16384;             // vertices or indices converted at a time
 constexpr uint32_t kGlbMagic = 0x46546C67, kGlbVersion = 2, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
-// The numbers that glTF gives to things (specification 2.0, sections 3.8.4, 5.1.3, 5.11.5, 5.26).
-constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
-constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
-constexpr int kRepeat = 10497, kClampToEdge = 33071, kLinear = 9729, kLinearMipmapLinear = 9987;
 // What leaf.gdshader makes of the leaves' picture, on average of a crown, as light: tones, hues and shade.
-constexpr std::array<double, 4> kLeafTint{0.66, 0.61, 0.48, 1.0};
+const std::vector<double> kLeafTint{0.66, 0.61, 0.48, 1.0};
 constexpr double kLeafCutoff = 0.25;            // lets the outline be, which smaller mipmaps average away
 constexpr char kPictureFolder[] = "_textures";  // after the model's name
 constexpr size_t kMostShortIndices = 65535;     // vertices; the index 65535 itself is reserved
@@ -41,12 +39,13 @@ std::string_view bytes_of(const auto& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0])};
 }
 
-// A model being put together: its JSON, and its one buffer as parts that mostly lie where they were made.
+// A model being put together: what tinygltf writes of it, and its one buffer as parts that mostly lie where
+// they were made. tinygltf would copy the buffer three times, and count what it wrote of it for nothing.
 class Builder {
   public:
     explicit Builder(const ModelFile& file);
 
-    Json json;
+    tinygltf::Model model;                // without its buffer
     std::vector<std::string_view> parts;  // multiples of 4 bytes
     size_t size = 0;                      // of all parts
     size_t geometry_parts = 0;            // the pictures come after these,
@@ -54,14 +53,15 @@ class Builder {
     std::vector<NamedPicture> pictures;   // those of the model, in the order of its images
 
   private:
-    size_t add_view(std::string_view bytes, int target);
-    size_t add_accessor(std::string_view bytes, size_t count, int component, const char* type, int target);
-    size_t add_indices(const Mesh& mesh);
-    Json make_primitive(const Mesh& mesh, int material, const LeafTint& tint = {});
-    size_t add_level(const ModelFile::Level& level, size_t number);
+    int add_view(std::string_view bytes, int target);
+    int add_accessor(std::string_view bytes, size_t count, int component, int type, int target);
+    int add_indices(const Mesh& mesh);
+    tinygltf::Primitive make_primitive(const Mesh& mesh, int material, const LeafTint& tint = {});
+    int add_level(const ModelFile::Level& level, size_t number);
     void add_levels(const ModelFile& file);
-    size_t add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap,
-                       const std::string& suffix = "");
+    int add_texture(const std::vector<NamedPicture>& all, const std::string& name, int wrap,
+                    const std::string& suffix = "");
+    void add_bark_material(const std::vector<NamedPicture>& all);
     void add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
                            const std::string& rule, bool tinted);
 
@@ -75,41 +75,52 @@ class Builder {
     std::vector<LeafTint> tint_of_;  // by kind
 };
 
-size_t Builder::add_view(std::string_view bytes, int target) {
+// Puts it last and returns its index.
+template <typename T>
+int add_to(std::vector<T>& all, T one) {
+    all.push_back(std::move(one));
+    return static_cast<int>(all.size()) - 1;
+}
+
+int Builder::add_view(std::string_view bytes, int target) {
     const size_t padding = (4 - bytes.size() % 4) % 4;
     if (size + bytes.size() + padding > kLargestFile)
         throw Error("The model is larger than 4 GB; simplify the tree or write fewer leaves.");
-    Json view = {{"buffer", 0}, {"byteOffset", size}, {"byteLength", bytes.size()}};
-    if (target) view["target"] = target;
-    json["bufferViews"].push_back(std::move(view));
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = size;
+    view.byteLength = bytes.size();
+    view.target = target;
     parts.push_back(bytes);
     parts.emplace_back(kPadding.data(), padding);
     size += bytes.size() + padding;
-    return json["bufferViews"].size() - 1;
+    return add_to(model.bufferViews, std::move(view));
 }
 
-size_t Builder::add_accessor(std::string_view bytes, size_t count, int component, const char* type,
-                             int target) {
-    Json accessor = {{"bufferView", add_view(bytes, target)}, {"componentType", component}};
-    if (component == kUnsignedByte) accessor["normalized"] = true;
-    accessor["count"] = count;
-    accessor["type"] = type;
-    json["accessors"].push_back(std::move(accessor));
-    return json["accessors"].size() - 1;
+int Builder::add_accessor(std::string_view bytes, size_t count, int component, int type, int target) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = add_view(bytes, target);
+    accessor.componentType = component;
+    accessor.normalized = component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+    accessor.count = count;
+    accessor.type = type;
+    return add_to(model.accessors, std::move(accessor));
 }
 
-size_t Builder::add_indices(const Mesh& mesh) {
+int Builder::add_indices(const Mesh& mesh) {
     const size_t count = mesh.indices.size();
     if (mesh.positions.size() > kMostShortIndices)
-        return add_accessor(bytes_of(mesh.indices), count, kUnsignedInt, "SCALAR", kIndexBuffer);
+        return add_accessor(bytes_of(mesh.indices), count, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                            TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     std::vector<uint16_t>& indices = short_indices_.emplace_back();
     indices.resize(count);
     std::transform(mesh.indices.begin(), mesh.indices.end(), indices.begin(),
                    [](uint32_t index) { return static_cast<uint16_t>(index); });
-    return add_accessor(bytes_of(indices), count, kUnsignedShort, "SCALAR", kIndexBuffer);
+    return add_accessor(bytes_of(indices), count, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                        TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
 }
 
-Json Builder::make_primitive(const Mesh& mesh, int material, const LeafTint& tint) {
+tinygltf::Primitive Builder::make_primitive(const Mesh& mesh, int material, const LeafTint& tint) {
     const size_t count = mesh.positions.size();
     std::vector<glm::u8vec4>& wind = wind_.emplace_back();
     wind.resize(count);
@@ -132,53 +143,64 @@ Json Builder::make_primitive(const Mesh& mesh, int material, const LeafTint& tin
         low = glm::min(low, least);
         high = glm::max(high, most);
     }
-    Json primitive;
-    primitive["indices"] = add_indices(mesh);
-    Json& attributes = primitive["attributes"];
-    const auto add = [&](const char* attribute, std::string_view bytes, int component, const char* type) {
-        attributes[attribute] = add_accessor(bytes, count, component, type, kVertexBuffer);
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    primitive.indices = add_indices(mesh);
+    const auto add = [&](const char* attribute, std::string_view bytes, int component, int type) {
+        const int accessor = add_accessor(bytes, count, component, type, TINYGLTF_TARGET_ARRAY_BUFFER);
+        primitive.attributes[attribute] = accessor;
+        return static_cast<size_t>(accessor);
     };
-    add("POSITION", bytes_of(mesh.positions), kFloat, "VEC3");
-    json["accessors"].back()["min"] = {low.x, low.y, low.z};
-    json["accessors"].back()["max"] = {high.x, high.y, high.z};
-    add("NORMAL", bytes_of(mesh.normals), kFloat, "VEC3");
-    add("TANGENT", bytes_of(mesh.tangents), kFloat, "VEC4");
-    add("TEXCOORD_0", bytes_of(mesh.uvs), kFloat, "VEC2");
-    add("_WIND", bytes_of(wind), kUnsignedByte, "VEC4");
+    const size_t places =
+        add("POSITION", bytes_of(mesh.positions), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    model.accessors[places].minValues = {low.x, low.y, low.z};
+    model.accessors[places].maxValues = {high.x, high.y, high.z};
+    add("NORMAL", bytes_of(mesh.normals), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    add("TANGENT", bytes_of(mesh.tangents), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
+    add("TEXCOORD_0", bytes_of(mesh.uvs), TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
+    add("_WIND", bytes_of(wind), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4);
     if (tint) {
         std::vector<glm::u8vec4>& tints = tints_.emplace_back(count);
         parallel_for(count, kChunk, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; i++)
                 tints[i] = glm::u8vec4(Vec4(tint(mesh.positions[i], mesh.colors[i].w), 1.0f) * 255.0f + 0.5f);
         });
-        add("COLOR_0", bytes_of(tints), kUnsignedByte, "VEC4");
+        add("COLOR_0", bytes_of(tints), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4);
     }
-    primitive["material"] = material;
+    primitive.material = material;
     return primitive;
 }
 
-size_t Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& picture_name, int wrap,
-                            const std::string& suffix) {
+int Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& picture_name, int wrap,
+                         const std::string& suffix) {
     const auto found = std::find_if(
         all.begin(), all.end(), [&](const NamedPicture& picture) { return picture.name == picture_name; });
     if (found == all.end()) throw Error("The model lacks the picture '" + picture_name + "'.");
     // Two kinds of leaves may show one picture.
     const auto kept = std::find_if(pictures.begin(), pictures.end(),
                                    [&](const NamedPicture& picture) { return picture.png == found->png; });
-    if (kept != pictures.end() && !suffix.empty()) return static_cast<size_t>(kept - pictures.begin());
+    if (kept != pictures.end() && !suffix.empty()) return static_cast<int>(kept - pictures.begin());
     const std::string name = picture_name + suffix;
     pictures.push_back(*found);
     pictures.back().name = name;
-    json["images"].push_back(
-        {{"name", name}, {"mimeType", "image/png"}, {"bufferView", add_view(found->png, 0)}});
-    const Json sampler = {
-        {"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}, {"wrapS", wrap}, {"wrapT", wrap}};
-    Json& samplers = json["samplers"];
-    auto same = std::find(samplers.begin(), samplers.end(), sampler);
-    const auto index = static_cast<size_t>(same - samplers.begin());
-    if (same == samplers.end()) samplers.push_back(sampler);
-    json["textures"].push_back({{"name", name}, {"sampler", index}, {"source", json["images"].size() - 1}});
-    return json["textures"].size() - 1;
+    tinygltf::Image image;
+    image.name = name;
+    image.mimeType = "image/png";
+    image.bufferView = add_view(found->png, 0);
+    tinygltf::Texture texture;
+    texture.name = name;
+    texture.source = add_to(model.images, std::move(image));
+    const auto same = std::find_if(model.samplers.begin(), model.samplers.end(),
+                                   [&](const tinygltf::Sampler& sampler) { return sampler.wrapS == wrap; });
+    texture.sampler = static_cast<int>(same - model.samplers.begin());
+    if (same == model.samplers.end()) {
+        tinygltf::Sampler sampler;
+        sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+        sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+        sampler.wrapS = sampler.wrapT = wrap;
+        model.samplers.push_back(std::move(sampler));
+    }
+    return add_to(model.textures, std::move(texture));
 }
 
 // Of the names of what belongs to the leaves of a further kind.
@@ -187,29 +209,22 @@ std::string kind_suffix(size_t other) {
     return suffix += std::to_string(other + 2);
 }
 
-Json texture_info(size_t index) {
-    return Json::object({{"index", index}});
-}
-
 // A node with what is drawn of a level as one mesh: tools that scatter meshes take each for a level by its
 // name. Returns the node's number.
-size_t Builder::add_level(const ModelFile::Level& level, size_t number) {
-    const std::string name = "Tree_LOD" + std::to_string(number);
-    Json primitives = Json::array();
-    const auto add = [&](const Mesh* mesh, int material, const LeafTint& tint = {}) {
-        if (drawn(mesh)) primitives.push_back(make_primitive(*mesh, material, tint));
+int Builder::add_level(const ModelFile::Level& level, size_t number) {
+    tinygltf::Node node;
+    node.name = "Tree_LOD" + std::to_string(number);
+    tinygltf::Mesh mesh;
+    mesh.name = node.name;
+    const auto add = [&](const Mesh* part, int material, const LeafTint& tint = {}) {
+        if (drawn(part)) mesh.primitives.push_back(make_primitive(*part, material, tint));
     };
     add(level.bark, bark_material_);
     add(level.leaves, leaf_materials_[0], tint_of_[0]);
     for (size_t i = 0; i < level.other_leaves.size(); i++)
         add(level.other_leaves[i], leaf_materials_[i + 1], tint_of_[i + 1]);
-    Json node = {{"name", name}};
-    if (!primitives.empty()) {
-        node["mesh"] = json["meshes"].size();
-        json["meshes"].push_back({{"name", name}, {"primitives", std::move(primitives)}});
-    }
-    json["nodes"].push_back(std::move(node));
-    return json["nodes"].size() - 1;
+    if (!mesh.primitives.empty()) node.mesh = add_to(model.meshes, std::move(mesh));
+    return add_to(model.nodes, std::move(node));
 }
 
 // The finest level is in the scene; the others are known to it alone (MSFT_lod), in the order of their
@@ -222,30 +237,37 @@ void Builder::add_levels(const ModelFile& file) {
         const double high = 0.5 / (kHalfHeight * std::max(distance, 1e-3));
         return std::min(high * high, 1.0);
     };
-    Json ids = Json::array(), coverages = Json::array();
-    const size_t finest = add_level({file.bark, file.leaves, 0.0, file.other_leaves}, 0);
-    json["nodes"][0]["children"] = {finest};
+    const int finest = add_level({file.bark, file.leaves, 0.0, file.other_leaves}, 0);
+    model.nodes[0].children = {finest};
     if (file.coarser.empty()) return;
+    tinygltf::Value::Array ids, coverages;
     for (size_t i = 0; i < file.coarser.size(); i++) {
-        ids.push_back(add_level(file.coarser[i], i + 1));
-        coverages.push_back(coverage(file.coarser[i].distance));
+        ids.emplace_back(add_level(file.coarser[i], i + 1));
+        coverages.emplace_back(coverage(file.coarser[i].distance));
     }
-    coverages.push_back(0.0);  // the coarsest one to the horizon
-    json["nodes"][finest]["extensions"]["MSFT_lod"]["ids"] = std::move(ids);
-    json["nodes"][finest]["extras"]["MSFT_screencoverage"] = std::move(coverages);
-    json["extensionsUsed"] = {"MSFT_lod"};
+    coverages.emplace_back(0.0);  // the coarsest one to the horizon
+    tinygltf::Node& node = model.nodes[static_cast<size_t>(finest)];
+    node.extensions["MSFT_lod"] = tinygltf::Value(tinygltf::Value::Object{{"ids", tinygltf::Value(ids)}});
+    node.extras =
+        tinygltf::Value(tinygltf::Value::Object{{"MSFT_screencoverage", tinygltf::Value(coverages)}});
+    model.extensionsUsed = {"MSFT_lod"};
 }
 
 Builder::Builder(const ModelFile& file) {
-    json["asset"] = {{"version", "2.0"}, {"generator", "Godot tree reconstruction (treerec)"}};
-    json["scene"] = 0;
-    json["scenes"] = Json::array({{{"name", "Tree"}, {"nodes", {0}}}});
-    json["nodes"] = Json::array({{{"name", "Tree"}}});
-    for (const char* list :
-         {"meshes", "materials", "textures", "images", "samplers", "accessors", "bufferViews"})
-        json[list] = Json::array();
+    model.asset.version = "2.0";
+    model.asset.generator = "Godot tree reconstruction (treerec)";
+    model.defaultScene = 0;
+    tinygltf::Scene scene;
+    scene.name = "Tree";
+    scene.nodes = {0};
+    model.scenes.push_back(std::move(scene));
+    tinygltf::Node root;
+    root.name = "Tree";
+    tinygltf::Value::Object extras;
     for (const auto& [name, value] : file.extras)
-        json["nodes"][0]["extras"][name] = value;
+        extras[name] = tinygltf::Value(value);
+    if (!extras.empty()) root.extras = tinygltf::Value(extras);
+    model.nodes.push_back(std::move(root));
     // Geometry first: the pictures at the buffer's end can then be cut off into files of their own.
     bool has_bark = false;
     std::vector<bool> has_leaves(1 + file.other_leaves.size(), false);
@@ -270,43 +292,43 @@ Builder::Builder(const ModelFile& file) {
     geometry_size = size;
     const std::vector<NamedPicture> all =
         file.pictures.empty() && size > 0 ? make_pictures(file.preset) : file.pictures;
-    if (has_bark) {
-        Json material, surface;
-        material["name"] = "bark";
-        surface["baseColorTexture"] = texture_info(add_texture(all, "bark_albedo", kRepeat));
-        material["normalTexture"] = texture_info(add_texture(all, "bark_normal", kRepeat));
-        const size_t roughness = add_texture(all, "bark_roughness", kRepeat);
-        surface["metallicRoughnessTexture"] = texture_info(roughness);
-        material["occlusionTexture"] = texture_info(roughness);
-        material["pbrMetallicRoughness"] = std::move(surface);
-        json["materials"].push_back(std::move(material));
-    }
+    if (has_bark) add_bark_material(all);
     if (has_leaves[0]) add_leaf_material(all, "", "", bool(file.leaf_tint));
     for (size_t i = 0; i < file.other_leaves.size(); i++)
         if (has_leaves[i + 1])
             add_leaf_material(file.other_materials.at(i).pictures, kind_suffix(i),
                               file.other_materials[i].rule, bool(file.other_materials[i].tint));
-    if (size > 0) json["buffers"] = Json::array({{{"byteLength", size}}});
-    // glTF knows no empty lists.
-    for (auto list = json.begin(); list != json.end();)
-        list = list->is_array() && list->empty() ? json.erase(list) : std::next(list);
+}
+
+void Builder::add_bark_material(const std::vector<NamedPicture>& all) {
+    tinygltf::Material material;
+    material.name = "bark";
+    tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+    constexpr int kWrap = TINYGLTF_TEXTURE_WRAP_REPEAT;
+    surface.baseColorTexture.index = add_texture(all, "bark_albedo", kWrap);
+    material.normalTexture.index = add_texture(all, "bark_normal", kWrap);
+    surface.metallicRoughnessTexture.index = add_texture(all, "bark_roughness", kWrap);
+    material.occlusionTexture.index = surface.metallicRoughnessTexture.index;
+    model.materials.push_back(std::move(material));
 }
 
 // suffix, rule: of a further kind of leaves; empty for the tree's own. tinted: by vertex.
 void Builder::add_leaf_material(const std::vector<NamedPicture>& all, const std::string& suffix,
                                 const std::string& rule, bool tinted) {
-    Json material, surface;
-    material["name"] = "leaves" + suffix;
-    surface["baseColorTexture"] = texture_info(add_texture(all, "leaf_albedo", kClampToEdge, suffix));
-    if (!tinted) surface["baseColorFactor"] = kLeafTint;
-    surface["metallicFactor"] = 0.0;
-    surface["roughnessFactor"] = 1.0;  // a crown of many small mirrors would be white
-    material["pbrMetallicRoughness"] = std::move(surface);
-    material["normalTexture"] = texture_info(add_texture(all, "leaf_normal", kClampToEdge, suffix));
-    material["alphaMode"] = "MASK";
-    material["alphaCutoff"] = kLeafCutoff;
-    if (!rule.empty()) material["extras"]["leaf_rule"] = rule;
-    json["materials"].push_back(std::move(material));
+    tinygltf::Material material;
+    material.name = "leaves" + suffix;
+    tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+    constexpr int kWrap = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    surface.baseColorTexture.index = add_texture(all, "leaf_albedo", kWrap, suffix);
+    if (!tinted) surface.baseColorFactor = kLeafTint;
+    surface.metallicFactor = 0.0;
+    surface.roughnessFactor = 1.0;  // a crown of many small mirrors would be white
+    material.normalTexture.index = add_texture(all, "leaf_normal", kWrap, suffix);
+    material.alphaMode = "MASK";
+    material.alphaCutoff = kLeafCutoff;
+    if (!rule.empty())
+        material.extras = tinygltf::Value(tinygltf::Value::Object{{"leaf_rule", tinygltf::Value(rule)}});
+    model.materials.push_back(std::move(material));
 }
 
 // A file's name as part of a URI (RFC 3986).
@@ -333,9 +355,19 @@ void append_u32(std::string& bytes, size_t value) {
         bytes += static_cast<char>(value >> shift & 0xFF);
 }
 
+// What tinygltf writes, with its one buffer. Sorted by name, so that the same model has the same bytes.
+Json json_of(const Builder& built) {
+    std::ostringstream text;
+    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&built.model, text, false, false))
+        throw Error("The model could not be put into words as glTF.");
+    Json json = Json::parse(text.str());
+    if (built.size > 0) json["buffers"] = Json::array({{{"byteLength", built.size}}});
+    return json;
+}
+
 // The pictures as files of a folder beside the model, which the model names.
-void write_pictures(const std::string& path, Builder& model, const Progress* progress) {
-    if (model.pictures.empty()) return;
+void write_pictures(const std::string& path, const Builder& built, Json& json, const Progress* progress) {
+    if (built.pictures.empty()) return;
     const std::string folder = stem_of(path) + kPictureFolder;
     std::error_code code;
     std::filesystem::create_directory(path_of(sibling_of(path, folder)), code);
@@ -343,47 +375,49 @@ void write_pictures(const std::string& path, Builder& model, const Progress* pro
         throw Error(
             "The folder '" + sibling_of(path, folder) +
             "' for the pictures could not be made; check the rights, or whether a file has its name.");
-    for (size_t i = 0; i < model.pictures.size(); i++) {
-        const std::string name = model.pictures[i].name + ".png";
-        write_file(sibling_of(path, folder + "/" + name), model.pictures[i].png, progress);
-        model.json["images"][i] = {{"name", model.pictures[i].name},
-                                   {"uri", percent_encoded(folder) + "/" + percent_encoded(name)}};
+    for (size_t i = 0; i < built.pictures.size(); i++) {
+        const std::string name = built.pictures[i].name + ".png";
+        write_file(sibling_of(path, folder + "/" + name), built.pictures[i].png, progress);
+        json["images"][i] = {{"name", built.pictures[i].name},
+                             {"uri", percent_encoded(folder) + "/" + percent_encoded(name)}};
     }
-    Json& views = model.json["bufferViews"];
-    views.erase(views.end() - static_cast<std::ptrdiff_t>(model.pictures.size()), views.end());
-    model.parts.resize(model.geometry_parts);
-    model.size = model.geometry_size;
-    model.json["buffers"][0]["byteLength"] = model.size;
+    Json& views = json["bufferViews"];
+    views.erase(views.end() - static_cast<std::ptrdiff_t>(built.pictures.size()), views.end());
+    json["buffers"][0]["byteLength"] = built.geometry_size;
 }
 
 // One file: header, JSON, buffer (specification 2.0, section 4).
-void write_glb(const std::string& path, const Builder& model, const Progress* progress) {
-    std::string text = model.json.dump();
+void write_glb(const std::string& path, const Json& json, const std::vector<std::string_view>& buffer,
+               const Progress* progress) {
+    std::string text = json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
-    const size_t buffer = model.size > 0 ? 8 + model.size : 0;
+    size_t size = 0;
+    for (const std::string_view part : buffer)
+        size += part.size();
     std::string head, chunk;
     append_u32(head, kGlbMagic);
     append_u32(head, kGlbVersion);
-    append_u32(head, 12 + 8 + text.size() + buffer);
+    append_u32(head, 12 + 8 + text.size() + (size > 0 ? 8 + size : 0));
     append_u32(head, text.size());
     append_u32(head, kJsonChunk);
-    if (buffer > 0) {
-        append_u32(chunk, model.size);
+    if (size > 0) {
+        append_u32(chunk, size);
         append_u32(chunk, kBinChunk);
     }
     std::vector<std::string_view> parts{head, text, chunk};
-    parts.insert(parts.end(), model.parts.begin(), model.parts.end());
+    parts.insert(parts.end(), buffer.begin(), buffer.end());
     write_file(path, parts, progress);
 }
 
 // JSON and buffer, each in a file, the JSON last.
-void write_json(const std::string& path, Builder& model, const Progress* progress) {
+void write_json(const std::string& path, Json& json, const std::vector<std::string_view>& buffer,
+                const Progress* progress) {
     const std::string stem = stem_of(path);
-    if (model.size > 0) {
-        write_file(sibling_of(path, stem + ".bin"), model.parts, progress);
-        model.json["buffers"][0]["uri"] = percent_encoded(stem + ".bin");
+    if (!buffer.empty()) {
+        write_file(sibling_of(path, stem + ".bin"), buffer, progress);
+        json["buffers"][0]["uri"] = percent_encoded(stem + ".bin");
     }
-    write_file(path, model.json.dump(1, '\t'), progress);
+    write_file(path, json.dump(1, '\t'), progress);
 }
 
 }  // namespace
@@ -404,12 +438,16 @@ void write_gltf(const std::string& path, const ModelFile& file, const Progress* 
         check_all({level.bark, level.leaves});
         check_all(level.other_leaves);
     }
-    Builder model(file);
-    if (extension == "gltf" || file.pictures_beside) write_pictures(path, model, progress);
+    Builder built(file);
+    Json json = json_of(built);
+    if (extension == "gltf" || file.pictures_beside) {
+        write_pictures(path, built, json, progress);
+        built.parts.resize(built.geometry_parts);
+    }
     if (extension == "glb")
-        write_glb(path, model, progress);
+        write_glb(path, json, built.parts, progress);
     else
-        write_json(path, model, progress);
+        write_json(path, json, built.parts, progress);
 }
 
 }  // namespace treerec

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "error.h"
+#include "exchange/read_triangles.h"
 #include "growth/bark_map.h"
 #include "growth/shapes.h"
 #include "growth/texture.h"

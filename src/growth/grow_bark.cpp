@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "exchange/read_triangles.h"
 #include "growth/blended_normals.h"
 #include "growth/detour.h"
 #include "growth/features_of.h"
 #include "growth/judge.h"
 #include "growth/levels.h"
 #include "growth/run.h"
-#include "growth/shapes.h"
 #include "growth/texture.h"
 #include "growth/trace.h"
 #include "growth/tree_plan.h"

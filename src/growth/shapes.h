@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "geometry/vec.h"
@@ -20,7 +19,5 @@ Triangles box(const DVec3& middle, const DVec3& x, const DVec3& y, const DVec3& 
 Triangles sheet(const DVec3& middle, const DVec3& x, const DVec3& y);
 // axis: unit, of the ring; radius: to the middle of what is `thick` metres thick.
 Triangles torus(const DVec3& middle, const DVec3& axis, double radius, double thick);
-// Of a Wavefront OBJ file: v and f lines, other lines are passed over. Throws Error for what can't be read.
-Triangles read_triangles(const std::string& path);
 
 }  // namespace treerec::growth

@@ -9,8 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#define TINYGLTF_IMPLEMENTATION
-#include "quiet_tiny_gltf.h"
+#include "exchange/quiet_tiny_gltf.h"
 
 #include "error.h"
 #include "mesh/branch_tubes.h"

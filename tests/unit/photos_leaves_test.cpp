@@ -17,7 +17,7 @@
 #include "photos/leaf_look.h"
 #include "photos/photo_picture.h"
 #include "pipeline/export.h"
-#include "quiet_tiny_gltf.h"
+#include "exchange/quiet_tiny_gltf.h"
 #include "synth/grow.h"
 #include "with_photos.h"
 

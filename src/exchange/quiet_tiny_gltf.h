@@ -1,9 +1,9 @@
-// tinygltf without its pictures and without warnings, as the judge of what is written. One test has its
-// implementation: it defines TINYGLTF_IMPLEMENTATION before.
+// tinygltf without its pictures, its own reading of files and warnings; tiny_gltf.cpp has its implementation.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

@@ -1,0 +1,2 @@
+#define TINYGLTF_IMPLEMENTATION
+#include "exchange/quiet_tiny_gltf.h"
