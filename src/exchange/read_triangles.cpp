@@ -240,7 +240,8 @@ tinygltf::Model parse(const std::string& path, const FileBytes& bytes) {
          [](const std::string& name, void*) { return name; },
          [](std::vector<unsigned char>* out, std::string* error, const std::string& name, void*) {
              try {
-                 const std::string_view content = read_file(name).view();
+                 const FileBytes bytes = read_file(name);
+                 const std::string_view content = bytes.view();
                  out->assign(content.begin(), content.end());
                  return true;
              } catch (const Error& why) {
