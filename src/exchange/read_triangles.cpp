@@ -58,7 +58,8 @@ Triangles read_obj(const std::string& path, const FileBytes& bytes) {
                 triangles.push_back({corners[0], corners[i - 1], corners[i]});
         }
     }
-    if (triangles.empty()) throw Error("'" + path + "' has no faces: give a mesh as a Wavefront OBJ file.");
+    if (triangles.empty())
+        throw Error("'" + path + "' has no faces: give a mesh as a .glb, .gltf or .obj file.");
     return triangles;
 }
 

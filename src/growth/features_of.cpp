@@ -87,7 +87,7 @@ Triangles placed_mesh(const GrowthObstacle& wanted) {
     if (!wanted.mesh.empty() && wanted.triangles.empty())
         throw Error("The obstacle " + quote_word(wanted.mesh) +
                     " is a mesh of a scene, which is not at hand here. Grow this recipe in the editor, or "
-                    "give the obstacle a file=, a Wavefront OBJ file.");
+                    "give the obstacle a file=, a .glb, .gltf or .obj file.");
     Triangles triangles = wanted.mesh.empty() ? read_triangles(wanted.file) : wanted.triangles;
     const DVec3 x = wanted.x.value_or(DVec3(1.0, 0.0, 0.0)), y = wanted.y.value_or(DVec3(0.0, 1.0, 0.0)),
                 z = wanted.z.value_or(DVec3(0.0, 0.0, 1.0)), middle = wanted.at.value_or(DVec3(0.0));

@@ -115,7 +115,7 @@ void take_obstacle(GrowthRecipe& recipe, const EditArguments& arguments) {
     const bool named = !obstacle.file.empty() || !obstacle.mesh.empty();
     if ((obstacle.shape == Shape::kMesh) != named)
         throw Error(named ? "An obstacle with file= needs shape=mesh."
-                          : "An obstacle with shape=mesh needs file=, a Wavefront OBJ file.");
+                          : "An obstacle with shape=mesh needs file=, a .glb, .gltf or .obj file.");
     if (!obstacle.file.empty() && !obstacle.mesh.empty())
         throw Error("An obstacle is of a file= or of a mesh=, not of both.");
     obstacle.lip = lip_of(arguments);
@@ -187,7 +187,7 @@ std::vector<Parameter> hollow_parameters() {
          number_parameter("from", 0.4, 0.0, 1.0, "share of the age of the wood there after which it begins"),
          number_parameter("until", 0.85, 0.0, 1.0, "share of that age after which no more bark decays"),
          text_parameter("region", {"hole.obj"},
-                        "a closed mesh, OBJ file, in which bark decays instead of width and height")
+                        "a closed mesh (.glb, .gltf, .obj) in which bark decays instead of width and height")
              .optional()});
     add_lip(parameters, 0.1, 0.3, 0.4, 0.06);
     return parameters;
@@ -216,7 +216,8 @@ std::vector<Parameter> obstacle_parameters() {
          length_parameter("radius", 0.05, 0.0005, kFarthest, "of a post or ring"),
          length_parameter("width", 0.1, 0.001, kFarthest, "of a box or sheet"),
          length_parameter("thickness", 0.004, 0.0005, kFarthest, "of a box, wire or ring"),
-         text_parameter("file", {"fence.obj"}, "a mesh, OBJ file in the tree's space, metres").optional(),
+         text_parameter("file", {"fence.obj"}, "a mesh (.glb, .gltf, .obj) in the tree's space, metres")
+             .optional(),
          text_parameter("mesh", {"fence"}, "instead, a mesh that is kept with a tree in a scene").optional(),
          offset_parameter("x", "where the X axis of a mesh points, as long as a metre of it is").optional(),
          offset_parameter("y", "likewise, of its Y axis").optional(),
@@ -270,7 +271,7 @@ const std::vector<GrowthCommand>& growth_commands() {
          take_cuts},
         {"seed",
          "What it starts from: a closed mesh that the trunk begins in, instead of a small prism.",
-         {text_parameter("file", {"stump.obj"}, "an OBJ file in the tree's space, metres")},
+         {text_parameter("file", {"stump.obj"}, "a mesh (.glb, .gltf, .obj) in the tree's space, metres")},
          take_seed},
         {"fuse", "Surfaces that meet become one, instead of only looking as one.", {}, take_fuse},
         {"section", "The outline of wood that is not round; sections of a branch go over into one another.",

@@ -31,15 +31,22 @@ const PATTERNS: PackedStringArray = [
 	"An obstacle has corners that are no numbers: give it a mesh that has its place.",
 	"%s=%s is larger than %s=%s: make it smaller.",
 	"A hollow that begins at from=%s must end later: give until= more than that.",
-	"An obstacle with shape=mesh needs file=, a Wavefront OBJ file.",
+	"An obstacle with shape=mesh needs file=, a .glb, .gltf or .obj file.",
 	"An obstacle with file= needs shape=mesh.",
 	"An obstacle is of a file= or of a mesh=, not of both.",
 	(
 		"The obstacle %s is a mesh of a scene, which is not at hand here. Grow this recipe in the editor,"
-		+ " or give the obstacle a file=, a Wavefront OBJ file."
+		+ " or give the obstacle a file=, a .glb, .gltf or .obj file."
 	),
 	"There is no recipe %s; there are %s.",
-	"'%s' has no faces: give a mesh as a Wavefront OBJ file.",
+	"'%s' has no faces: give a mesh as a .glb, .gltf or .obj file.",
+	"'%s' names what is not in it: the file is damaged.",
+	"'%s' has sparse or compressed geometry: export it without compression.",
+	"'%s' has more than %s triangles: simplify it.",
+	"'%s' is larger than 4 GB: simplify it.",
+	"'%s' can't be read as a glTF model.",
+	"'%s' can't be read as a glTF model: %s",
+	"'%s' shows no triangles in its scene.",
 	"This build was made without CGAL and can't grow bark; get one that has it.",
 	"The tree has no wood that lumps could be on.",
 	"The scan has no points that bark could be compared with.",
