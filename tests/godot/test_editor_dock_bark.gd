@@ -261,8 +261,8 @@ func test_a_preset_brings_edges_where_there_are_none() -> void:
 	var of: TreeReconstruction = GrownBark.stout()
 	_begin(of)
 	var shown: Bark = _bark()
-	var own: Recipe.Line = (
-		Recipe.new(TreeReconstructor.scale_growth_preset("old_oak", of)).find("edges")
+	var own: Recipe.Line = Recipe.new(TreeReconstructor.scale_growth_preset("old_oak", of)).find(
+		"edges"
 	)
 	shown.take_preset("old_oak")
 	check_near(shown.edge.value, own.values["longest"].to_float(), 1e-6, "the edges")
