@@ -14,7 +14,7 @@ namespace {
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
 // Of what a vertex stands out of an even bend, and beside wood of what it stands out of its neighbours, that
-// it grows less in a step in which it grows by so much of its edges, or more.
+// it grows less in a step; there where it grows by so much of its edges in that, or more.
 constexpr double kSmooth = 0.2, kTension = 0.15, kPace = 0.1;
 constexpr int kPieces = 2, kTries = 6;  // to find where wood that is not round ends
 constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's foot or end
@@ -135,8 +135,8 @@ DVec3 bend(const Surface& surface, Vertex v) {
 // Beside the paper: where a lip closes there is less and less room, and it would buckle into beads. Metres by
 // which a vertex that would grow by `whole` grows less in a step because it stands out of a surface that
 // bends evenly, as a bead does and a lip's roll does not; and beside wood also because it stands out of its
-// neighbours more than on a round trunk, so that mouths stay smooth. As much growth is smoothed alike in many
-// steps and in few. direction: of the axis, `distance` metres away.
+// neighbours more than on a round trunk, so that mouths stay smooth. There as much growth is smoothed alike
+// in many steps and in few. direction: of the axis, `distance` metres away.
 double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus, const DVec3& direction,
                 double distance, double whole) {
     double around = 0.0, across = 0.0, edges = 0.0;
@@ -150,7 +150,7 @@ double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool call
         edges += glm::length(way);
         count++;
     }
-    const double share = std::min(whole * count / (kPace * edges), 1.0);
+    const double share = callus ? std::min(whole * count / (kPace * edges), 1.0) : 1.0;
     const double own = glm::dot(bend(surface, v), normal);
     const double round = distance > 0.0 ? across / (2.0 * distance * count) : 0.0;
     return share * (kSmooth * (own - around / count) + (callus ? kTension * (own - round) : 0.0));
@@ -247,8 +247,9 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                 const DVec3 more = (whole - cell.speed) * normal + whole * lip.wrap;
                 const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
                 const double smooth = distance > 0.0 ? less * glm::dot(normal, from_axis) / distance : 0.0;
-                // Nor is what smoothing takes a reason to stay thinner than plain bark.
-                cell.extra = std::max(std::max(away, 0.0) - smooth, -std::max(cell.excess, 0.0));
+                cell.extra = std::max(away, 0.0) - smooth;
+                // Nor is what smoothing takes beside wood a reason to stay thinner than plain bark.
+                if (lip.callus) cell.extra = std::max(cell.extra, -std::max(cell.excess, 0.0));
             }
             most = std::max(most, glm::length(cell.velocity));
         }
