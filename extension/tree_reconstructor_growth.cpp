@@ -157,8 +157,7 @@ String TreeReconstructor::scale_growth_preset(const String& p_name, const Ref<Tr
     ERR_FAIL_COND_V_MSG(p_tree.is_null(), String(), "There is no tree that bark could grow on.");
     return guarded(String(), [&] {
         const treerec::GrowthPreset& preset = treerec::find_growth_preset(to_std(p_name));
-        const double radius = treerec::trunk_radius(*p_tree->get_tree());
-        return to_godot(treerec::scale_recipe(preset.recipe, radius / treerec::kPresetRadius));
+        return to_godot(treerec::preset_recipe(preset, *p_tree->get_tree()));
     });
 }
 

@@ -50,7 +50,7 @@ std::string recipe_from(const Arguments& arguments, const Tree& tree) {
         } catch (const Error& error) {
             throw UsageError(error.what());
         }
-        text = scale_recipe(preset->recipe, trunk_radius(tree) / kPresetRadius);
+        text = preset_recipe(*preset, tree);
     }
     if (arguments.has("--recipe")) text += read_file(arguments.text("--recipe", "")).view();
     if (arguments.has("-c"))
@@ -95,7 +95,7 @@ const Command& bark_command() {
          {"-c", "COMMAND", "one line of the recipe; after the recipe's own, in the order given", true},
          {"--recipe", "FILE", "one command per line, # begins a comment"},
          {"--preset", "NAME",
-          "begins with a recipe that ships with us, scaled to the trunk: fence_post_swallowed "
+          "begins with a recipe that ships with us, scaled to the trunk, edges too: fence_post_swallowed "
           "hollow_refuge old_oak spiral_grain"},
          {"--scan", "CLOUD", "the scan that the tree was made of, best as 'reconstruct --cloud' writes it"},
          {"--from-scan", "",

@@ -74,7 +74,7 @@ Lips::Growth Lips::at(const DVec3& place, const DVec3& normal) const {
     found.erase(std::unique(found.begin(), found.end()), found.end());
     for (const uint32_t item : found)
         take(item);
-    growth.callus = extra[0] > 0.0;
+    growth.callus = extra[0] > 0.0 || within[0];
     for (int which = 0; which < 2; which++) {
         growth.extra += extra[which];
         if (within[which]) growth.wrap += wrap[which] * normalized_or(sum[which], DVec3(0.0));

@@ -21,6 +21,10 @@ inline constexpr double kPresetRadius = 0.22;
 // What that is of a tree: metres, at breast height; of lower trees at the foot.
 double trunk_radius(const Tree& tree);
 
+// Longest edges for a preset, metres: a fifth of the trunk's radius, at which mouths and lips show, or as
+// long as it takes for growth to stay about half a minute on one core.
+double preset_edges(const Tree& tree);
+
 // By name: fence_post_swallowed, hollow_refuge, old_oak, spiral_grain.
 std::span<const GrowthPreset> growth_presets();
 
@@ -30,5 +34,8 @@ const GrowthPreset& find_growth_preset(std::string_view name);
 // A recipe's text with all its lengths times `factor`, so that it looks on a trunk so much thicker as it did.
 // Throws as read_growth_recipe(), but for nodes, which stay as they are written.
 std::string scale_recipe(std::string_view text, double factor);
+
+// A preset for this tree: scaled to its trunk, with edges to suit it.
+std::string preset_recipe(const GrowthPreset& preset, const Tree& tree);
 
 }  // namespace treerec

@@ -13,8 +13,9 @@ namespace {
 
 // A vertex that is behind its axis's radius may catch up by so many times its usual speed.
 constexpr double kCatchUp = 2.0;
-constexpr double kSmooth = 0.2;  // of what a vertex stands out of an even bend, that it grows less in a step,
-constexpr double kTension = 0.15;       // and beside wood of what it stands out of its neighbours
+// Of what a vertex stands out of an even bend, and beside wood of what it stands out of its neighbours, that
+// it grows less in a step; there where it grows by so much of its edges in that, or more.
+constexpr double kSmooth = 0.2, kTension = 0.15, kPace = 0.1;
 constexpr int kPieces = 2, kTries = 6;  // to find where wood that is not round ends
 constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's foot or end
 
@@ -82,14 +83,20 @@ double way_to_bark(const WoodSection& wood, const Stand& stand, double excess, d
 }
 
 // S_c: what cambium of this age has to grow along its normal to come to its axis's radius in the end. The
-// pith need not lie on the axis: what grows from it towards the axis has farther to go.
+// pith need not lie on the axis: what grows from it towards the axis has farther to go. callus: beside wood,
+// where bark rolls into the mouth, and would never come to the axis's radius that way: only what faces
+// outwards catches up.
 double cambium_speed(const Cell& cell, const AxisPlace& axis, const Stand& stand, const GrowthPlan& plan,
-                     const WoodSection& wood, int step) {
+                     const WoodSection& wood, int step, bool callus = false) {
     if (!plan.follow) return axis.speed;
     const double usual =
         std::max(wood.pace(stand.off), 1.0) * axis.radius / std::max(plan.steps - axis.step, 1.0);
     const double young = std::min(plan.young, axis.radius);
-    const double most = std::max(kCatchUp * usual, 0.5 * young);
+    double most = std::max(kCatchUp * usual, 0.5 * young);
+    if (callus) {
+        const double away = glm::dot(stand.normal, normalized_or(stand.off, DVec3(0.0)));
+        most = usual * (1.0 + (kCatchUp - 1.0) * std::clamp(away, 0.0, 1.0));
+    }
     if (!wood.is_round()) return way_to_bark(wood, stand, cell.excess, most);
     const double bark = bark_radius(plan, axis, step + 1.0) + cell.excess;
     const double inside = bark * bark - glm::dot(stand.off, stand.off);
@@ -126,23 +133,27 @@ DVec3 bend(const Surface& surface, Vertex v) {
 }
 
 // Beside the paper: where a lip closes there is less and less room, and it would buckle into beads. Metres by
-// which a vertex grows less in a step because it stands out of a surface that bends evenly, as a bead does
-// and a lip's roll does not; and beside wood also because it stands out of its neighbours more than on a
-// round trunk, so that mouths stay smooth. direction: of the axis, `distance` metres away.
+// which a vertex that would grow by `whole` grows less in a step because it stands out of a surface that
+// bends evenly, as a bead does and a lip's roll does not; and beside wood also because it stands out of its
+// neighbours more than on a round trunk, so that mouths stay smooth. There as much growth is smoothed alike
+// in many steps and in few. direction: of the axis, `distance` metres away.
 double smoothed(const Surface& surface, Vertex v, const DVec3& normal, bool callus, const DVec3& direction,
-                double distance) {
-    double around = 0.0, across = 0.0;
+                double distance, double whole) {
+    double around = 0.0, across = 0.0, edges = 0.0;
     int count = 0;
     const DVec3 side = glm::cross(direction, normal);
     for (const Vertex other : CGAL::vertices_around_target(surface.mesh.halfedge(v), surface.mesh)) {
         around += glm::dot(bend(surface, other), normal);
-        const double aside = glm::dot(surface.place(other) - surface.place(v), side);
+        const DVec3 way = surface.place(other) - surface.place(v);
+        const double aside = glm::dot(way, side);
         across += aside * aside;
+        edges += glm::length(way);
         count++;
     }
+    const double share = callus ? std::min(whole * count / (kPace * edges), 1.0) : 1.0;
     const double own = glm::dot(bend(surface, v), normal);
     const double round = distance > 0.0 ? across / (2.0 * distance * count) : 0.0;
-    return kSmooth * (own - around / count) + (callus ? kTension * (own - round) : 0.0);
+    return share * (kSmooth * (own - around / count) + (callus ? kTension * (own - round) : 0.0));
 }
 
 // Equation 8, as far as the hollow may reach.
@@ -220,24 +231,25 @@ double set_velocities(Surface& surface, const GrowthPlan& plan, std::vector<Feat
                                                from_axis, wood.at(cell.owner, axis, step));
             } else {
                 const DVec3 normal = vertex_normal(surface, v);
-                cell.speed = cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step),
-                                           plan, wood_at(cell, axis, off), step);
                 Lips::Growth lip = lips.at(place, normal);
+                cell.speed = cambium_speed(cell, axis, stand_of(plan, branch, axis, place, normal, step),
+                                           plan, wood_at(cell, axis, off), step, lip.callus);
                 lip.wrap -= normal * std::min(glm::dot(lip.wrap, normal), 0.0);  // bark does not shrink
                 const double extra = extra_growth(surface, features, place) + lip.extra;
                 // Equations 4, 6, 9 and 10.
                 const double whole = (1.0 + extra) * cell.speed;
-                const double less =
-                    lip.extra > 0.0
-                        ? std::clamp(smoothed(surface, v, normal, lip.callus, axis.direction, distance),
-                                     -whole, whole)
-                        : 0.0;
+                const double less = lip.extra > 0.0 ? std::clamp(smoothed(surface, v, normal, lip.callus,
+                                                                          axis.direction, distance, whole),
+                                                                 -whole, whole)
+                                                    : 0.0;
                 cell.velocity = (whole - less) * (normal + lip.wrap);
                 // What of it goes away from the axis beside plain growth: that is no reason to stop sooner.
                 const DVec3 more = (whole - cell.speed) * normal + whole * lip.wrap;
                 const double away = distance > 0.0 ? glm::dot(more, from_axis) / distance : 0.0;
                 const double smooth = distance > 0.0 ? less * glm::dot(normal, from_axis) / distance : 0.0;
                 cell.extra = std::max(away, 0.0) - smooth;
+                // Nor is what smoothing takes beside wood a reason to stay thinner than plain bark.
+                if (lip.callus) cell.extra = std::max(cell.extra, -std::max(cell.excess, 0.0));
             }
             most = std::max(most, glm::length(cell.velocity));
         }

@@ -41,7 +41,7 @@ func _film() -> void:
 	var grown: TreeReconstruction = null
 	if tree != null:
 		tree.leaf_preset = arguments[2] if arguments.size() > 2 else "oak"
-		recipe = _EDGES + TreeReconstructor.scale_growth_preset(_PRESET, tree)
+		recipe = TreeReconstructor.scale_growth_preset(_PRESET, tree) + _EDGES
 		grown = maker.grow_bark(tree, recipe, true)
 	if grown == null:
 		push_error(maker.get_error_message())

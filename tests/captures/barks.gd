@@ -12,8 +12,6 @@ const Things := preload("bark_things.gd")
 const _SIZE: Vector2i = Vector2i(420, 640)
 const _SUPERSAMPLING: int = 2
 const _COLUMNS: int = 6
-# The recipe's first line. A tree with thick limbs would take minutes with shorter edges.
-const _EDGES: String = "edges longest=0.045\n"
 # Of the height at which the highest feature stands, that a picture shows.
 const _HEADROOM: float = 1.3
 # Radians that a tree is turned away from where its features face the camera.
@@ -52,7 +50,7 @@ func _draw() -> void:
 		var recipe: String = (
 			FileAccess.get_file_as_string(presets[i])
 			if presets[i].ends_with(".recipe")
-			else _EDGES + TreeReconstructor.scale_growth_preset(presets[i], tree)
+			else TreeReconstructor.scale_growth_preset(presets[i], tree)
 		)
 		var grown: TreeReconstruction = maker.grow_bark(tree, recipe)
 		if grown == null:

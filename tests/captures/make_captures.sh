@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each; sketch: docs/sketch.webp; bark_post: docs/bark_post.webp. (The forest is too much for
+# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each; sketch: docs/sketch.webp; bark_post: docs/bark_post.webp; bark_presets: docs/bark_presets.webp, a picture. (The forest is too much for
 # a software rasterizer; docs/game/forest.jpg is one picture of it.) Run './dev demo' before,
 # on a machine that does nothing else; then, with GODOT naming the engine and img2webp (Debian's package webp) at hand,
 #
@@ -26,6 +26,19 @@ for name in "${@:-one_tree scan_and_tree felling}"; do
             own_cache xvfb-run -a "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
                 --resolution 160x120 --script "$PWD/tests/captures/bark_film.gd" -- "$PINE" "$frames" oak
             ffmpeg -loglevel error -y -framerate 14 -i "$frames/%04d.png" -loop 0 -quality 70 docs/bark_post.webp
+            continue
+        fi
+        if [ "$scene" = bark_presets ]; then
+            : "${SKELETONS:?SKELETONS must name those of three scans, as 'treerec reconstruct' makes them}"
+            rows=()
+            for tree in $SKELETONS; do
+                row="$frames/${#rows[@]}.png"
+                own_cache xvfb-run -a "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
+                    --resolution 160x120 --script "$PWD/tests/captures/barks.gd" -- "$tree" "$row" oak
+                rows+=(-i "$row")
+            done
+            ffmpeg -loglevel error -y "${rows[@]}" -filter_complex "vstack=inputs=$((${#rows[@]} / 2)),scale=1280:-2:flags=lanczos" \
+                -quality 80 docs/bark_presets.webp
             continue
         fi
         # A fixed rate: what moves moves by a frame's time in each picture, however long it takes to draw.

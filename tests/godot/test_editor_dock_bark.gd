@@ -279,6 +279,25 @@ func test_a_preset_comes_instead_and_keeps_the_edges() -> void:
 	_end()
 
 
+func test_a_preset_brings_edges_where_there_are_none() -> void:
+	var of: TreeReconstruction = GrownBark.stout()
+	_begin(of)
+	var shown: Bark = _bark()
+	var own: Recipe.Line = Recipe.new(TreeReconstructor.scale_growth_preset("old_oak", of)).find(
+		"edges"
+	)
+	shown.take_preset("old_oak")
+	check_near(shown.edge.value, own.values["longest"].to_float(), 1e-6, "the edges")
+	shown.take_preset("spiral_grain")
+	var lines: Array[Recipe.Line] = shown._recipe.lines
+	check_equal(
+		lines.filter(func(line: Recipe.Line) -> bool: return line.command == "edges").size(),
+		1,
+		"lines of edges"
+	)
+	_end()
+
+
 func test_while_bark_is_painted_each_change_is_a_step() -> void:
 	var of: TreeReconstruction = GrownBark.stout()
 	of.growth_recipe = "edges longest=0.08\n"

@@ -9,6 +9,7 @@
 #include "foliage/branch_axis.h"
 #include "geometry/random.h"
 #include "growth/grow_bark.h"
+#include "growth/presets.h"
 #include "growth_trees.h"
 #include "mesh/branch_tubes.h"
 #include "random_tree.h"
@@ -226,6 +227,22 @@ TEST(GrowthRecipe, KeepsWhatItWasTold) {
     EXPECT_EQ(again.text, recipe.text);
     ASSERT_EQ(again.features.size(), 1U);
     EXPECT_DOUBLE_EQ(again.features[0].around, 90.0);
+}
+
+TEST(GrowthRecipe, PresetsHaveEdgesToSuitTheTrunk) {
+    // Thin and stout, low: mouths are some edges wide. Tall with much wood: no finer than can be waited for.
+    for (const double radius : {0.05, 0.076, 0.22, 0.6}) {
+        const Tree tree = cylinder(radius, 2.5);
+        const GrowthRecipe recipe = recipe_of(tree, preset_recipe(find_growth_preset("hollow_refuge"), tree));
+        EXPECT_GT(recipe.features[0].width, 4.0 * recipe.longest) << radius;
+        EXPECT_LT(recipe.features[0].width, 10.0 * recipe.longest) << radius;
+    }
+    EXPECT_GT(preset_edges(cylinder(0.15, 40.0)), 2.0 * preset_edges(cylinder(0.15, 2.0)));
+    const Tree tall = cylinder(0.06, 14.0);
+    EXPECT_GT(preset_edges(tall), 0.2 * 0.06);
+    // What the user says goes.
+    const std::string text = preset_recipe(find_growth_preset("spiral_grain"), tall);
+    EXPECT_DOUBLE_EQ(recipe_of(tall, text + "edges longest=0.06").longest, 0.06);
 }
 
 TEST(GrowthRecipe, RefusesNonsense) {

@@ -140,6 +140,63 @@ TEST(GrowthHollow, LipsGrowOverIt) {
     EXPECT_LT(highest(swollen) - highest(open), 1.2 * 0.6 * kRadius);
 }
 
+TEST(GrowthHollow, LipsAreAsThickInAnyStepsAndEdges) {
+    for (const char* edges : {"0.045", "0.08"})
+        for (const char* steps : {"0", "400"}) {
+            const std::string name = std::string("edges ") + edges + ", steps " + steps;
+            const GrownBark bark =
+                grow(std::string("edges longest=") + edges + "\nsteps count=" + steps +
+                     "\nhollow along=0.6 around=0 width=0.14 height=0.36 depth=0.17 growth=0.5 swell=0.1 "
+                     "wrap=0.4 from=0.35 until=0.85")
+                    .bark;
+            // Of an ellipse half as wide as the mouth, the share through which one sees wood.
+            const std::vector<std::array<DVec3, 3>> faces = faces_of(bark);
+            int seen = 0, all = 0;
+            for (int row = -4; row <= 4; row++)
+                for (int column = -4; column <= 4; column++) {
+                    if (row * row + column * column > 16) continue;
+                    const DVec3 from(4.0 * kRadius, 0.6 + 0.09 * row / 4.0, 0.035 * column / 4.0);
+                    double nearest = 1e9;
+                    size_t face = 0;
+                    for (size_t i = 0; i < faces.size(); i++) {
+                        const double way =
+                            hit(from, DVec3(-1.0, 0.0, 0.0), faces[i][0], faces[i][1], faces[i][2]);
+                        if (way < 0.0 || way >= nearest) continue;
+                        nearest = way;
+                        face = i;
+                    }
+                    all++;
+                    for (size_t k = 0; k < 3; k++)
+                        if (bark.vertices[bark.indices[3 * face + k]].decayed) {
+                            seen++;
+                            break;
+                        }
+                }
+            EXPECT_GT(seen, 0.9 * all) << name;
+            // And round the back, how far bark lies from the axis where it is thinnest.
+            constexpr int kRows = 5, kBins = 6;
+            double highest = 0.0, outer[kRows][kBins] = {};
+            for (const GrownBark::Vertex& vertex : bark.vertices) {
+                const double up = static_cast<double>(vertex.position.y) - 0.6;
+                const double turn = std::abs(azimuth(vertex)) - 1.3;
+                if (std::abs(up) > 0.3) continue;
+                highest = std::max(highest, from_axis(vertex));
+                if (turn < 0.0 || std::abs(up) > 0.2) continue;
+                double& most = outer[std::min(static_cast<int>((up + 0.2) / 0.4 * kRows), kRows - 1)]
+                                    [std::min(static_cast<int>(turn / (kPi - 1.3) * kBins), kBins - 1)];
+                most = std::max(most, from_axis(vertex));
+            }
+            double thinnest = 1.0;
+            for (const auto& row : outer)
+                for (const double most : row)
+                    if (most > 0.0) thinnest = std::min(thinnest, most);
+            // k of the growth that is left when it begins.
+            EXPECT_LT(highest, kRadius * (1.0 + 0.5 * 0.65 * 1.2)) << name;
+            EXPECT_GT(highest, kRadius * (1.0 + 0.5 * 0.65 * 0.15)) << name;
+            EXPECT_GT(thinnest, 0.93 * kRadius) << name;
+        }
+}
+
 TEST(GrowthHollow, DoesNotPierceTheFarSide) {
     const GrownTree grown = grow("hollow along=0.6 width=0.2 height=0.3 depth=1.0 wall=0.03 from=0.5", 10);
     expect_sound(grown);

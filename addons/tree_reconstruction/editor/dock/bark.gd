@@ -159,7 +159,7 @@ func add_feature(kind: StringName) -> void:
 
 
 ## Writes one of [method TreeReconstructor.get_growth_presets], made for this trunk, instead of the
-## features and the grain. The edges stay.
+## features and the grain. Edges that the recipe had stay.
 func take_preset(name: String) -> void:
 	if session.tree == null or session.tree.is_empty():
 		return
@@ -167,6 +167,7 @@ func take_preset(name: String) -> void:
 	var kept: Recipe.Line = _recipe.find("edges")
 	_recipe.lines = Recipe.new(TreeReconstructor.scale_growth_preset(name, session.tree)).lines
 	if kept != null:
+		_recipe.lines.erase(_recipe.find("edges"))
 		_recipe.lines.push_front(kept)
 	_work.selected = 0
 	_note_draft(tr("Bark Preset"))
