@@ -166,17 +166,6 @@ func frame_view() -> void:
 	await view_rests()
 
 
-## Waits until the editor's camera has come to where it goes.
-func view_rests() -> void:
-	var last: Transform3D = Transform3D()
-	var still: int = 0
-	while still < 8:
-		await user.frames(1)
-		var now: Transform3D = view().get_camera_3d().global_transform
-		still = still + 1 if now.is_equal_approx(last) else 0
-		last = now
-
-
 ## Where a tree's node is on the screen.
 func node_on_screen(of: TreeInstance3D, id: int) -> Vector2:
 	return on_screen(of.global_transform * of.reconstruction.get_node_position(id))
