@@ -208,14 +208,14 @@ func large_branches(of: TreeReconstruction) -> PackedInt32Array:
 
 
 ## A picture for people, in which the 3D view is as fine as in anybody's project: project.cfg has it
-## drawn coarsely.
-func fine_picture(name: String) -> void:
-	var scale: float = view().scaling_3d_scale
+## drawn coarsely. [param seen] is what is looked at instead of the 3D view.
+func fine_picture(name: String, seen: SubViewport = view()) -> void:
+	var scale: float = seen.scaling_3d_scale
 	var shadows: String = "rendering/lights_and_shadows/directional_shadow/size"
-	view().scaling_3d_scale = 1.0
+	seen.scaling_3d_scale = 1.0
 	RenderingServer.directional_shadow_atlas_set_size(4096, true)
 	await picture(name)
-	view().scaling_3d_scale = scale
+	seen.scaling_3d_scale = scale
 	var size: int = ProjectSettings.get_setting(shadows)
 	RenderingServer.directional_shadow_atlas_set_size(size, true)
 

@@ -4,11 +4,16 @@ extends "../../test_plugin/garden.gd"
 
 const PhotoModel: GDScript = preload("../../test_plugin/photo_model.gd")
 
+# How fine the view is while strokes are drawn: each is hundreds of pictures.
+const COARSE: float = 0.12
+
 # Of each stroke, the box on the screen that it was drawn in.
 var _drawn: Array[Rect2] = []
 
 
 func run() -> void:
+	var scale: float = view().scaling_3d_scale
+	view().scaling_3d_scale = COARSE
 	await _open()
 	await _draw_over_nothing()
 	await _undo()
@@ -16,6 +21,7 @@ func run() -> void:
 	await _draw_in_a_scan()
 	await _draw_over_a_photo()
 	EditorInterface.distraction_free_mode = false
+	view().scaling_3d_scale = scale
 
 
 func _window() -> AcceptDialog:
@@ -173,7 +179,7 @@ func _draw_over_nothing() -> void:
 	check(absf(_tree().global_position.y) < 0.02, "It stands at %s." % _tree().global_position)
 	check_equal(str(_tree().name), "Maple", "its name")
 	_check_place()
-	await picture("view-sketch-made")
+	await fine_picture("view-sketch-made")
 
 
 func _undo() -> void:
@@ -218,7 +224,7 @@ func _turn_on() -> void:
 	var away: float = camera.global_position.length()
 	check(away > 1.3 * distance, "The wheel goes no farther: %.1f m." % away)
 	check_equal(_strokes(), 4, "strokes after the view was turned")
-	await picture("view-sketch-turned")
+	await fine_picture("view-sketch-turned")
 
 
 func _draw_in_a_scan() -> void:
@@ -265,7 +271,7 @@ func _draw_in_a_scan() -> void:
 	_check_scan_alone()
 	check(session().node == _tree(), "The new tree isn't selected.")
 	_check_place()
-	await picture("view-sketch-scan")
+	await fine_picture("view-sketch-scan")
 	_window().hide()
 	await user.frames(5)
 	await picture("view-sketch-scan-closed")
@@ -338,7 +344,7 @@ func _draw_over_a_photo() -> void:
 		box = box.expand(_on_stage(_tree().global_transform * place))
 	_check_box(box)
 	# For docs/sketch.md.
-	await picture("tour-sketch_view")
+	await fine_picture("tour-sketch_view", _stage().get(&"_viewport") as SubViewport)
 	_window().hide()
 	await until(func() -> bool: return _stage() == null, "the other tree's photos are gone")
 	await save_scene()
