@@ -1,5 +1,6 @@
-// What most files begin with, read once for all of them where the compiler can (SConstruct). No file may lean on it: each
-// includes what it uses, and the sanitized build, which has none of this, tells where one does not.
+// What most files begin with, read once for all of them where the compiler can (SConstruct). No file may lean
+// on it: each includes what it uses, and the sanitized build, which has none of this, tells where one does
+// not.
 #include <glm/glm.hpp>
 
 #include <algorithm>
