@@ -9,7 +9,7 @@
 # asserts what it finds there, and asks this script over a socket to press keys and buttons (xdotool), to take
 # pictures and to copy files. Each FOLDER is one run of the editor, in alphabetical order, which ends with Ctrl+Q;
 # those with the same first letter are on the same project, one after another, and as many projects at once as there are
-# cores, each on a screen of its own. What the engine reports as an error fails the step in which it appears, unless the
+# cores, each on a screen of its own, the longest first. What the engine reports as an error fails the step in which it appears, unless the
 # step expects it. Nothing waits for a fixed time: scenarios wait for what should be there, at most for
 # TREE_EDITOR_PATIENCE seconds.
 # Pictures: build/editor/FOLDER-NN-name.png; what the editor printed: build/editor/FOLDER.log. Last line: 'N passed, N
@@ -212,7 +212,10 @@ main() {
     rm -rf "$pictures"
     mkdir -p "$pictures"
     letters=$(for folder in tests/editor/scenarios/*/; do basename "$folder" | cut -c 1; done | uniq)
-    for letter in $letters; do
+    # The longest first: none is left alone at the end.
+    for letter in $(for letter in $letters; do
+        echo "$(cat tests/editor/scenarios/"$letter"*/*.gd | wc -c) $letter"
+    done | sort -rn | cut -d ' ' -f 2); do
         [ "$(jobs -rp | wc -l)" -lt "$(nproc)" ] || wait -n
         tests/editor/run.sh --project "$letter" "$@" >"$work/$letter" 2>&1 &
         projects[$letter]=$!

@@ -15,6 +15,7 @@ var _passed: int = 0
 var _failed: int = 0
 var _errors: ErrorCollector = ErrorCollector.new()
 var _running: String = ""
+var _kept: Array[Shader] = []
 var _started: int = 0
 
 
@@ -44,12 +45,23 @@ func _run() -> void:
 	)
 	print("shader cache: ", OS.get_environment("MESA_SHADER_CACHE_DIR"))
 	OS.add_logger(_errors)
+	if "--rendering" in OS.get_cmdline_user_args():
+		_keep_shaders()
 	for file: String in DirAccess.get_files_at(here):
 		if file.begins_with(prefix) and file.get_extension() == "gd":
 			await _run_file(here.path_join(file), folder)
 	OS.remove_logger(_errors)
+	_kept.clear()
 	_remove(folder)
 	_end(_failed)
+
+
+# What the engine has compiled of a shader goes with its last material: each test would begin anew.
+func _keep_shaders() -> void:
+	var shaders: String = "res://addons/tree_reconstruction/shaders"
+	for file: String in ResourceLoader.list_directory(shaders):
+		if file.get_extension() == "gdshader":
+			_kept.append(load(shaders.path_join(file)))
 
 
 func _end(failed: int) -> void:

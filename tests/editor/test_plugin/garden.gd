@@ -166,17 +166,6 @@ func frame_view() -> void:
 	await view_rests()
 
 
-## Waits until the editor's camera has come to where it goes.
-func view_rests() -> void:
-	var last: Transform3D = Transform3D()
-	var still: int = 0
-	while still < 8:
-		await user.frames(1)
-		var now: Transform3D = view().get_camera_3d().global_transform
-		still = still + 1 if now.is_equal_approx(last) else 0
-		last = now
-
-
 ## Where a tree's node is on the screen.
 func node_on_screen(of: TreeInstance3D, id: int) -> Vector2:
 	return on_screen(of.global_transform * of.reconstruction.get_node_position(id))
@@ -219,14 +208,14 @@ func large_branches(of: TreeReconstruction) -> PackedInt32Array:
 
 
 ## A picture for people, in which the 3D view is as fine as in anybody's project: project.cfg has it
-## drawn coarsely.
-func fine_picture(name: String) -> void:
-	var scale: float = view().scaling_3d_scale
+## drawn coarsely. [param seen] is what is looked at instead of the 3D view.
+func fine_picture(name: String, seen: SubViewport = view()) -> void:
+	var scale: float = seen.scaling_3d_scale
 	var shadows: String = "rendering/lights_and_shadows/directional_shadow/size"
-	view().scaling_3d_scale = 1.0
+	seen.scaling_3d_scale = 1.0
 	RenderingServer.directional_shadow_atlas_set_size(4096, true)
 	await picture(name)
-	view().scaling_3d_scale = scale
+	seen.scaling_3d_scale = scale
 	var size: int = ProjectSettings.get_setting(shadows)
 	RenderingServer.directional_shadow_atlas_set_size(size, true)
 

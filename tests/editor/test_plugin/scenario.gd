@@ -104,6 +104,17 @@ func patience() -> int:
 	return maxi(OS.get_environment("TREE_EDITOR_PATIENCE").to_int(), 5)
 
 
+## Waits until the editor's camera has come to where it goes.
+func view_rests() -> void:
+	var last: Transform3D = Transform3D()
+	var still: int = 0
+	while still < 8:
+		await user.frames(1)
+		var now: Transform3D = view().get_camera_3d().global_transform
+		still = still + 1 if now.is_equal_approx(last) else 0
+		last = now
+
+
 func picture(name: String) -> void:
 	await user.picture(name)
 

@@ -109,15 +109,18 @@ func click(at: Vector2, button: int = LEFT, modifiers: String = "", times: int =
 	await _x(_held(modifiers, press))
 
 
-## Presses at the first place, goes through the others, and lets go at the last.
+## Presses at the first place, goes through the others, and lets go at the last. Between two of them
+## the mouse is seen on the way, the less often the more of them there are: each time costs two
+## frames.
 func drag(places: PackedVector2Array, button: int = LEFT, modifiers: String = "") -> void:
 	await move(places[0])
 	for modifier: String in modifiers.split("+", false):
 		await _x(["keydown", modifier])
 	await _x(["mousedown", str(button)])
+	var steps: int = clampi(ceili(20.0 / maxi(places.size() - 1, 1)), 1, 5)
 	for i: int in range(1, places.size()):
-		for step: int in range(1, 6):
-			await move(places[i - 1].lerp(places[i], step / 5.0))
+		for step: int in range(1, steps + 1):
+			await move(places[i - 1].lerp(places[i], float(step) / steps))
 	await _x(["mouseup", str(button)])
 	for modifier: String in modifiers.split("+", false):
 		await _x(["keyup", modifier])

@@ -104,22 +104,22 @@ func _draw() -> void:
 		return
 	await until(_is_calm, "it is built")
 	check(_tree().get_leaf_count() > 100, "It has only %d leaves." % _tree().get_leaf_count())
-	await user.frames(60)
+	await view_rests()
 	await picture("sketch-made")
 	# For docs/sketch.md: the tree beside the window.
 	EditorInterface.distraction_free_mode = true
-	await user.frames(20)
+	await user.frames(5)
 	var aside: Vector3 = view().get_camera_3d().global_basis.x * 10.0
 	var box: AABB = AABB(Vector3(0.0, 5.5, 0.0) - aside, Vector3.ZERO).grow(4.5)
 	session().view_wanted.emit(box)
-	await user.frames(40)
+	await view_rests()
 	EditorInterface.get_selection().clear()
-	await user.frames(20)
+	await user.frames(5)
 	await picture("tour-sketch")
 	check_equal(_canvas().get(&"strokes").size(), 5, "strokes while nothing is selected")
 	EditorInterface.get_selection().add_node(_tree())
 	EditorInterface.distraction_free_mode = false
-	await user.frames(20)
+	await user.frames(5)
 
 
 func _undo() -> void:
@@ -142,20 +142,32 @@ func _undo() -> void:
 	for i: int in 8:
 		if _tree() == null:
 			break
-		await user.key("ctrl+z")
-		await user.frames(20)
+		await _go_through_history("ctrl+z")
 	check(_tree() == null, "The tree does not go.")
 	var left: int = _canvas().get(&"strokes").size()
 	check_equal(left > 0, _no_tree_of_one, "whether strokes that make no tree are left")
 	for i: int in 9:
 		if _strokes() == 6:
 			break
-		await user.key("ctrl+shift+z")
-		await user.frames(20)
+		await _go_through_history("ctrl+shift+z")
 	check_equal(_strokes(), 6, "strokes after all was done again")
 	check(_tree() == node, "It is another node.")
 	await user.key("ctrl+z")
 	await until(func() -> bool: return _strokes() == 5, "the branch is undone")
+
+
+# One step of the history, of the tree's or of the paper's. Some change neither.
+func _go_through_history(key: String) -> void:
+	var before: Array = _state()
+	await user.key(key)
+	for i: int in 20:
+		if _state() != before and session().jobs.get_running().is_empty():
+			return
+		await user.frames(1)
+
+
+func _state() -> Array:
+	return [_tree(), _strokes(), _canvas().get(&"strokes").size()]
 
 
 func _bend() -> void:
@@ -183,7 +195,7 @@ func _bend() -> void:
 	)
 	check_equal(_strokes(), 5, "strokes of another species")
 	await until(_is_calm, "it is built")
-	await user.frames(40)
+	await user.frames(5)
 	await picture("sketch-species")
 
 
@@ -220,7 +232,7 @@ func _take_twigs() -> void:
 	check(twigs.length() > 100, "The sketch has no twigs of its own.")
 	for more: Node in _window().find_children("*", "FoldableContainer", true, false):
 		(more as FoldableContainer).folded = false
-	await user.frames(40)
+	await user.frames(10)
 	check_fits()
 	await picture("sketch-own-twigs")
 	for more: Node in _window().find_children("*", "FoldableContainer", true, false):
@@ -244,7 +256,7 @@ func _end() -> void:
 		return
 	EditorInterface.get_selection().clear()
 	EditorInterface.get_selection().add_node(_tree())
-	await user.frames(30)
+	await user.frames(10)
 	await picture("sketch-dock")
 	await press(find_control("Button", "Edit Sketch"))
 	if await until(func() -> bool: return _window() != null, "the window opens"):

@@ -4,11 +4,16 @@ extends "../../test_plugin/garden.gd"
 
 const PhotoModel: GDScript = preload("../../test_plugin/photo_model.gd")
 
+# How fine the view is while strokes are drawn: each is hundreds of pictures.
+const COARSE: float = 0.12
+
 # Of each stroke, the box on the screen that it was drawn in.
 var _drawn: Array[Rect2] = []
 
 
 func run() -> void:
+	var scale: float = view().scaling_3d_scale
+	view().scaling_3d_scale = COARSE
 	await _open()
 	await _draw_over_nothing()
 	await _undo()
@@ -16,6 +21,7 @@ func run() -> void:
 	await _draw_in_a_scan()
 	await _draw_over_a_photo()
 	EditorInterface.distraction_free_mode = false
+	view().scaling_3d_scale = scale
 
 
 func _window() -> AcceptDialog:
@@ -132,10 +138,10 @@ func _open() -> void:
 	EditorInterface.get_selection().clear()
 	# So that the editor's own menus for what is selected do not make the view lower.
 	EditorInterface.distraction_free_mode = true
-	await user.frames(20)
+	await user.frames(5)
 	# From so far off that what is drawn is a tree, and no bonsai.
 	await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN, "", 9)
-	await user.frames(40)
+	await view_rests()
 	if not await _open_window():
 		return
 	check_fits()
@@ -147,7 +153,7 @@ func _open_window() -> bool:
 	session().sketch_wanted.emit()
 	if not await until(func() -> bool: return _window() != null, "the window opens"):
 		return false
-	await user.frames(20)
+	await user.frames(5)
 	await press(find_control("Button", "Draw in the 3D View", _window()))
 	return await until(
 		func() -> bool: return session().view.get(&"drawing"), "strokes go to the view"
@@ -173,8 +179,7 @@ func _draw_over_nothing() -> void:
 	check(absf(_tree().global_position.y) < 0.02, "It stands at %s." % _tree().global_position)
 	check_equal(str(_tree().name), "Maple", "its name")
 	_check_place()
-	await user.frames(30)
-	await picture("view-sketch-made")
+	await fine_picture("view-sketch-made")
 
 
 func _undo() -> void:
@@ -211,15 +216,15 @@ func _turn_on() -> void:
 	await user.drag(
 		[middle, middle + Vector2(60.0, 10.0), middle + Vector2(120.0, 20.0)], User.MIDDLE
 	)
-	await user.frames(30)
+	await view_rests()
 	check(not camera.global_basis.is_equal_approx(before.basis), "The view did not turn.")
 	var distance: float = camera.global_position.length()
 	await user.click(middle, User.WHEEL_DOWN, "", 4)
-	await user.frames(30)
+	await view_rests()
 	var away: float = camera.global_position.length()
 	check(away > 1.3 * distance, "The wheel goes no farther: %.1f m." % away)
 	check_equal(_strokes(), 4, "strokes after the view was turned")
-	await picture("view-sketch-turned")
+	await fine_picture("view-sketch-turned")
 
 
 func _draw_in_a_scan() -> void:
@@ -238,7 +243,7 @@ func _draw_in_a_scan() -> void:
 	if node == null:
 		return
 	EditorInterface.distraction_free_mode = true
-	await user.frames(20)
+	await user.frames(5)
 	session().view.set(&"points", true)
 	session().view.set(&"mesh", false)
 	session().view.set(&"leaves", false)
@@ -248,7 +253,7 @@ func _draw_in_a_scan() -> void:
 		return
 	if not await _open_window():
 		return
-	await user.frames(20)
+	await user.frames(5)
 	var state: PackedByteArray = bytes(made)
 	_drawn = []
 	var foot: Vector2 = on_screen(node.global_position)
@@ -266,10 +271,9 @@ func _draw_in_a_scan() -> void:
 	_check_scan_alone()
 	check(session().node == _tree(), "The new tree isn't selected.")
 	_check_place()
-	await user.frames(30)
-	await picture("view-sketch-scan")
+	await fine_picture("view-sketch-scan")
 	_window().hide()
-	await user.frames(20)
+	await user.frames(5)
 	await picture("view-sketch-scan-closed")
 	session().view.set(&"points", false)
 	await save_scene()
@@ -320,7 +324,7 @@ func _draw_over_a_photo() -> void:
 	await user.click(middle(_stage()), User.WHEEL_UP, "", 1)
 	if not await _open_window():
 		return
-	await user.frames(20)
+	await user.frames(5)
 	_drawn = []
 	var shown: Rect2 = _stage().call(&"get_shown")
 	var foot: Vector2 = _on_stage(node.global_position)
@@ -339,9 +343,8 @@ func _draw_over_a_photo() -> void:
 	for place: Vector3 in _tree().reconstruction.get_positions():
 		box = box.expand(_on_stage(_tree().global_transform * place))
 	_check_box(box)
-	await user.frames(30)
 	# For docs/sketch.md.
-	await picture("tour-sketch_view")
+	await fine_picture("tour-sketch_view", _stage().get(&"_viewport") as SubViewport)
 	_window().hide()
 	await until(func() -> bool: return _stage() == null, "the other tree's photos are gone")
 	await save_scene()
