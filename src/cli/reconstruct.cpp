@@ -74,7 +74,11 @@ const Command& reconstruct_command() {
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
          {"--threads", "N", "how many to use (default: all cores); changes nothing else"},
-         {"--skeleton", "METHOD", "delaunay (shortest paths, slices) or flood (voxels) (default delaunay)"},
+         {"--skeleton", "METHOD",
+          "geodesic (shortest paths, slices), delaunay (AdTree's own way, to compare) or flood (voxels)\n"
+          "(default geodesic)"},
+         {"--spanning-tree", "KIND",
+          "over the Delaunay triangulation: paths (the shortest from the root) or minimum (default paths)"},
          {"--flood", "KIND", "ours, or paper: as papers/002 prints it, to compare (default ours)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
          {"--radii", "RULE", "measured, or by a rule: linear or davinci (default measured)"},

@@ -20,7 +20,7 @@ const char* const kUsage =
     "       bench --scaling [SCAN]             whole runs of 10k to 10M points made from a scan\n"
     "       bench --resize N OUT SCAN          makes such a cloud, to look at or to run --beside on\n"
     "       bench --scans [SCAN…|FOLDER]       one line per scan: time, memory, measurements, fit\n"
-    "       bench --methods [SCAN…|FOLDER]     both skeletonizers on every scan: time, fidelity, nodes\n"
+    "       bench --methods [SCAN…|FOLDER]     all skeletonizers on every scan: time, fidelity, nodes\n"
     "       bench --clicks [SCAN…]             length error as proposals are accepted (needs --truth)\n"
     "       bench --beside PROGRAM SCAN… [-- ARG…]  whole runs of ours and of PROGRAM in turns, called as\n"
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"

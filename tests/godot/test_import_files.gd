@@ -285,8 +285,8 @@ func test_every_preset_reconstructs() -> void:
 
 func test_only_what_matters_is_shown() -> void:
 	var unit: Dictionary = ImportOptions.Unit
-	var guess: Dictionary = {"scan/unit": unit.GUESS, "skeleton/method": "delaunay"}
-	var height: Dictionary = {"scan/unit": unit.TREE_HEIGHT, "skeleton/method": "flood"}
+	var guess: Dictionary = {"scan/unit": unit.GUESS, "skeleton/algorithm": "geodesic"}
+	var height: Dictionary = {"scan/unit": unit.TREE_HEIGHT, "skeleton/algorithm": "flood"}
 	for name: String in ["scan/tree_height", "skeleton/voxel"]:
 		check(not ImportOptions.is_visible("a.las", false, name, guess), name + " is shown")
 		check(ImportOptions.is_visible("a.las", false, name, height), name + " is hidden")
