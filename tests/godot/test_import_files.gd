@@ -274,7 +274,9 @@ func test_old_files_keep_their_method() -> void:
 				return parameter["default_value"]
 		return ""
 	check_equal(default_of.call(path), "geodesic", "a new file")
-	var wanted: Dictionary[String, String] = {"delaunay": "geodesic", "flood": "flood", "x": "geodesic"}
+	var wanted: Dictionary[String, String] = {
+		"delaunay": "geodesic", "flood": "flood", "x": "geodesic"
+	}
 	for word: String in wanted:
 		var config: ConfigFile = ConfigFile.new()
 		config.set_value("params", "skeleton/method", word)

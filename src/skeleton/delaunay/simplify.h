@@ -17,8 +17,8 @@ struct DelaunayVertex {
     double reach = 0.0;   // metres to the farthest tip above
 };
 
-// The skeleton without its noise (Chen 2025, 2.2.2, step 2; Du et al. 2019, 3.2). A side branch that carries no
-// more than its wood is wide there, or less than `shortest` metres, is noise. Children of a vertex whose
+// The skeleton without its noise (Chen 2025, 2.2.2, step 2; Du et al. 2019, 3.2). A side branch that carries
+// no more than its wood is wide there, or less than `shortest` metres, is noise. Children of a vertex whose
 // edges run side by side within the wood's width, or as far as the points are apart, are merged, each as
 // heavy as what it carries. spacing: metres between the points. root: the first vertex, metres. Throws
 // Cancelled.
