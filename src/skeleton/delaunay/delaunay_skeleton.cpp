@@ -8,6 +8,7 @@
 #include "skeleton/delaunay/simplify.h"
 #include "skeleton/delaunay/trunk_cylinder.h"
 #include "skeleton/flood_skeleton.h"
+#include "skeleton/foot.h"
 #include "skeleton/paths.h"
 #include "skeleton/root.h"
 #include "skeleton/thin.h"
@@ -75,6 +76,7 @@ void delaunay_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud,
         limbs.resize(1);
         axes.resize(1);
     }
+    seat_root(limbs, axes);
     result.tree = assemble_tree(
         axes, limbs, options.simplify_distance > 0.0 ? options.simplify_distance : kStraight * apart);
     mark_trunk(result.tree);
