@@ -108,7 +108,7 @@ TEST(Delaunay, MeasuresALeaningTrunk) {
     Progress progress;
     const DVec3 way = glm::normalize(DVec3(0.3, 1.0, -0.2));
     for (const double radius : {0.04, 0.1, 0.25}) {
-        const std::vector<Vec3> points = bark(DVec3(0.0), 8.0 * way, radius, 12000, 5);
+        const std::vector<Vec3> points = bark(DVec3(0.0), 8.0 * way, radius, 4000, 5);
         for (const SpanningTreeKind kind : kKinds) {
             const InitialSkeleton skeleton = initial_skeleton(points, DVec3(0.0), kind, progress);
             const auto trunk = fit_trunk_cylinder(points, skeleton, true, 1);
