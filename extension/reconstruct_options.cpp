@@ -284,7 +284,7 @@ const Option kOptions[] = {
      "are "
      "the shortest from the root."},
     {"flood", read_flood, write_flood, PROPERTY_HINT_ENUM, "ours,paper",
-     "How the flood is done: ours, or as papers/002 prints it, to compare."},
+     "How the flood is done: ours, or as Zhang 2013 prints it, to compare."},
     {"voxel", OPTION_MEMBER(skeleton.voxel, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Edge of the flood's voxels; 0 chooses by the cloud."},
     {"flood_steps", OPTION_MEMBER(skeleton.keep_steps, bool), PROPERTY_HINT_NONE, "",

@@ -79,7 +79,7 @@ const Command& reconstruct_command() {
           "(default geodesic)"},
          {"--spanning-tree", "KIND",
           "over the Delaunay triangulation: paths (the shortest from the root) or minimum (default paths)"},
-         {"--flood", "KIND", "ours, or paper: as papers/002 prints it, to compare (default ours)"},
+         {"--flood", "KIND", "ours, or paper: as Zhang 2013 prints it, to compare (default ours)"},
          {"--voxel", "M", "edge of the flood's voxels in metres (default: found out)"},
          {"--radii", "RULE", "measured, or by a rule: linear or davinci (default measured)"},
          {"--complete", "", "look again for branches where points are left over"},

@@ -1,5 +1,5 @@
-// From a clean cloud to a Tree: along shortest paths, as AdTree does it (papers/000, 2.2.2 and 3.2.2), or by
-// a voxel flood (papers/002, chapter 5).
+// From a clean cloud to a Tree: along shortest paths, as AdTree does it (Chen 2025, 2.2.2 and 3.2.2), or by
+// a voxel flood (Zhang 2013, chapter 5).
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ enum class SkeletonMethod : uint8_t { kGeodesic, kDelaunay, kFlood };
 // Dijkstra's shortest paths in one sentence; they are two trees.
 enum class SpanningTreeKind : uint8_t { kShortestPaths, kMinimum };
 
-// The flood as we do it, or as papers/002 prints it (skeleton/flood_paper.h), to be compared.
+// The flood as we do it, or as Zhang 2013 prints it (skeleton/flood_paper.h), to be compared.
 enum class FloodKind : uint8_t { kOurs, kPaper };
 
 // "geodesic", "delaunay", "flood". Throws Error for any other word, naming all.

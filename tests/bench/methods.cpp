@@ -1,4 +1,4 @@
-// The skeletonizers side by side, AdTree's over both of its trees, the flood also as papers/002 prints it,
+// The skeletonizers side by side, AdTree's over both of its trees, the flood also as Zhang 2013 prints it,
 // and what guided completion makes of their trees.
 #include <algorithm>
 #include <cmath>
