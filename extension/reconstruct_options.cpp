@@ -53,6 +53,14 @@ void write_skeleton(ParsedOptions& r_options, const Variant& p_value) {
     r_options.pipeline.skeleton.method = treerec::parse_skeleton_method(to_std(p_value));
 }
 
+Variant read_spanning_tree(const ParsedOptions& p_options) {
+    return treerec::spanning_tree_kind_name(p_options.pipeline.skeleton.spanning_tree);
+}
+
+void write_spanning_tree(ParsedOptions& r_options, const Variant& p_value) {
+    r_options.pipeline.skeleton.spanning_tree = treerec::parse_spanning_tree_kind(to_std(p_value));
+}
+
 Variant read_flood(const ParsedOptions& p_options) {
     return treerec::flood_kind_name(p_options.pipeline.skeleton.flood);
 }
@@ -268,11 +276,15 @@ const Option kOptions[] = {
      "the number."},
     {"tell_leaves", OPTION_MEMBER(tell_leaves, bool), PROPERTY_HINT_NONE, "",
      "Tells leaves from wood: the skeleton follows the wood, and the leaves become foliage."},
-    {"skeleton", read_skeleton, write_skeleton, PROPERTY_HINT_ENUM, "delaunay,flood",
-     "How the branches are found: delaunay follows the shortest paths through the points, flood goes "
-     "through voxels."},
+    {"skeleton", read_skeleton, write_skeleton, PROPERTY_HINT_ENUM, "geodesic,delaunay,flood",
+     "How the branches are found: geodesic follows the shortest paths through the points, delaunay does it "
+     "as AdTree was published, to compare, flood goes through voxels."},
+    {"spanning_tree", read_spanning_tree, write_spanning_tree, PROPERTY_HINT_ENUM, "paths,minimum",
+     "The tree over the edges of the Delaunay triangulation: minimum is the one of the least length, paths "
+     "are "
+     "the shortest from the root."},
     {"flood", read_flood, write_flood, PROPERTY_HINT_ENUM, "ours,paper",
-     "How the flood is done: ours, or as papers/002 prints it, to compare."},
+     "How the flood is done: ours, or as Zhang 2013 prints it, to compare."},
     {"voxel", OPTION_MEMBER(skeleton.voxel, double), PROPERTY_HINT_RANGE, "0,0.5,0.001,suffix:m",
      "Edge of the flood's voxels; 0 chooses by the cloud."},
     {"flood_steps", OPTION_MEMBER(skeleton.keep_steps, bool), PROPERTY_HINT_NONE, "",

@@ -88,8 +88,28 @@ Dictionary TreeReconstruction::get_skeleton() const {
                          : to_dictionary(*tree, tree->leaf_rules().empty() ? 1 : int(FORMAT_VERSION));
 }
 
+// Until version 2 of the report, "delaunay" was the name of what is "geodesic" now.
+static Dictionary with_words_of_today(const Dictionary& p_provenance) {
+    constexpr int64_t RENAMED_SINCE = 2;
+    const Variant options = p_provenance.get("options", Dictionary());
+    const Variant report = p_provenance.get("report", Dictionary());
+    if (options.get_type() != Variant::DICTIONARY ||
+        Dictionary(options).get("skeleton", String()) != Variant("delaunay")) {
+        return p_provenance;
+    }
+    if (report.get_type() == Variant::DICTIONARY &&
+        int64_t(Dictionary(report).get("format_version", 1)) >= RENAMED_SINCE) {
+        return p_provenance;
+    }
+    Dictionary renamed = Dictionary(options).duplicate();
+    renamed["skeleton"] = "geodesic";
+    Dictionary provenance = p_provenance.duplicate();
+    provenance["options"] = renamed;
+    return provenance;
+}
+
 void TreeReconstruction::set_provenance(const Dictionary& p_provenance) {
-    provenance_ = p_provenance;
+    provenance_ = with_words_of_today(p_provenance);
     emit_changed();
 }
 

@@ -240,7 +240,7 @@ func _shape(mesh: ArrayMesh, material: ShaderMaterial, framing: Studio.Framing) 
 	return shape
 
 
-# Lines below, then the nodes by kind: leaves green, forks orange, the trunk red (papers/000, figure
+# Lines below, then the nodes by kind: leaves green, forks orange, the trunk red (Chen 2025, figure
 # 3.7).
 func _pruned(framing: Studio.Framing) -> Array:
 	return [

@@ -96,7 +96,11 @@ ReconstructOptions reconstruct_options_from(const Arguments& arguments) {
         throw UsageError("--scale, --unit, --height and " + length + " all set the scale; give one of them.");
     options.skeleton.spacing = arguments.number("--spacing", 0.0, 1e-4, 10.0);
     options.skeleton.method =
-        as_usage([&] { return parse_skeleton_method(arguments.text("--skeleton", "delaunay")); });
+        as_usage([&] { return parse_skeleton_method(arguments.text("--skeleton", "geodesic")); });
+    options.skeleton.spanning_tree =
+        as_usage([&] { return parse_spanning_tree_kind(arguments.text("--spanning-tree", "paths")); });
+    if (arguments.has("--spanning-tree") && options.skeleton.method != SkeletonMethod::kDelaunay)
+        throw UsageError("--spanning-tree is of the Delaunay triangulation; add --skeleton delaunay.");
     options.skeleton.voxel = arguments.number("--voxel", 0.0, 1e-9, 1e3);
     if (arguments.has("--voxel") && options.skeleton.method != SkeletonMethod::kFlood)
         throw UsageError("--voxel is the size of the flood's voxels; add --skeleton flood.");

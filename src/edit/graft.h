@@ -1,4 +1,4 @@
-// Grafting: a scion (edit/scion.h) is put onto a node, turned, scaled and blended to fit (papers/000, 3.2.4,
+// Grafting: a scion (edit/scion.h) is put onto a node, turned, scaled and blended to fit (Chen 2025, 3.2.4,
 // algorithms 6 to 8).
 //
 // Differences from the paper, on purpose: algorithm 7 offsets the scion by 1.001 times the node's position,

@@ -1,4 +1,4 @@
-// Seeded variation of a scion, so that no two grafts look the same (papers/000, algorithm 6).
+// Seeded variation of a scion, so that no two grafts look the same (Chen 2025, algorithm 6).
 #pragma once
 
 #include <cstdint>

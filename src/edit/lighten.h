@@ -1,4 +1,4 @@
-// Lighter trees: the same look with fewer nodes (papers/002, 6.2).
+// Lighter trees: the same look with fewer nodes (Zhang 2013, 6.2).
 //
 // merge_turns, merge_tips and merge_branches are the paper's. lighten() does the same two things, but the one
 // that is seen least first, within bounds, and without moving what stays: it is what to use.

@@ -1,4 +1,4 @@
-// The paper's merging (papers/002, algorithms 8 and 9).
+// The paper's merging (Zhang 2013, algorithms 8 and 9).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -20,7 +20,7 @@ struct PruneOptions {
     bool spare_leader = true;  // leaves what is marked as trunk alone
 };
 
-// Papers/000, algorithm 3: twigs, from a leaf down to the first fork, that are longer than
+// Chen 2025, algorithm 3: twigs, from a leaf down to the first fork, that are longer than
 // the mean are cut to it. The mean number of nodes is rounded down. A tree without a fork has no twigs.
 // As printed it spares no leader; all else here is the paper's unless asked for.
 // Throws Error for a factor or a length below zero.

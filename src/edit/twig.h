@@ -1,4 +1,4 @@
-// A short side branch to graft onto (papers/000, algorithm 5).
+// A short side branch to graft onto (Chen 2025, algorithm 5).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// How faithfully a tree shows its scan: the paper's measure (papers/002, chapter 7) and the field's own, as a
+// How faithfully a tree shows its scan: the paper's measure (Zhang 2013, chapter 7) and the field's own, as a
 // whole, by order, by branch, and for every point and node; kept up to date while the tree is edited.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What photos say about a cloud (papers/002, 7.1 and 7.2).
+// What photos say about a cloud (Zhang 2013, 7.1 and 7.2).
 #pragma once
 
 #include <string>

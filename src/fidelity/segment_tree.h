@@ -10,7 +10,7 @@
 namespace treerec {
 
 // A segment of wood as a cylinder, the child's radius on its whole length. `from_radius` is the parent's, for
-// the solid of two balls and a frustum that papers/002 (7.3) makes of it.
+// the solid of two balls and a frustum that Zhang 2013 (7.3) makes of it.
 struct WoodSegment {
     DVec3 from;
     DVec3 to;
@@ -28,7 +28,7 @@ double distance_to_segment(const DVec3& p, const DVec3& from, const DVec3& to);
 double bark_error(const WoodSegment& segment, const DVec3& p);
 
 // Whether p lies in the ball of either end or in the frustum between them, or at most `tolerance` metres
-// outside of them (papers/002, 7.3).
+// outside of them (Zhang 2013, 7.3).
 bool solid_holds(const WoodSegment& segment, const DVec3& p, double tolerance);
 
 // The bark nearest to a point.

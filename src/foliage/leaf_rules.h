@@ -1,4 +1,4 @@
-// What leaves a kind of tree bears and how they stand (papers/000, 3.2.5).
+// What leaves a kind of tree bears and how they stand (Chen 2025, 3.2.5).
 #pragma once
 
 #include <memory>

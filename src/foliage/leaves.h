@@ -1,4 +1,4 @@
-// Where leaves sit: leaf rules turned into placements (papers/000, 3.2.5).
+// Where leaves sit: leaf rules turned into placements (Chen 2025, 3.2.5).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Touching bark looks fused (papers/001, 5.3). Internal to growth/.
+// Touching bark looks fused (Mizoguchi and Miyata 2014, 5.3). Internal to growth/.
 #pragma once
 
 #include "mesh/grown_bark.h"

@@ -1,4 +1,4 @@
-// What makes bark grow unevenly (papers/001, 6 to 8). Internal to growth/.
+// What makes bark grow unevenly (Mizoguchi and Miyata 2014, 6 to 8). Internal to growth/.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace treerec::growth {
 
-// A sphere within which cambium grows faster (papers/001, figures 13 and 14).
+// A sphere within which cambium grows faster (Mizoguchi and Miyata 2014, figures 13 and 14).
 struct BurlSphere {
     Vertex centre;        // rides on it
     double radius = 0.0;  // R, metres
@@ -20,7 +20,7 @@ struct BurlSphere {
 // Figure 14: k up to R', from there smoothly to 0 at R. distance: metres from the centre.
 double burl_growth(double radius, double inner, double growth, double distance);
 
-// What cambium does beside decayed wood or an obstacle (papers/001, 7.2, 7.3 and 8).
+// What cambium does beside decayed wood or an obstacle (Mizoguchi and Miyata 2014, 7.2, 7.3 and 8).
 struct Lip {
     double radius = 0.0, inner = 0.0, growth = 0.0;  // of the burl spheres there
     double wrap = 0.0;                               // A of equation 9, B of equation 10

@@ -14,7 +14,7 @@ namespace treerec::growth {
 void place_feature(Surface& surface, const GrowthPlan& plan, Vertex apex, double longest, int step,
                    Feature& feature);
 
-// Cambium within the regions of hollows becomes decayed wood (papers/001, 7.1).
+// Cambium within the regions of hollows becomes decayed wood (Mizoguchi and Miyata 2014, 7.1).
 void decay(Surface& surface, const std::vector<Feature>& features, int step);
 
 // Vertices on the sap link through one, of which none lie nearer than `every` metres along it, over `length`

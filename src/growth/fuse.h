@@ -1,5 +1,5 @@
-// Makes surfaces that have met one (papers/001, 5.3: a vertex that meets a polygon is merged with the
-// nearest of its vertices), so that the surface stays manifold. Internal to growth/.
+// Makes surfaces that have met one (Mizoguchi and Miyata 2014, 5.3: a vertex that meets a polygon is merged
+// with the nearest of its vertices), so that the surface stays manifold. Internal to growth/.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Bark that grew (papers/001): a surface that grows around a tree, with burls.
+// Bark that grew (Mizoguchi and Miyata 2014): a surface that grows around a tree, with burls.
 #pragma once
 
 #include <cstddef>

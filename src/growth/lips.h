@@ -1,5 +1,5 @@
-// Where cambium meets decayed wood and obstacles: it swells there and turns towards them (papers/001, 7.2,
-// 7.3 and 8). Internal to growth/.
+// Where cambium meets decayed wood and obstacles: it swells there and turns towards them (Mizoguchi and
+// Miyata 2014, 7.2, 7.3 and 8). Internal to growth/.
 #pragma once
 
 #include <optional>

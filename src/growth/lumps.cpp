@@ -181,7 +181,7 @@ class Proposer {
         proposal_.sections++;
     }
 
-    // Height is k S_c times the steps that are left (papers/001, equation 6).
+    // Height is k S_c times the steps that are left (Mizoguchi and Miyata 2014, equation 6).
     void add_burl(int32_t branch, const Lump& lump, const BranchSections& shape) {
         const GrowthPlan& plan = planned_.plan;
         const AxisPlace place = place_at(plan.branches[static_cast<size_t>(branch)], lump.along);

@@ -128,7 +128,7 @@ void Optimiser::split(Edge edge) {
     const Vertex i = mesh.source(h), j = mesh.target(h);
     const Cell a = surface_.cells[i], b = surface_.cells[j];
     const DVec3 place = 0.5 * (surface_.place(i) + surface_.place(j));
-    // From an apical vertex to a linked one the new one is linked, too (papers/001, 6.3).
+    // From an apical vertex to a linked one the new one is linked, too (Mizoguchi and Miyata 2014, 6.3).
     const bool link = surface_.links[edge] ||
                       (a.tissue == Tissue::kApical && b.tissue == Tissue::kCambium && linked(j)) ||
                       (b.tissue == Tissue::kApical && a.tissue == Tissue::kCambium && linked(i));
@@ -148,7 +148,8 @@ void Optimiser::split(Edge edge) {
     const bool apical = a.tissue == Tissue::kApical || b.tissue == Tissue::kApical;
     cell.tissue = decayed && !apical ? Tissue::kDecayed : Tissue::kCambium;
     if (cell.tissue == Tissue::kDecayed) cell.hollow = a.tissue == Tissue::kDecayed ? a.hollow : b.hollow;
-    // New cambium belongs to its apical vertex's branch, else to the one nearer the tip (papers/001, 9).
+    // New cambium belongs to its apical vertex's branch, else to the one nearer the tip (Mizoguchi and Miyata
+    // 2014, 9).
     const Cell& elder = a.owner == b.owner || nearer_tip(a.owner, b.owner) ? a : b;
     const Cell& by = a.tissue == Tissue::kApical ? a : b.tissue == Tissue::kApical ? b : elder;
     cell.owner = by.owner;

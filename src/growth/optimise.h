@@ -1,4 +1,5 @@
-// Keeps the surface's triangles even: splits, merges and flips (papers/001, 4.3). Internal to growth/.
+// Keeps the surface's triangles even: splits, merges and flips (Mizoguchi and Miyata 2014, 4.3). Internal to
+// growth/.
 #pragma once
 
 #include <cstddef>

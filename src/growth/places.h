@@ -33,9 +33,9 @@ class BarkPlaces {
     std::optional<BarkPlace> pick(const DVec3& from, const DVec3& way) const;
     // Where a place of a recipe is, held at its branch's ends. Nothing on a branch that stays a tube.
     std::optional<BarkPlace> find(const GrowthPlace& place) const;
-    // How a burl, or a ridge along the grain, lifts the bark at last: equation 6 of papers/001 with the
-    // branch's radius for what plain cambium grows. twist: radians a metre, of the grain. Positions, normals
-    // and UVs in metres: u about the branch, v along it. Empty as find().
+    // How a burl, or a ridge along the grain, lifts the bark at last: equation 6 of Mizoguchi and Miyata 2014
+    // with the branch's radius for what plain cambium grows. twist: radians a metre, of the grain. Positions,
+    // normals and UVs in metres: u about the branch, v along it. Empty as find().
     Mesh lift(const GrowthFeature& burl, double twist) const;
     // The mouth of a hollow, a patch that lies on the bark: UVs go from -1 to 1 across it and along the
     // branch, its ellipse is where they are as long as 1; custom0: half its width, half its height and its

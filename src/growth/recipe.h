@@ -28,7 +28,7 @@ struct GrowthPlace {
     double around = 0.0;    // degrees about the axis, from +X by way of -Z, seen from above
 };
 
-// What bark does beside decayed wood and obstacles: metres, and k, A and B of papers/001.
+// What bark does beside decayed wood and obstacles: metres, and k, A and B of Mizoguchi and Miyata 2014.
 struct GrowthLip {
     double radius = 0.0, inner = 0.0, growth = 0.0;  // of the swelling
     double wrap = 0.0;                               // how it turns there

@@ -111,7 +111,8 @@ void Run::move_all() {
             cell.hold = contact_.move(v, surface_.place(v) + cell.velocity / static_cast<double>(parts));
             const bool blocked = cell.hold == Hold::kObstacle;
             if (blocked) {
-                // What turns towards an obstacle and is at it still grows along it (papers/001, 8).
+                // What turns towards an obstacle and is at it still grows along it (Mizoguchi and Miyata
+                // 2014, 8).
                 cell.touched = contact_.touched();
                 const DVec3 normal = vertex_normal(surface_, v);
                 const double up = glm::dot(cell.velocity, normal) / parts;
@@ -133,7 +134,8 @@ void Run::move_all() {
     }
 }
 
-// Papers/001, 5.2: of the cambium near the tip that the branch leaves, the vertex that faces its way.
+// Mizoguchi and Miyata 2014, 5.2: of the cambium near the tip that the branch leaves, the vertex that faces
+// its way.
 void Run::choose_buds() {
     for (size_t b = 1; b < plan_.branches.size(); b++) {
         const GrowthBranch& branch = plan_.branches[b];

@@ -1,4 +1,5 @@
-// What the surface starts from: figure 4's prism, or any closed mesh (papers/001, 4.1). Internal to growth/.
+// What the surface starts from: figure 4's prism, or any closed mesh (Mizoguchi and Miyata 2014, 4.1).
+// Internal to growth/.
 #pragma once
 
 #include "growth/plan.h"

@@ -1,4 +1,4 @@
-// Where on its branch a vertex is (papers/001, 9). Internal to growth/.
+// Where on its branch a vertex is (Mizoguchi and Miyata 2014, 9). Internal to growth/.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What a vertex of a growing surface is (papers/001, 4).
+// What a vertex of a growing surface is (Mizoguchi and Miyata 2014, 4).
 #pragma once
 
 #include <cstdint>

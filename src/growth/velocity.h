@@ -1,4 +1,5 @@
-// How fast and where to each vertex grows (papers/001, 5.1, 6.1, 7.1, 7.2, 8). Internal to growth/.
+// How fast and where to each vertex grows (Mizoguchi and Miyata 2014, 5.1, 6.1, 7.1, 7.2, 8). Internal to
+// growth/.
 #pragma once
 
 #include <vector>

@@ -29,7 +29,7 @@ namespace treerec {
 
 enum class LStringDialect {
     kTurtle,  // as above
-    // papers/000, algorithms 4 and 6: + and - set the yaw, & and ^ the pitch, both absolute (+ is yaw
+    // Chen 2025, algorithms 4 and 6: + and - set the yaw, & and ^ the pitch, both absolute (+ is yaw
     // atan2(z, x), & pitch above the ground); no radii, no rolls. A number may follow a symbol without
     // brackets.
     kPaper,
@@ -57,7 +57,7 @@ struct LStringOptions {
     DVec3 skyward{0.0, 1.0, 0.0};  // against gravity, in the string's own axes; for $
     DVec3 tropism{0.0};            // ABOP 2.3: what each F bends the heading towards
     double elasticity = 0.0;       // how much
-    // Seeded variation of every F (papers/000, algorithm 6): its direction by up to angle_spread degrees in
+    // Seeded variation of every F (Chen 2025, algorithm 6): its direction by up to angle_spread degrees in
     // yaw and in pitch, its length by up to the share length_spread.
     double angle_spread = 0.0;
     double length_spread = 0.0;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 constexpr double kShortest = 1e-12;  // metres: nearer nodes coincide
 
-// Degrees, absolute (papers/000, algorithm 6).
+// Degrees, absolute (Chen 2025, algorithm 6).
 DVec3 paper_direction(double yaw, double pitch) {
     const double a = yaw * kRadiansPerDegree;
     const double b = pitch * kRadiansPerDegree;

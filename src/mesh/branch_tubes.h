@@ -1,4 +1,4 @@
-// Bark: one tube per branch by parallel-transport frames (papers/000, algorithm 9, as meant: once per
+// Bark: one tube per branch by parallel-transport frames (Chen 2025, algorithm 9, as meant: once per
 // branch).
 #pragma once
 

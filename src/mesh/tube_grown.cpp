@@ -106,7 +106,7 @@ void Builder::add_grown(Mesh& mesh) const {
     for (size_t i = 0; i < grown.indices.size(); i += 3) {
         const uint32_t* const corner = &grown.indices[i];
         float low = 2.0f, high = -2.0f;
-        bool wood = false;  // papers/001, 9: with one decayed corner
+        bool wood = false;  // Mizoguchi and Miyata 2014, 9: with one decayed corner
         for (int k = 0; k < 3; k++) {
             low = std::min(low, grown.vertices[corner[k]].around);
             high = std::max(high, grown.vertices[corner[k]].around);

@@ -1,5 +1,5 @@
 // Where a point of one photo is in another one, and how its surroundings are turned, sheared and scaled
-// there: the pyramidal method of Lucas and Kanade with an affine motion (papers/002, 4.3.1, equations 4.5
+// there: the pyramidal method of Lucas and Kanade with an affine motion (Zhang 2013, 4.3.1, equations 4.5
 // to 4.8 and algorithm 2).
 #pragma once
 

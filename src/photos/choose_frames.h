@@ -26,7 +26,7 @@ struct FrameLook {
 struct FrameChoice {
     // Of the picture's width. The background turns by as much as the camera walks around, less what it is
     // near; a phone sees 50 (upright) to 65 degrees of its width, so this is 3 to 5 degrees of the walk: what
-    // tracking wants (papers/002, 4.4: 3 to 8).
+    // tracking wants (Zhang 2013, 4.4: 3 to 8).
     double step = 0.06;
     size_t least = 48;    // of a film in which that much moves at all: a circle in steps of 7.5 degrees
     size_t most = 120;    // in steps of 3 degrees

@@ -1,4 +1,4 @@
-// A photo's grey levels at its own size and at halves of it (papers/002, 4.2).
+// A photo's grey levels at its own size and at halves of it (Zhang 2013, 4.2).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Where points of one photo are in the next one, by the pyramidal method of Lucas and Kanade (papers/002,
+// Where points of one photo are in the next one, by the pyramidal method of Lucas and Kanade (Zhang 2013,
 // 4.2, equations 4.1 to 4.4; J.-Y. Bouguet, "Pyramidal implementation of the Lucas Kanade feature tracker",
 // 2000): every window only moves.
 #pragma once

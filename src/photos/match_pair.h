@@ -1,4 +1,4 @@
-// Two photos' places that show the same thing: the corners of one tracked into the other (papers/002, chapter
+// Two photos' places that show the same thing: the corners of one tracked into the other (Zhang 2013, chapter
 // 4).
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace treerec {
 
-// Which matches both medians of papers/002, 4.3.2 leave.
+// Which matches both medians of Zhang 2013, 4.3.2 leave.
 enum class MedianFilter {
     kNone,
     kEither,  // as printed: better than the median in both; a quarter where they have nothing in common

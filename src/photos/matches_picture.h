@@ -1,4 +1,4 @@
-// A picture of what was tracked from one photo into another one (papers/002, figure 4.1).
+// A picture of what was tracked from one photo into another one (Zhang 2013, figure 4.1).
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // From a folder of photos to the places that they were taken from, with COLMAP as its own process
-// (papers/000, 3.2.1; papers/002, chapter 3).
+// (Chen 2025, 3.2.1; Zhang 2013, chapter 3).
 #pragma once
 
 #include <optional>

@@ -294,7 +294,7 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
     clock.stop("Leaves", result.cloud.size(), kept);
     telling.check();
 
-    const bool doubted = !told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kDelaunay;
+    const bool doubted = !told.leafiness.empty() && options.skeleton.method == SkeletonMethod::kGeodesic;
     SubProgress growing(progress, kLeavesEnd, doubted ? kFirstSkeletonEnd : kSkeletonEnd);
     SkeletonOptions skeleton_options = options.skeleton;
     if (skeleton_options.spacing <= 0.0) skeleton_options.spacing = told_spacing(result);

@@ -30,7 +30,7 @@ struct ReconstructOptions {
     // Walk over what the tree does not explain and add what is found (skeleton/complete_all.h); not for
     // palms.
     bool complete = false;
-    // Cut twigs that are longer than the mean at last (papers/000, algorithm 3).
+    // Cut twigs that are longer than the mean at last (Chen 2025, algorithm 3).
     std::optional<PruneOptions> prune;
     bool tell_leaves = true;  // tell leaves from wood; without it everything is taken for wood
     SkeletonOptions skeleton;

@@ -55,6 +55,8 @@ Json options_json(const ReportDetails& details) {
         options.orient.known_length ? Json(options.orient.known_length->metres) : Json(nullptr);
     json["skeleton"] = skeleton_method_name(options.skeleton.method);
     json["radii"] = radius_rule_name(options.radii);
+    if (options.skeleton.method == SkeletonMethod::kDelaunay)
+        json["spanning_tree"] = spanning_tree_kind_name(options.skeleton.spanning_tree);
     if (options.skeleton.method == SkeletonMethod::kFlood) {
         json["flood"] = flood_kind_name(options.skeleton.flood);
         json["voxel_m"] = options.skeleton.voxel > 0.0 ? Json(options.skeleton.voxel) : Json("auto");
@@ -304,7 +306,7 @@ std::string bark_fit_json(const BarkFit& fit, const GrownTree& grown) {
 
 std::string report_json(const Reconstruction& result, const ReportDetails& details) {
     Json json;
-    json["format_version"] = 1;
+    json["format_version"] = kReportVersion;
     json["version"] = kVersion;
     json["scan"] = details.scan_path;
     json["scan_format"] = result.read.format;

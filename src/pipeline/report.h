@@ -18,6 +18,9 @@
 
 namespace treerec {
 
+// Of report.json. 2: the skeleton method that version 1 calls "delaunay" is "geodesic".
+inline constexpr int kReportVersion = 2;
+
 struct ReportDetails {
     std::string scan_path;
     ReconstructOptions options;
@@ -39,9 +42,9 @@ struct ReportDetails {
 };
 
 // report.json, UTF-8, numbers finite or null. Keys:
-//   format_version 1, version, scan, scan_format, seed
-//   options {up, scale, known_height_m, known_length_m, skeleton, voxel_m (of a flood), spacing_m, columns,
-//   classes (of LAS; "auto"), leaves, tell_leaves, complete,
+//   format_version (kReportVersion), version, scan, scan_format, seed
+//   options {up, scale, known_height_m, known_length_m, skeleton, spanning_tree (of delaunay), voxel_m (of a
+//   flood), spacing_m, columns, classes (of LAS; "auto"), leaves, tell_leaves, complete,
 //     tree (number; null where a place or no tree was asked for), tree_at [x y z], one_tree, clean}
 //   points_read, points (after cleaning), leaf_points and leaf_share (of these), leaf_column (of the file,
 //   that told them; else null), foliage_cells, removed {step: points} up, up_detected, up_from_photos (whose

@@ -35,7 +35,7 @@ struct SheetSubject {
     Rgb bark = kPanelBark;
 };
 
-// Papers/000, 4.2: the photo that shows most of the tree, the cloud, the first skeleton and the pruned one,
+// Chen 2025, 4.2: the photo that shows most of the tree, the cloud, the first skeleton and the pruned one,
 // as that photo's camera sees them; below, the tree from +z, +x, -z and -x at one scale. Without photos that
 // can be read the upper row looks along -z and begins with the cloud. Throws Cancelled, or Error for a tree
 // without wood.
@@ -49,7 +49,7 @@ struct SheetFidelity {
     const OutlineOverlap* outline = nullptr;
 };
 
-// Papers/002, 9.4 to 9.9 with table 9.1: from the front and from the side, as photos' cameras see them, the
+// Zhang 2013, 9.4 to 9.9 with table 9.1: from the front and from the side, as photos' cameras see them, the
 // photo, the tree's outline on it, the cloud, and the tree; below, Q and what it is made of. Without photos
 // that can be read: the cloud, its distances to the bark, the skeleton and the tree, from +z and from +x.
 // Throws as stages_sheet() does.

@@ -1,4 +1,4 @@
-// Turns a raw cloud upright and to metres, and removes what is not tree (papers/000, 3.2.1).
+// Turns a raw cloud upright and to metres, and removes what is not tree (Chen 2025, 3.2.1).
 #pragma once
 
 #include <optional>

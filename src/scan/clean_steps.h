@@ -23,7 +23,7 @@ void clean_colors(PointCloud& cloud, const CleanOptions& options, CleanReport& r
 
 // Points whose mean distance to their k nearest neighbours is beyond the median of all points by `deviations`
 // robust standard deviations (1.4826 x the median absolute deviation), and stands out among its neighbours
-// too: a sparse twig is thin everywhere and stays (papers/000, 3.2.1, made local). spacing: gets the mean
+// too: a sparse twig is thin everywhere and stays (Chen 2025, 3.2.1, made local). spacing: gets the mean
 // distance that 95 % of the points stay under.
 std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::array<Range, 3>& ranges, int k,
                                    double deviations, double& spacing, const Progress* progress);

@@ -1,4 +1,4 @@
-// A missing branch, found by flooding the points that the tree does not explain (papers/002, 8.2).
+// A missing branch, found by flooding the points that the tree does not explain (Zhang 2013, 8.2).
 #pragma once
 
 #include <cstdint>

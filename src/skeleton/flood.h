@@ -1,4 +1,4 @@
-// The voxel-flood skeleton (papers/002, chapter 5): a tree grown from its root through the voxels.
+// The voxel-flood skeleton (Zhang 2013, chapter 5): a tree grown from its root through the voxels.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Lines through a node, fitted to the points of voxels (papers/002, 5.3 and 5.4).
+// Lines through a node, fitted to the points of voxels (Zhang 2013, 5.3 and 5.4).
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace treerec {
 
-// Occupied voxels only, so that memory grows with the points and not with the space between them (papers/002,
+// Occupied voxels only, so that memory grows with the points and not with the space between them (Zhang 2013,
 // 5.1, keeps an array of d^3).
 struct FloodGrid {
     // points: tree space, metres, finite, at least two. voxel: edge in metres. Throws Error where the voxel
@@ -32,7 +32,7 @@ struct FloodGrid {
     FloodGrid(const std::vector<Vec3>& points, const CellLayout& layout, Progress& progress);
 };
 
-// The smallest of a row of sizes at which the voxels that hold points hang together (papers/002, 5.1: as
+// The smallest of a row of sizes at which the voxels that hold points hang together (Zhang 2013, 5.1: as
 // small as continuity allows): most points lie in parts that are no specks, and links over the gaps do the
 // rest. points: thinned to `spacing` metres. one_stem: there are no twigs to be kept apart.
 double automatic_voxel(const std::vector<Vec3>& points, double spacing, bool one_stem,

@@ -1,4 +1,4 @@
-// The flood as papers/002 prints it (chapter 5), to be compared with ours.
+// The flood as Zhang 2013 prints it (chapter 5), to be compared with ours.
 #pragma once
 
 #include <vector>

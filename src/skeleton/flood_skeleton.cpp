@@ -21,15 +21,13 @@ namespace treerec {
 
 namespace {
 
-constexpr double kBranchVoxels = 1.5;  // what reaches less far out of the bark is bark
-constexpr double kLeastEscape = 0.02;  // metres,
-constexpr double kNoiseEscape = 2.5;   // and times the scan's noise, likewise
-constexpr double kFineVoxel = 0.4;     // of the automatic size: the user is told of finer voxels
-constexpr double kResolved = 2.0;      // points in a voxel
-constexpr int kPasses = 2;             // the flood's nodes lie farther from the axis than slices do
-constexpr double kThinnest = 0.001;    // metres
-constexpr std::array<const char*, 2> kMethods = {"delaunay", "flood"};
-constexpr std::array<const char*, 2> kFloods = {"ours", "paper"};
+constexpr double kBranchVoxels = 1.5;   // what reaches less far out of the bark is bark
+constexpr double kLeastEscape = 0.02;   // metres,
+constexpr double kNoiseEscape = 2.5;    // and times the scan's noise, likewise
+constexpr double kFineVoxel = 0.4;      // of the automatic size: the user is told of finer voxels
+constexpr double kResolved = 2.0;       // points in a voxel
+constexpr int kPasses = 2;              // the flood's nodes lie farther from the axis than slices do
+constexpr double kThinnest = 0.001;     // metres
 constexpr double kFewestPrinted = 8.0;  // voxels along an axis of the printed flood
 constexpr double kCoarser = 1.3;        // times fewer in the next try
 constexpr double kMostReached = 0.9;    // of the points: the user is told that the printed flood left more
@@ -118,26 +116,6 @@ std::string fine_voxel_warning(double fitting) {
 }
 
 }  // namespace
-
-SkeletonMethod parse_skeleton_method(const std::string& word) {
-    for (size_t m = 0; m < kMethods.size(); m++)
-        if (word == kMethods[m]) return static_cast<SkeletonMethod>(m);
-    throw Error("There is no skeleton method " + quote_word(word) + "; take delaunay or flood.");
-}
-
-const char* skeleton_method_name(SkeletonMethod method) {
-    return kMethods[static_cast<size_t>(method)];
-}
-
-FloodKind parse_flood_kind(const std::string& word) {
-    for (size_t k = 0; k < kFloods.size(); k++)
-        if (word == kFloods[k]) return static_cast<FloodKind>(k);
-    throw Error("There is no flood " + quote_word(word) + "; take ours or paper.");
-}
-
-const char* flood_kind_name(FloodKind kind) {
-    return kFloods[static_cast<size_t>(kind)];
-}
 
 void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
                     double factor, SkeletonResult& result, StageClock& clock, Progress* listener) {

@@ -1,4 +1,4 @@
-// How a flood went, step by step, to be drawn (papers/002, 8.1.7).
+// How a flood went, step by step, to be drawn (Zhang 2013, 8.1.7).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace treerec {
 // What the points are: of the wood's surface, as scanners and photos see it, or of all its inside.
 enum class CloudKind : uint8_t { kSurface, kSolid };
 
-// One of the directions that a neighbourhood splits into (papers/002, 5.3 and 5.4). Lengths in metres.
+// One of the directions that a neighbourhood splits into (Zhang 2013, 5.3 and 5.4). Lengths in metres.
 struct FloodDirection {
     DVec3 direction{0.0, 1.0, 0.0};  // of unit length, from the node
     double length = 0.0;

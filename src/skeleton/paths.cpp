@@ -12,8 +12,9 @@ namespace treerec {
 namespace {
 
 constexpr size_t kGrain = 1024;
-constexpr float kThicker = 1.5F;  // times as thick as what bears it: more than measures differ
-constexpr float kGrows = 30.0F;   // of the radius by which wood grows thicker: what that costs
+constexpr double kRawRadius = 0.002;  // metres
+constexpr float kThicker = 1.5F;      // times as thick as what bears it: more than measures differ
+constexpr float kGrows = 30.0F;       // of the radius by which wood grows thicker: what that costs
 
 // What each edge of the graph costs from the vertex of its row: its length, and more where it is a gap or
 // leads to thicker wood.
@@ -86,6 +87,20 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
     for (const uint32_t v : tree.order)
         if (tree.parent[v] >= 0) tree.along[v] = tree.along[tree.parent[v]] + tree.step[v];
     return tree;
+}
+
+Tree path_tree_as_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
+    std::vector<NodeId> parents(points.size() + 1);
+    std::vector<DVec3> positions(points.size() + 1);
+    const std::vector<double> radii(points.size() + 1, kRawRadius);
+    const std::vector<uint8_t> flags(points.size() + 1, 0);
+    parents[0] = kNoNode;
+    positions[0] = root;
+    for (size_t v = 0; v < points.size(); v++) {
+        parents[v + 1] = paths.parent[v] + 1;
+        positions[v + 1] = DVec3(points[v]);
+    }
+    return Tree::from_arrays(parents, positions, radii, flags);
 }
 
 }  // namespace treerec

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "skeleton/point_graph.h"
+#include "tree/tree.h"
 
 namespace treerec {
 
@@ -34,5 +35,9 @@ struct PathTree {
 // one. sure: edges over gaps that wood is known to cross, with their costs.
 PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
                         Progress& progress, const std::vector<SureLink>& sure = {});
+
+// The paths themselves, for pictures: vertex v is node v + 1, and the seeds hang on `root` (metres). Thin
+// constant radii.
+Tree path_tree_as_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root);
 
 }  // namespace treerec

@@ -24,8 +24,8 @@ struct PointGraph {
 };
 
 // points: distinct, metres. Every point is linked to its nearest ones, and what that leaves apart by the
-// shortest edges that make the whole connected. (AdTree, Du et al. 2019, 2.2, takes the edges of the Delaunay
-// triangulation, which costs ten times as much; the shortest paths through both are nearly the same.)
+// shortest edges that make the whole connected. (AdTree, Du et al. 2019, takes the edges of the Delaunay
+// triangulation, which costs ten times as much: skeleton/delaunay/.)
 PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress);
 
 // Where the edge stands in the first vertex's row (an index into `neighbour`), if there is one.

@@ -1,4 +1,4 @@
-// Radii by a rule instead of by the points (papers/002, 5.4, figure 5.4).
+// Radii by a rule instead of by the points (Zhang 2013, 5.4, figure 5.4).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// From a clean cloud to a Tree: the skeletonizer after AdTree (papers/000, 2.2.2 and 3.2.2), and the
-// voxel-flood one (papers/002, chapter 5).
+// From a clean cloud to a Tree: along shortest paths, as AdTree does it (Chen 2025, 2.2.2 and 3.2.2), or by
+// a voxel flood (Zhang 2013, chapter 5).
 #pragma once
 
 #include <optional>
@@ -14,15 +14,24 @@
 
 namespace treerec {
 
-// Shortest paths through the points and slices across them, or a flood through voxels.
-enum class SkeletonMethod : uint8_t { kDelaunay, kFlood };
+// Shortest paths through neighbouring points and slices across them; AdTree's own way, a tree over the edges
+// of the Delaunay triangulation (skeleton/delaunay/); or a flood through voxels.
+enum class SkeletonMethod : uint8_t { kGeodesic, kDelaunay, kFlood };
 
-// The flood as we do it, or as papers/002 prints it (skeleton/flood_paper.h), to be compared.
+// Of AdTree's way: which tree over the triangulation's edges. Both papers say minimum spanning tree and
+// Dijkstra's shortest paths in one sentence; they are two trees.
+enum class SpanningTreeKind : uint8_t { kShortestPaths, kMinimum };
+
+// The flood as we do it, or as Zhang 2013 prints it (skeleton/flood_paper.h), to be compared.
 enum class FloodKind : uint8_t { kOurs, kPaper };
 
-// "delaunay", "flood". Throws Error for any other word, naming both.
+// "geodesic", "delaunay", "flood". Throws Error for any other word, naming all.
 SkeletonMethod parse_skeleton_method(const std::string& word);
 const char* skeleton_method_name(SkeletonMethod method);
+
+// "paths", "minimum". Throws Error for any other word, naming both.
+SpanningTreeKind parse_spanning_tree_kind(const std::string& word);
+const char* spanning_tree_kind_name(SpanningTreeKind kind);
 
 // "ours", "paper". Throws Error for any other word, naming both.
 FloodKind parse_flood_kind(const std::string& word);
@@ -30,7 +39,8 @@ const char* flood_kind_name(FloodKind kind);
 
 // Lengths in metres; 0 where a length is "automatic" (from the cloud's own spacing and size).
 struct SkeletonOptions {
-    SkeletonMethod method = SkeletonMethod::kDelaunay;
+    SkeletonMethod method = SkeletonMethod::kGeodesic;
+    SpanningTreeKind spanning_tree = SpanningTreeKind::kShortestPaths;
     FloodKind flood = FloodKind::kOurs;
     double voxel = 0.0;              // edge of the flood's voxels; 0 automatic
     bool keep_steps = false;         // fill SkeletonResult::steps

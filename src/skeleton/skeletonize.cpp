@@ -8,6 +8,7 @@
 #include "skeleton/assemble.h"
 #include "skeleton/axis.h"
 #include "skeleton/bark.h"
+#include "skeleton/delaunay/delaunay_skeleton.h"
 #include "skeleton/flood_skeleton.h"
 #include "skeleton/foot.h"
 #include "skeleton/known_radii.h"
@@ -40,22 +41,6 @@ constexpr double kWidestRing = 0.05;    // of the tree's extent
 constexpr double kFlatness = 1e-4;      // depth over width: less is rounding, not a scanned tree
 constexpr double kLeastGap = 0.3;       // metres: a gap that the user is told of,
 constexpr double kGapShare = 0.04;      // and of the tree's extent
-constexpr double kRawRadius = 0.002;    // metres
-
-// The shortest-path tree itself, for pictures.
-Tree raw_tree(const std::vector<Vec3>& points, const PathTree& paths, const DVec3& root) {
-    std::vector<NodeId> parents(points.size() + 1);
-    std::vector<DVec3> positions(points.size() + 1);
-    const std::vector<double> radii(points.size() + 1, kRawRadius);
-    const std::vector<uint8_t> flags(points.size() + 1, 0);
-    parents[0] = kNoNode;
-    positions[0] = root;
-    for (size_t v = 0; v < points.size(); v++) {
-        parents[v + 1] = paths.parent[v] + 1;
-        positions[v + 1] = DVec3(points[v]);
-    }
-    return Tree::from_arrays(parents, positions, radii, flags);
-}
 
 // Whether the points all lie on a plane, or on a line.
 bool is_flat(const std::vector<Vec3>& points) {
@@ -155,6 +140,10 @@ SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions&
         flood_skeleton(points, cloud, options, factor, result, clock, listener);
         return result;
     }
+    if (options.method == SkeletonMethod::kDelaunay) {
+        delaunay_skeleton(points, cloud, options, result, clock, listener);
+        return result;
+    }
 
     SubProgress linking(listener, 0.1, 0.55);
     PointGraph graph = neighbour_graph(points, linking);
@@ -181,7 +170,7 @@ SkeletonResult skeletonize_sized(const PointCloud& cloud, const SkeletonOptions&
         if (gaps.links.size() > known)
             paths = shortest_paths(graph, first_scale, root.seeds, progress, gaps.links);
     }
-    if (options.keep_raw) result.raw = raw_tree(points, paths, root.position);
+    if (options.keep_raw) result.raw = path_tree_as_tree(points, paths, root.position);
     clock.stop("Shortest paths", points.size());
 
     progress.update(0.6, "Thickness");

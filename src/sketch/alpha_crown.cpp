@@ -38,7 +38,7 @@ using AlphaShape = CGAL::Alpha_shape_3<Delaunay>;
 
 // Points in a crown. The paper tells none; with these a shape follows the outline to a fortieth of its width.
 constexpr int kPoints = 6000;
-constexpr double kOfLeast = 3.0;  // of the least alpha in one piece (papers/003, 3.2)
+constexpr double kOfLeast = 3.0;  // of the least alpha in one piece (Ma and Liu 2020, 3.2)
 
 struct Triangle {
     DVec3 a, b, c;

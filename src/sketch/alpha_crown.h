@@ -1,4 +1,4 @@
-// The crown's parts as the paper makes them: alpha shapes of random points (papers/003, 3.2).
+// The crown's parts as the paper makes them: alpha shapes of random points (Ma and Liu 2020, 3.2).
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Strokes without what the hand and the mouse add to them (papers/003, 2.1).
+// Strokes without what the hand and the mouse add to them (Ma and Liu 2020, 2.1).
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The crown's shape in depth, from its outline (papers/003, 3.2).
+// The crown's shape in depth, from its outline (Ma and Liu 2020, 3.2).
 //
 // At every height the outline's width becomes a section through the crown: a circle over it, or, as printed,
 // a square. An outline that has several widths at a height, as a cloud's, has a section over each.

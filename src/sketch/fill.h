@@ -1,4 +1,4 @@
-// Twigs on the limbs, as long as the crown has room (papers/003, 4.2).
+// Twigs on the limbs, as long as the crown has room (Ma and Liu 2020, 4.2).
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ namespace {
 // Pixels: what a line may lose of its shape; the front view is to be true within 2.
 constexpr double kTrueness = 0.7;
 constexpr double kLongestStep = 40.0;  // pixels between nodes, so that tapers and bends are round
-constexpr double kMostTurn = 60.0;     // degrees (papers/003, 3.1)
+constexpr double kMostTurn = 60.0;     // degrees (Ma and Liu 2020, 3.1)
 constexpr double kLeastApart = 10.0;
 // Of the depth that the crown has at a branch's tip: leaves are beyond it.
 constexpr double kShallowest = 0.45, kDeepest = 0.85;

@@ -1,4 +1,4 @@
-// Flat strokes into space (papers/003, 3.1).
+// Flat strokes into space (Ma and Liu 2020, 3.1).
 #pragma once
 
 #include <string>

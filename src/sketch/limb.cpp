@@ -29,7 +29,7 @@ constexpr double kReachJitters = 3.0;  // so far beside the stroke points are lo
 constexpr double kSlopeStretch = 0.4;  // of what was found, its last part, says how the limb goes on,
 constexpr double kLeastStretch = 0.3;  // and at least so many metres
 constexpr double kSteepest = 1.2;      // radians out of the picture
-constexpr double kJointRatio = 0.8;    // papers/000, algorithm 5
+constexpr double kJointRatio = 0.8;    // Chen 2025, algorithm 5
 // By how much more of a path's score another host must be better; one that the stroke does not fall on.
 constexpr double kMargin = 1.0, kNearMargin = 2.5;
 constexpr double kRadiusSpread = 0.9;  // of the logarithm of a limb's radius over the usual one

@@ -43,9 +43,9 @@ struct DrawnLimb {
     std::vector<std::string> remarks;  // sentences for the user
 };
 
-// The stroke is cleaned (papers/003, 2.1) and hung on the wood that its tail falls on. Its depth comes from
-// the points there that no wood explains; where there are none, from the slope of what was found, else from
-// how the tree's own limbs branch (sketch/limb_plane.h). Its radii, twigs' angles and internodes are the
+// The stroke is cleaned (Ma and Liu 2020, 2.1) and hung on the wood that its tail falls on. Its depth comes
+// from the points there that no wood explains; where there are none, from the slope of what was found, else
+// from how the tree's own limbs branch (sketch/limb_plane.h). Its radii, twigs' angles and internodes are the
 // tree's own (sketch/limb_statistics.h), and its twigs copies of the tree's. cloud: null for none; in any
 // frame, the tree's says where it is. wood: empty, or one per point of the cloud, 0 for what is left out
 // (leaves). The order of the points changes nothing. Throws Error, with a sentence, for a camera, stroke or

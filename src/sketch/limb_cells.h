@@ -1,4 +1,4 @@
-// Which limb a place in the crown belongs to (papers/003, 3.2, equation 3).
+// Which limb a place in the crown belongs to (Ma and Liu 2020, 3.2, equation 3).
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kReach = 0.15;  // of the stroke's length, to the nearest wood (papers/003, 2.2)
+constexpr double kReach = 0.15;  // of the stroke's length, to the nearest wood (Ma and Liu 2020, 2.2)
 constexpr double kTailShare = 0.25;
 constexpr double kBears = 0.75;  // of the base radius that a limb of its length has: a host's least
 constexpr double kAlike = 0.5;   // of the thickest wood's radius: may hide it

@@ -9,8 +9,8 @@
 
 namespace treerec {
 
-// Places that are closer than 3 pixels to the last kept one go, then equation 1 of papers/003 (2.1): weights
-// .07 .13 .60 .13 .07, both ends kept. Pixels.
+// Places that are closer than 3 pixels to the last kept one go, then equation 1 of Ma and Liu 2020 (2.1):
+// weights .07 .13 .60 .13 .07, both ends kept. Pixels.
 std::vector<DVec2> clean_stroke(const std::vector<DVec2>& points);
 
 // The line every `step` pixels, both ends among the places, with what is shorter than `smooth` pixels evened

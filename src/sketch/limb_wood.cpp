@@ -15,7 +15,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kJointRatio = 0.8;  // papers/000, algorithm 5
+constexpr double kJointRatio = 0.8;  // Chen 2025, algorithm 5
 constexpr double kLeastScale = 0.5, kMostScale = 1.5;
 constexpr size_t kMostNodes = 2000;     // of one twig
 constexpr size_t kMostTwigs = 400;      // on a limb

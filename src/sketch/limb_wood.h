@@ -10,7 +10,7 @@
 namespace treerec {
 
 // Sets the radii along the axis: the base radius of a limb of that length, `stouter` times, at most .8 of the
-// host's (papers/000, algorithm 5), and the limbs' own profile.
+// host's (Chen 2025, algorithm 5), and the limbs' own profile.
 void set_limb_radii(std::vector<LimbPlace>& axis, const RadiusLaw& law, double stouter, double host_radius);
 
 // What grows on the axis.

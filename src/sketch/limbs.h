@@ -40,8 +40,8 @@ double value_along(const std::vector<DVec3>& points, const std::vector<double>& 
 // The place on the line that is nearest to p: metres along it.
 double nearest_along(const std::vector<DVec3>& points, const DVec3& p);
 
-// d / l = R_i / R (papers/003, equation 2): at each point, from `base` at the first to 0 at the last, but at
-// least `least`. Metres.
+// d / l = R_i / R (Ma and Liu 2020, equation 2): at each point, from `base` at the first to 0 at the last,
+// but at least `least`. Metres.
 std::vector<double> tapered(const std::vector<DVec3>& points, double base, double least);
 
 }  // namespace treerec

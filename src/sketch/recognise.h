@@ -1,4 +1,4 @@
-// What each stroke of a drawing is: the crown's outline, the trunk, or a branch (papers/003, 2.2).
+// What each stroke of a drawing is: the crown's outline, the trunk, or a branch (Ma and Liu 2020, 2.2).
 //
 // The paper takes the stroke with the highest point for the outline, the one with the lowest for the trunk
 // and all others for branches, and assumes of a drawing (chapter 2):

@@ -1,4 +1,4 @@
-// Branches that do not begin where they should (papers/003, 2.2 and figures 4 and 5).
+// Branches that do not begin where they should (Ma and Liu 2020, 2.2 and figures 4 and 5).
 #pragma once
 
 #include <vector>

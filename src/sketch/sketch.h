@@ -1,4 +1,4 @@
-// A whole tree from a few strokes (papers/003).
+// A whole tree from a few strokes (Ma and Liu 2020).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace treerec {
 
-// How strokes get their third dimension (papers/003, 3.1).
+// How strokes get their third dimension (Ma and Liu 2020, 3.1).
 enum class SketchDepth : uint8_t {
     // x and y stay exactly as drawn; depth is added, and branches that the drawing does not show, in front
     // and behind, so that the crown is as deep as it is wide.
@@ -22,7 +22,7 @@ enum class SketchDepth : uint8_t {
     kPaper,
 };
 
-// How the crown bounds the twigs (papers/003, 3.2).
+// How the crown bounds the twigs (Ma and Liu 2020, 3.2).
 enum class SketchCrown : uint8_t {
     kSections,  // round sections of the outline, a ray marched through those nearest to its own branch
     kAlpha,     // as printed: square sections filled with random points, alpha shapes of each branch's share

@@ -1,4 +1,4 @@
-// Kinds of trees that a sketch can become: each with its twigs (papers/003, 4.1 and table 1).
+// Kinds of trees that a sketch can become: each with its twigs (Ma and Liu 2020, 4.1 and table 1).
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct SpeciesTwig {
     int size = 0;         // those of one size stand for one another
 };
 
-// How twigs follow one another along a branch (papers/003, 4.1).
+// How twigs follow one another along a branch (Ma and Liu 2020, 4.1).
 enum class TwigArrangement : uint8_t {
     kAlternate,  // one at a place, as the ginkgo's
     kOpposite,   // two, as the maple's
@@ -47,7 +47,7 @@ struct SketchSpecies {
     TwigArrangement arrangement = TwigArrangement::kAlternate;
     std::vector<SpeciesTwig> twigs;  // the shortest first
     LeafRules leaves;
-    // Degrees off the limb, ascending and in equal shares of the twigs; by papers/003, 4.2, step 2.
+    // Degrees off the limb, ascending and in equal shares of the twigs; by Ma and Liu 2020, 4.2, step 2.
     std::vector<double> angles{30.0, 70.0};
     // Whether angles are those off the limb where the twig stands, and not off its whole course.
     bool own = false;

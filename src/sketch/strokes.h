@@ -1,4 +1,4 @@
-// What one draws: strokes on a canvas (papers/003, chapter 2).
+// What one draws: strokes on a canvas (Ma and Liu 2020, chapter 2).
 //
 // The canvas has pixels, x to the right and y down, as pictures have; one that is kCanvasHeight high has the
 // pixels of the paper's thresholds, and every other is scaled to it before anything is measured.
@@ -61,7 +61,7 @@ struct Sketch {
 // 0 and 200 m.
 void check_sketch(const Sketch& sketch);
 
-// What was mended in a stroke (papers/003, 2.2 and figures 4 and 5), in the order in which it was.
+// What was mended in a stroke (Ma and Liu 2020, 2.2 and figures 4 and 5), in the order in which it was.
 enum class StrokeRepair : uint8_t {
     kReversed,  // it was drawn towards the trunk, or a trunk from its top down
     kClosed,    // an open outline, by its chord
@@ -114,9 +114,9 @@ struct UnderstoodSketch {
     std::vector<std::string> remarks;    // about the whole, such as that no outline was drawn
 };
 
-// Cleans, recognises and repairs (papers/003, 2.1 and 2.2). A stroke that makes no sense gets a fault and is
-// left out; what can be guessed is. Throws Error, with a sentence that a user understands, where no tree can
-// be made of it at all: nothing is drawn, or check_sketch() refuses it.
+// Cleans, recognises and repairs (Ma and Liu 2020, 2.1 and 2.2). A stroke that makes no sense gets a fault
+// and is left out; what can be guessed is. Throws Error, with a sentence that a user understands, where no
+// tree can be made of it at all: nothing is drawn, or check_sketch() refuses it.
 UnderstoodSketch understand_sketch(const Sketch& sketch);
 
 }  // namespace treerec

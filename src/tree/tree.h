@@ -18,7 +18,7 @@ inline constexpr NodeId kNoNode = -1;
 inline constexpr NodeId kLargestId = 1 << 22;
 inline constexpr size_t kMostLeafRules = 250;
 
-// The paper's four kinds (papers/000, table 3.2). A trunk node that forks is of kind kBranch and one that
+// The paper's four kinds (Chen 2025, table 3.2). A trunk node that forks is of kind kBranch and one that
 // ends is of kind kLeaf, as figure 3.7 draws them; ask Node::is_trunk() for the trunk itself.
 enum class NodeKind : uint8_t { kLeaf, kBranch, kCommon, kTrunk };
 
@@ -38,7 +38,7 @@ struct Node {
     NodeId last_child = kNoNode;
     NodeId next_sibling = kNoNode;
     NodeId previous_sibling = kNoNode;
-    int32_t depth = 0;  // 1 at the root (papers/000, algorithm 1); 0 marks a free slot
+    int32_t depth = 0;  // 1 at the root (Chen 2025, algorithm 1); 0 marks a free slot
     int32_t child_count = 0;
     uint8_t flags = 0;
     uint8_t leaf_rule = 0;  // place in Tree::leaf_rules(), from 1; 0: the tree's own

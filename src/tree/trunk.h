@@ -1,4 +1,4 @@
-// Which nodes are trunk (papers/000, algorithm 2).
+// Which nodes are trunk (Chen 2025, algorithm 2).
 #pragma once
 
 #include "tree/tree.h"

@@ -38,7 +38,7 @@ void bench_scans(const std::vector<std::string>& scans, const Settings& settings
 // Lighter trees beside the paper's: size and outline, of scans or skeletons; of grown trees where none is
 // named.
 void bench_lighter(const std::vector<std::string>& files);
-// Bytes of each scan, of its skeleton, and of lighter ones (papers/002, table 9.2).
+// Bytes of each scan, of its skeleton, and of lighter ones (Zhang 2013, table 9.2).
 void bench_bytes(const std::vector<std::string>& scans);
 // How long the fidelity takes to follow edits of the tree of each scan.
 void bench_fidelity(const std::vector<std::string>& scans, const Settings& settings);
@@ -72,7 +72,8 @@ void bench_limbs(const Settings& settings);
 // Strokes to trees of every species: time, and how well crowns fill their outlines. repetitions: sketches.
 void bench_sketches(const Settings& settings);
 
-// Bark that grows from papers/001's seed, with its parameters and to its sizes; how time grows with vertices.
+// Bark that grows from Mizoguchi and Miyata's (2014) seed, with its parameters and to its sizes; how time
+// grows with vertices.
 void bench_growth(const Settings& settings);
 
 // Time to write and read L-strings of 10 MB, and to rewrite a grammar.

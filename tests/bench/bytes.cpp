@@ -1,4 +1,4 @@
-// Table 9.2 of papers/002 on real scans: bytes of the cloud, of its skeleton, and of lighter ones.
+// Table 9.2 of Zhang 2013 on real scans: bytes of the cloud, of its skeleton, and of lighter ones.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// How fast bark grows: papers/001's parameters and sizes (table 3).
+// How fast bark grows: Mizoguchi and Miyata's (2014) parameters and sizes (table 3).
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,9 +16,10 @@ namespace {
 
 using namespace growth;
 
-constexpr double kLongest = 0.150, kShortest = 0.070;  // T_s and T_m, metres (papers/001, figure 23)
-constexpr double kApicalSpeed = 0.060;                 // S_a, metres a step
-constexpr double kCambiumSpeed = 0.003;                // S_c, metres a step
+constexpr double kLongest = 0.150,
+                 kShortest = 0.070;      // T_s and T_m, metres (Mizoguchi and Miyata 2014, figure 23)
+constexpr double kApicalSpeed = 0.060;   // S_a, metres a step
+constexpr double kCambiumSpeed = 0.003;  // S_c, metres a step
 constexpr int kSteps = 300;
 constexpr double kGolden = 2.399963229728653;  // radians between one branch and the next
 constexpr double kBudSteps = 12.0;             // between a tip's passing and the branch
@@ -102,8 +103,8 @@ void bench_growth(const Settings& settings) {
         {"trunk", 0, 1, kSteps, 1.0, 0.0, 0.0},
         {"trunk, half of T_s and T_m", 0, 1, kSteps, 0.5, 0.0, 0.0},
     };
-    std::printf("Bark from a seed: fastest of %d, %d threads; papers/001's table 3 beside\n", repetitions,
-                thread_count());
+    std::printf("Bark from a seed: fastest of %d, %d threads; Mizoguchi and Miyata's (2014) table 3 beside\n",
+                repetitions, thread_count());
     std::printf("%-28s %8s %6s %9s %9s %7s %8s %8s %8s %7s\n", "case", "branches", "steps", "vertices",
                 "faces", "frozen", "s", "target s", "paper s", "CPU us");
     Result trunk, fine;

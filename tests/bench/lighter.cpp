@@ -1,4 +1,4 @@
-// The table of papers/002, 9.2: how much smaller a tree's file becomes, and what it costs to look at.
+// The table of Zhang 2013, 9.2: how much smaller a tree's file becomes, and what it costs to look at.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>

@@ -1,5 +1,5 @@
-// The skeletonizers side by side, the flood also as papers/002 prints it, and what guided completion makes of
-// their trees.
+// The skeletonizers side by side, AdTree's over both of its trees, the flood also as Zhang 2013 prints it,
+// and what guided completion makes of their trees.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -39,17 +39,21 @@ double processor_seconds() {
 struct Method {
     const char* name;
     SkeletonMethod method;
-    FloodKind flood;
+    FloodKind flood = FloodKind::kOurs;
+    SpanningTreeKind spanning_tree = SpanningTreeKind::kShortestPaths;
 };
 
-constexpr Method kDelaunay{"delaunay", SkeletonMethod::kDelaunay, FloodKind::kOurs};
-constexpr Method kFlood{"flood", SkeletonMethod::kFlood, FloodKind::kOurs};
+constexpr Method kGeodesic{"geodesic", SkeletonMethod::kGeodesic};
+constexpr Method kDelaunay{"delaunay", SkeletonMethod::kDelaunay};
+constexpr Method kMinimum{"minimum", SkeletonMethod::kDelaunay, FloodKind::kOurs, SpanningTreeKind::kMinimum};
+constexpr Method kFlood{"flood", SkeletonMethod::kFlood};
 constexpr Method kPrinted{"printed", SkeletonMethod::kFlood, FloodKind::kPaper};
 
 ReconstructOptions options_of(const Method& method) {
     ReconstructOptions options;
     options.skeleton.method = method.method;
     options.skeleton.flood = method.flood;
+    options.skeleton.spanning_tree = method.spanning_tree;
     options.skeleton.keep_raw = false;
     return options;
 }
@@ -160,7 +164,7 @@ void bench_methods(const std::vector<std::string>& scans, const Settings& settin
     std::printf("%-36s %-9s %7s %9s %7s %6s %18s %9s  recall precision length %%\n", "scan", "method",
                 "CPU s", "voxel mm", "nodes", "tips", "mm median/p95", "in 2 cm %");
     for (const std::string& scan : scans)
-        for (const Method& method : {kDelaunay, kFlood, kPrinted}) {
+        for (const Method& method : {kGeodesic, kDelaunay, kMinimum, kFlood, kPrinted}) {
             const std::string name = std::filesystem::path(scan).filename().string();
             try {
                 const Run run = run_method(scan, method);
@@ -189,11 +193,11 @@ void bench_clicks(const std::vector<std::string>& scans, const Settings& setting
         const Truth truth(file);
         std::printf("%s\n%-12s %6s %9s %8s %9s %11s\n", std::filesystem::path(scan).filename().c_str(),
                     "method", "clicks", "length %", "recall", "precision", "explained %");
-        for (const Method& method : {kDelaunay, kFlood}) {
+        for (const Method& method : {kGeodesic, kFlood}) {
             click_through(run_method(scan, method).made, method.name, truth);
             std::fflush(stdout);
         }
-        click_through(run_method(scan, kDelaunay).made, "a third lost", truth, true);
+        click_through(run_method(scan, kGeodesic).made, "a third lost", truth, true);
     }
 }
 

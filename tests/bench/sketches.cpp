@@ -29,8 +29,8 @@ double share(std::vector<double> values, double of) {
     return values[static_cast<size_t>(of * static_cast<double>(values.size() - 1))];
 }
 
-// The paper's table 2 (papers/003): how long its authors drew and how long their program then took, beside
-// what ours takes for the same four trees, drawn anew.
+// The paper's table 2 (Ma and Liu 2020): how long its authors drew and how long their program then took,
+// beside what ours takes for the same four trees, drawn anew.
 void bench_table2() {
     struct Row {
         const char* species;

@@ -4,7 +4,8 @@ extends SceneTree
 ##     godot --path project --script tests/captures/barks.gd -- TREE PICTURE [LEAVES [PRESET…]]
 ##
 ## TREE: a skeleton. LEAVES: the preset whose bark the tree has; PRESETs: all, if none is named.
-## One that ends with .recipe is a file; those of papers/001 are in paper/, for paper/trunk.swc.
+## One that ends with .recipe is a file; those of Mizoguchi and Miyata 2014 are in paper/, for
+## paper/trunk.swc.
 
 const Recipe := preload("res://addons/tree_reconstruction/editor/dock/growth_recipe.gd")
 const Stage := preload("sketch_stage.gd")

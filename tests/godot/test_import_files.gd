@@ -265,6 +265,58 @@ func test_units_are_in_the_editor_s_language() -> void:
 	TranslationServer.remove_domain(name)
 
 
+# Until the parameter had its name, "delaunay" was the word for what is geodesic now.
+func test_old_files_keep_their_method() -> void:
+	var path: String = write_scan("old.xyz")
+	var default_of: Callable = func(at: String) -> String:
+		for parameter: Dictionary in ImportOptions.list(0, self, at):
+			if parameter["name"] == "skeleton/algorithm":
+				return parameter["default_value"]
+		return ""
+	check_equal(default_of.call(path), "geodesic", "a new file")
+	var wanted: Dictionary[String, String] = {
+		"delaunay": "geodesic", "flood": "flood", "x": "geodesic"
+	}
+	for word: String in wanted:
+		var config: ConfigFile = ConfigFile.new()
+		config.set_value("params", "skeleton/method", word)
+		config.save(path + ".import")
+		check_equal(default_of.call(path), wanted[word], "of a file that says " + word)
+	# One that has the new name, too, goes by that.
+	var both: ConfigFile = ConfigFile.new()
+	both.set_value("params", "skeleton/method", "flood")
+	both.set_value("params", "skeleton/algorithm", "delaunay")
+	both.save(path + ".import")
+	check_equal(default_of.call(path), "geodesic", "the default beside the new name")
+	DirAccess.remove_absolute(path + ".import")
+	var setting: String = "importer_defaults/tree_reconstruction.scan"
+	var before: Variant = ProjectSettings.get_setting(setting, null)
+	ProjectSettings.set_setting(setting, {"skeleton/method": "flood"})
+	check_equal(default_of.call(path), "flood", "by the project's defaults")
+	ProjectSettings.set_setting(setting, before)
+	check_equal(
+		ImportOptions.to_options({"skeleton/algorithm": "delaunay"}),
+		{"skeleton": "delaunay"},
+		"the new meaning"
+	)
+
+
+func test_old_trees_keep_their_method() -> void:
+	var tree: TreeReconstruction = TreeReconstruction.new()
+	tree.provenance = {"options": {"skeleton": "delaunay"}, "report": {"format_version": 1.0}}
+	check_equal(tree.provenance["options"], {"skeleton": "geodesic"}, "of before")
+	tree.provenance = {"options": {"skeleton": "delaunay"}, "report": {"format_version": 2.0}}
+	check_equal(tree.provenance["options"], {"skeleton": "delaunay"}, "of today")
+	var path: String = write_scan("scan.xyz")
+	var reconstructor: TreeReconstructor = TreeReconstructor.new()
+	for method: String in ["geodesic", "delaunay"]:
+		var made: TreeReconstruction = reconstructor.reconstruct_file(path, {"skeleton": method})
+		check(made != null, reconstructor.get_error_message())
+		if made != null:
+			check_equal(made.provenance["options"]["skeleton"], method, "what is kept")
+			check_near(made.measure()["height"], 3.5, 0.3, method)
+
+
 func test_every_preset_reconstructs() -> void:
 	var scan: String = write_scan("scan.xyz")
 	for preset: int in ImportOptions.PRESETS.size():
@@ -285,8 +337,8 @@ func test_every_preset_reconstructs() -> void:
 
 func test_only_what_matters_is_shown() -> void:
 	var unit: Dictionary = ImportOptions.Unit
-	var guess: Dictionary = {"scan/unit": unit.GUESS, "skeleton/method": "delaunay"}
-	var height: Dictionary = {"scan/unit": unit.TREE_HEIGHT, "skeleton/method": "flood"}
+	var guess: Dictionary = {"scan/unit": unit.GUESS, "skeleton/algorithm": "geodesic"}
+	var height: Dictionary = {"scan/unit": unit.TREE_HEIGHT, "skeleton/algorithm": "flood"}
 	for name: String in ["scan/tree_height", "skeleton/voxel"]:
 		check(not ImportOptions.is_visible("a.las", false, name, guess), name + " is shown")
 		check(ImportOptions.is_visible("a.las", false, name, height), name + " is hidden")

@@ -1,5 +1,5 @@
 // Sketches of trees whose every stroke's intent is known: grown trees (synth/grow.h) drawn as trunk, branches
-// and outline, and then spoilt as people do (papers/003, figure 4).
+// and outline, and then spoilt as people do (Ma and Liu 2020, figure 4).
 //
 // Trees of the habits with one stem, seen from any side. Branches are those of the first order that one would
 // draw: long enough, apart from each other, and not hidden before the trunk.

@@ -32,7 +32,7 @@ TEST_F(CliFlood, FloodsAndReportsItsVoxels) {
     EXPECT_EQ(get("out/b.txt"), get("out/c.txt"));
     ASSERT_EQ(run("reconstruct s/scan.ply -o out/d.txt --report out/d.json --quiet").code, 0);
     const auto other = nlohmann::json::parse(get("out/d.json"));
-    EXPECT_EQ(other["options"]["skeleton"], "delaunay");
+    EXPECT_EQ(other["options"]["skeleton"], "geodesic");
     EXPECT_FALSE(other.contains("voxel_m"));
 }
 

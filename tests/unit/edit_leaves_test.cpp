@@ -66,7 +66,7 @@ TEST(LeavesCommand, SetsExactlyWhatWasAskedFor) {
     }
 }
 
-// Papers/000, 3.2.5: end nodes are what leaves are put on; they stand along the twig.
+// Chen 2025, 3.2.5: end nodes are what leaves are put on; they stand along the twig.
 TEST(LeavesCommand, AnEndNodeStandsForItsTwig) {
     Tree tree;
     const NodeId root = tree.add_root({0, 0, 0}, 0.1);

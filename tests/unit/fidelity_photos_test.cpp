@@ -1,4 +1,4 @@
-// Photos, their cameras and masks: I, R_3d and Q (papers/002, 7.1 and 7.2).
+// Photos, their cameras and masks: I, R_3d and Q (Zhang 2013, 7.1 and 7.2).
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -148,7 +148,7 @@ TEST(GrowthBark, EndsShortlyBelowTheFootAndBeyondACut) {
     }
 }
 
-// Papers/001, equation 6: k S_c more a step, of S_c that makes the radius in all steps.
+// Mizoguchi and Miyata 2014, equation 6: k S_c more a step, of S_c that makes the radius in all steps.
 TEST(GrowthBark, ABurlIsAsHighAsItsGrowth) {
     const Tree tree = cylinder(0.15, 1.6);
     const GrownTree plain = grow_bark(tree, recipe_of(tree, "edges longest=0.04"));

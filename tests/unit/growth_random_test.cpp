@@ -112,7 +112,7 @@ std::map<uint32_t, TracedVertex> read_vertices(const std::string& path) {
 
 }  // namespace
 
-// Equations 1 to 5 of papers/001, by what is written of each step.
+// Equations 1 to 5 of Mizoguchi and Miyata 2014, by what is written of each step.
 TEST(GrowthTrace, LetsTheEquationsBeRecomputed) {
     const Tree tree = cylinder(0.1, 0.8);
     const std::string folder =

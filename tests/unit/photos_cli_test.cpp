@@ -143,7 +143,7 @@ TEST_F(PhotosCli, WrongWordsAreTold) {
     EXPECT_TRUE(out_is_empty());
 }
 
-// Figure 4.1 of papers/002, without COLMAP.
+// Figure 4.1 of Zhang 2013, without COLMAP.
 TEST_F(PhotosCli, MatchesCanBeSeen) {
     const auto picture = [](const test::Warp& warp) {
         const std::vector<uint8_t> png = encode_png(test::draw_warped(warp, 5));

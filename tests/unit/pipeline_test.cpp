@@ -340,7 +340,7 @@ TEST_F(Pipeline, APalmIsOneStem) {
         options.seed = seed;
         write_cloud(path("palm.ply"), scan_tree(palm, options).cloud);
         const Measurements measured = measure(palm);
-        for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
+        for (const SkeletonMethod method : {SkeletonMethod::kGeodesic, SkeletonMethod::kFlood}) {
             ReconstructOptions how;
             how.skeleton.method = method;
             const Reconstruction made = reconstruct_file(path("palm.ply"), how, nullptr);

@@ -138,7 +138,8 @@ TEST(OddShapes, AStumpIsOnePiece) {
                 for (Vec3& p : points)
                     p += Vec3(0.002 * random.normal() * random.direction());
                 if (with_ground) add_ground(points, random, 1.8, 0.004, 4000);
-                for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
+                for (const SkeletonMethod method :
+                     {SkeletonMethod::kGeodesic, SkeletonMethod::kDelaunay, SkeletonMethod::kFlood}) {
                     ReconstructOptions options;
                     options.skeleton.method = method;
                     const Reconstruction result = made_of(standing(points, kind), options);

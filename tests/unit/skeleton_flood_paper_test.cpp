@@ -1,4 +1,4 @@
-// The flood as papers/002 prints it.
+// The flood as Zhang 2013 prints it.
 #include "skeleton/flood_paper.h"
 
 #include <gtest/gtest.h>

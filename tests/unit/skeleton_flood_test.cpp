@@ -212,7 +212,7 @@ TEST(FloodTest, SaysWhatIsWrongWithAVoxelSize) {
     EXPECT_NE(sentence_of(scan.cloud, flooded(1e-7)).find("too small for a tree of"), std::string::npos);
     EXPECT_THROW(parse_skeleton_method("voxels"), Error);
     EXPECT_EQ(parse_skeleton_method("flood"), SkeletonMethod::kFlood);
-    EXPECT_EQ(std::string(skeleton_method_name(parse_skeleton_method("delaunay"))), "delaunay");
+    EXPECT_EQ(std::string(skeleton_method_name(parse_skeleton_method("geodesic"))), "geodesic");
 }
 
 TEST(FloodTest, StopsWhenCancelled) {

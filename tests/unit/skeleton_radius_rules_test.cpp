@@ -1,4 +1,4 @@
-// Radii by a rule (papers/002, 5.4).
+// Radii by a rule (Zhang 2013, 5.4).
 #include "skeleton/radius_rules.h"
 
 #include <gtest/gtest.h>

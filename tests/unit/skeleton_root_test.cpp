@@ -32,7 +32,8 @@ DVec3 root_of(const SkeletonResult& made) {
 }
 
 TEST(Root, StandsWhereAStemIsKnownToStand) {
-    for (const SkeletonMethod method : {SkeletonMethod::kDelaunay, SkeletonMethod::kFlood})
+    for (const SkeletonMethod method :
+         {SkeletonMethod::kGeodesic, SkeletonMethod::kDelaunay, SkeletonMethod::kFlood})
         for (const uint64_t seed : {1, 2}) {
             const PointCloud cloud = tree_above_a_bush(seed);
             SkeletonOptions options;

@@ -1,4 +1,4 @@
-// Strokes without noise (papers/003, 2.1).
+// Strokes without noise (Ma and Liu 2020, 2.1).
 #include "sketch/clean.h"
 
 #include <gtest/gtest.h>

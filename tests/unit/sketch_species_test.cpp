@@ -87,8 +87,8 @@ TEST(SketchSpecies, AreFourAndAnotherIsRefusedWithTheirNames) {
     }
 }
 
-// Centimetres, papers/003, table 1; a radius that would make a twig stouter than the next longer one is that
-// of the other's slenderness, and so is the size's that the table does not have.
+// Centimetres, Ma and Liu 2020, table 1; a radius that would make a twig stouter than the next longer one is
+// that of the other's slenderness, and so is the size's that the table does not have.
 TEST(SketchSpecies, HaveTheTablesLengthsAndRadii) {
     struct Row {
         double length, radius;

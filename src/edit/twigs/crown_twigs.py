@@ -1,6 +1,6 @@
 """How the twigs grow that fill the crown of a sketched tree (src/sketch/species.h): few nodes, leaves all over.
 
-Lengths are those of papers/003, table 1, and one more so that each scaled by .7 to 1.3 follows on the one before. Its
+Lengths are those of Ma and Liu 2020, table 1, and one more so that each scaled by .7 to 1.3 follows on the one before. Its
 radii are kept but for four: wood of maple 199 cm long and 5 cm thick, ginkgo 240/4, poplar 113/2 and magnolia 89/2
 would be stouter than the next longer twig, so these, and the third of each, are as slender as the fourth column says:
 length over radius of the other row.

@@ -25,6 +25,7 @@ static func option_titles(of: Object) -> Dictionary[String, String]:
 		"tree_position": of.tr("Tree at"),
 		"tell_leaves": of.tr("Tell leaves from wood"),
 		"skeleton": of.tr("Method"),
+		"spanning_tree": of.tr("Spanning tree"),
 		"flood": of.tr("Flood"),
 		"voxel": of.tr("Voxel size"),
 		"radii": of.tr("Thickness by"),

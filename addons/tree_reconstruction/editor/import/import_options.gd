@@ -42,6 +42,10 @@ const _METRES: Dictionary[Unit, float] = {
 	Unit.INCHES: 0.0254,
 	Unit.SURVEY_FEET: 1200.0 / 3937.0,
 }
+# Where a project keeps what it imports with if nothing else is said.
+const _PROJECT_DEFAULTS: String = "importer_defaults/tree_reconstruction.scan"
+# The old name of skeleton/algorithm, from when "delaunay" was the word for what is geodesic now.
+const _OLD_METHOD: String = "skeleton/method"
 # Which option stands where, in the order of the dock.
 const _PLACES: Dictionary[String, String] = {
 	"scan/up_axis": "up",
@@ -59,7 +63,7 @@ const _PLACES: Dictionary[String, String] = {
 	"cleaning/remove_extreme_colors": "remove_extreme_colors",
 	"cleaning/separate_trees": "separate_trees",
 	"cleaning/tree_number": "tree_number",
-	"skeleton/method": "skeleton",
+	"skeleton/algorithm": "skeleton",
 	"skeleton/voxel": "voxel",
 	"skeleton/spacing": "spacing",
 	"skeleton/complete": "complete",
@@ -74,8 +78,9 @@ const _NEEDS: Dictionary[String, Array] = {
 	"scan/tree_height": ["scan/unit", [Unit.TREE_HEIGHT]],
 	"scan/known_length": ["scan/unit", [Unit.TWO_PLACES]],
 	"cleaning/tree_number": ["cleaning/separate_trees", [true]],
-	"skeleton/voxel": ["skeleton/method", ["flood"]],
-	"advanced/flood": ["skeleton/method", ["flood"]],
+	"skeleton/voxel": ["skeleton/algorithm", ["flood"]],
+	"advanced/flood": ["skeleton/algorithm", ["flood"]],
+	"advanced/spanning_tree": ["skeleton/algorithm", ["delaunay"]],
 	"advanced/tree_position": ["cleaning/separate_trees", [true]],
 	"advanced/white_above": ["cleaning/remove_extreme_colors", [true]],
 	"advanced/black_below": ["cleaning/remove_extreme_colors", [true]],
@@ -88,8 +93,9 @@ const _TEXT_FORMATS: PackedStringArray = ["xyz", "pts", "asc", "treescan"]
 
 
 ## The parameters of a preset, as [method EditorImportPlugin._get_import_options] returns them, with
-## their choices in the language of [param of].
-static func list(preset: int, of: Object) -> Array[Dictionary]:
+## their choices in the language of [param of]. What a file at [param path] was imported with under
+## an old name is the default of the new one.
+static func list(preset: int, of: Object, path: String = "") -> Array[Dictionary]:
 	var options: Dictionary[String, Dictionary] = {}
 	for option: Dictionary in TreeReconstructor.get_option_list():
 		options[option["name"]] = option
@@ -119,7 +125,30 @@ static func list(preset: int, of: Object) -> Array[Dictionary]:
 	for parameter: Dictionary in parameters:
 		if values.has(parameter["name"]):
 			parameter["default_value"] = values[parameter["name"]]
+		if parameter["name"] == "skeleton/algorithm":
+			var old: String = _old_method(path)
+			if old in (parameter["hint_string"] as String).split(","):
+				parameter["default_value"] = old
 	return parameters
+
+
+# The skeleton method as files and the project's defaults have it that are from before the parameter
+# had its name, in the words of today; empty where there is none.
+static func _old_method(path: String) -> String:
+	var values: Dictionary = ProjectSettings.get_setting(_PROJECT_DEFAULTS, {})
+	var config: ConfigFile = ConfigFile.new()
+	if not path.is_empty() and FileAccess.file_exists(path + ".import"):
+		if config.load(path + ".import") != OK:
+			# The engine reads it too, and says so.
+			return ""
+		values = {}
+		for name: String in [_OLD_METHOD, "skeleton/algorithm"]:
+			if config.has_section_key("params", name):
+				values[name] = config.get_value("params", name)
+	if values.has("skeleton/algorithm") or not values.get(_OLD_METHOD) is String:
+		return ""
+	var word: String = values[_OLD_METHOD]
+	return "geodesic" if word == "delaunay" else word
 
 
 # In the order of Unit. The values are numbers, so that the words may be any.

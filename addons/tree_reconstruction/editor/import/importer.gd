@@ -68,8 +68,8 @@ func _get_preset_name(preset_index: int) -> String:
 	return names[preset_index]
 
 
-func _get_import_options(_path: String, preset_index: int) -> Array[Dictionary]:
-	return ImportOptions.list(preset_index, self)
+func _get_import_options(path: String, preset_index: int) -> Array[Dictionary]:
+	return ImportOptions.list(preset_index, self, path)
 
 
 func _get_option_visibility(path: String, option_name: StringName, options: Dictionary) -> bool:

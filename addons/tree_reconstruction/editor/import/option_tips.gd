@@ -58,7 +58,7 @@ func describe(parameter: String) -> String:
 # All parameters are there that only our importer has.
 static func _is_ours(object: Object) -> bool:
 	for property: Dictionary in object.get_property_list():
-		if property["name"] == "skeleton/method":
+		if property["name"] == "skeleton/algorithm":
 			return true
 	return false
 

@@ -1,6 +1,6 @@
 @tool
 extends "wood_tool.gd"
-## Finds a branch that the reconstruction missed: the user points at it (papers/002, 8.2).
+## Finds a branch that the reconstruction missed: the user points at it (Zhang 2013, 8.2).
 
 const Search := preload("branch_search.gd")
 

@@ -1,6 +1,6 @@
 @tool
 extends "tool.gd"
-## Shows step by step how the voxel flood finds a skeleton in the scan (papers/002, 5.2 and 8.1.7):
+## Shows step by step how the voxel flood finds a skeleton in the scan (Zhang 2013, 5.2 and 8.1.7):
 ## the voxels that it reached, the directions that it found in each neighbourhood, and the nodes
 ## that grew.
 ##

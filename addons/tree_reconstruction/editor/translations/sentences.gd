@@ -416,12 +416,14 @@ const TwigSentences := preload("twig_sentences.gd")
 const SketchSentences := preload("sketch_sentences.gd")
 const LimbSentences := preload("limb_sentences.gd")
 const GrowthSentences := preload("growth_sentences.gd")
+const SkeletonSentences := preload("skeleton_sentences.gd")
 const _ALL: PackedStringArray = (
 	PATTERNS
 	+ TwigSentences.PATTERNS
 	+ SketchSentences.PATTERNS
 	+ LimbSentences.PATTERNS
 	+ GrowthSentences.PATTERNS
+	+ SkeletonSentences.PATTERNS
 )
 const _GAP: String = "%s"
 ## How the library names options of its program, and where they are in the editor.

@@ -1,6 +1,6 @@
 @tool
 extends "scan_layer.gd"
-## The voxels that hold points of the edited tree's scan (papers/002, 8.1.4) as a layer of the
+## The voxels that hold points of the edited tree's scan (Zhang 2013, 8.1.4) as a layer of the
 ## gizmo: what the voxel flood goes through.
 
 ## The voxels are there.

@@ -122,11 +122,11 @@ func _reimport_unedited() -> void:
 	if not check(node != null, "There is no tree."):
 		return
 	var before: int = node.reconstruction.get_node_count()
-	await _import_with("skeleton/method", "flood")
+	await _import_with("skeleton/algorithm", "flood")
 	await until(
 		func() -> bool: return node.reconstruction.get_node_count() != before, "the tree changes"
 	)
-	await _import_with("skeleton/method", "delaunay")
+	await _import_with("skeleton/algorithm", "geodesic")
 	await until(
 		func() -> bool: return node.reconstruction.get_node_count() == before, "it changes back"
 	)
