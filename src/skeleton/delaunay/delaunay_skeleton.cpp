@@ -88,7 +88,7 @@ void delaunay_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud,
         result.raw.rebase(base);
     }
     if (options.fit_radii && !trunk->measured)
-        result.warnings.push_back(
+        result.warnings.emplace_back(
             "The points around the foot lie on no cylinder, so all radii are guesses by how far the tree "
             "reaches.");
     clock.stop("Simplification", result.tree.size());
