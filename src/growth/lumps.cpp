@@ -93,7 +93,7 @@ class Proposer {
             seen |= look_at(static_cast<int32_t>(b));
         }
         if (!seen)
-            proposal_.remarks.push_back(
+            proposal_.remarks.emplace_back(
                 "The scan has too few points on the bark to tell lumps: nothing is proposed. Is it the scan "
                 "that this tree was made of?");
         return std::move(proposal_);
