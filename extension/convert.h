@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/arguments.h"
+#include "edit/commands/arguments.h"
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
 #include "geometry/vec.h"

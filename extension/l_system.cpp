@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "convert.h"
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 
 using namespace godot;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "lsystem/grammar.h"
-#include "tree_reconstruction.h"
+#include "tree_reconstruction/tree_reconstruction.h"
 
 // A grammar that grows trees, as text. generate() and grow() may run on any thread, also while another one
 // changes the text.

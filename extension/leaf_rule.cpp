@@ -10,7 +10,7 @@
 #include "error.h"
 #include "foliage/leaf_rule_text.h"
 #include "l_system.h"
-#include "tree_reconstruction.h"
+#include "tree_reconstruction/tree_reconstruction.h"
 
 using namespace godot;
 

@@ -8,15 +8,15 @@
 #include "l_system.h"
 #include "leaf_rule.h"
 #include "tree_edit.h"
-#include "tree_reconstruction.h"
+#include "tree_reconstruction/tree_reconstruction.h"
 #include "tree_sketch.h"
 #include "wind_globals.h"
 
 #ifdef TREEREC_EDITOR
 #include "class_reference.h"
 #include "exchange/ready_pictures.h"
-#include "tree_fidelity.h"
-#include "tree_reconstructor.h"
+#include "tree_reconstructor/tree_fidelity.h"
+#include "tree_reconstructor/tree_reconstructor.h"
 #endif
 
 using namespace godot;

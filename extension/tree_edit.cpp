@@ -2,7 +2,7 @@
 
 #include "convert.h"
 #include "error.h"
-#include "tree_reconstruction.h"
+#include "tree_reconstruction/tree_reconstruction.h"
 
 using namespace godot;
 

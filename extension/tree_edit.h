@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "edit/script.h"
-#include "tree_reconstruction.h"
+#include "edit/commands/script.h"
+#include "tree_reconstruction/tree_reconstruction.h"
 
 // What one edit did to a TreeReconstruction: a value that undoes it and does it again. Made by
 // TreeReconstruction; it does not change.

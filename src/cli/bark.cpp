@@ -11,7 +11,7 @@
 #include "growth/presets.h"
 #include "pipeline/export.h"
 #include "pipeline/report.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

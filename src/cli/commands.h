@@ -11,7 +11,7 @@
 #include "geometry/scan_frame.h"
 #include "lsystem/lstring.h"
 #include "pipeline/export.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "tree/tree.h"
 
 namespace treerec {

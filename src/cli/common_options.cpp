@@ -7,7 +7,7 @@
 #include "file_bytes.h"
 #include "pipeline/cleaned_cloud.h"
 #include "pipeline/export.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

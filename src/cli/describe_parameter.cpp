@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 
 namespace treerec {
 

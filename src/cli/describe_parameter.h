@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/arguments.h"
+#include "edit/commands/arguments.h"
 
 namespace treerec {
 

@@ -3,7 +3,7 @@
 #include "cli/commands.h"
 #include "cli/describe_parameter.h"
 #include "cli/terminal_progress.h"
-#include "edit/script.h"
+#include "edit/commands/script.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
 #include "pipeline/export.h"

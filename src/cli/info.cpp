@@ -6,7 +6,7 @@
 #include "exchange/tree_files.h"
 #include "geometry/bounds.h"
 #include "pipeline/report.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

@@ -4,7 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 #include "exchange/tree_files.h"
 #include "fidelity/silhouette.h"
 #include "mesh/branch_tubes.h"

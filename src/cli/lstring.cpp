@@ -3,7 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "exchange/lstring_file.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"

@@ -8,15 +8,15 @@
 #include "cli/print_outline.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
+#include "completion/unexplained.h"
 #include "exchange/tree_files.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/fidelity.h"
 #include "fidelity/photo_overlap.h"
 #include "fidelity/score.h"
-#include "fidelity/unexplained.h"
 #include "pipeline/judge_outline.h"
 #include "pipeline/sheets.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

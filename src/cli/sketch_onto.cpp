@@ -6,11 +6,11 @@
 
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
-#include "edit/script.h"
+#include "edit/commands/script.h"
 #include "fidelity/fidelity.h"
 #include "file_bytes.h"
 #include "pipeline/export.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "sketch/limb.h"
 #include "sketch/read_limb.h"
 #include "version.h"

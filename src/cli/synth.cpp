@@ -5,7 +5,7 @@
 #include "cli/terminal_progress.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
 #include "tree/measure.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <tuple>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 

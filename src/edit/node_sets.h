@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
 #include "edit/delta.h"
 #include "geometry/portable_math.h"
 #include "tree/tree.h"

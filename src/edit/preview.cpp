@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 #include "error.h"
 
 namespace treerec {

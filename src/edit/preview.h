@@ -18,7 +18,8 @@ struct EditPreview {
     std::string message, error;
 };
 
-// One line of text as perform() takes it (edit/commands.h). Costs what that costs, and is linear besides.
+// One line of text as perform() takes it (edit/commands/commands.h). Costs what that costs, and is linear
+// besides.
 EditPreview preview_edit(const Tree& tree, std::string_view line);
 
 }  // namespace treerec

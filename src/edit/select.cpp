@@ -4,8 +4,8 @@
 #include <charconv>
 #include <optional>
 
-#include "edit/address.h"
-#include "edit/command_text.h"
+#include "edit/commands/address.h"
+#include "edit/commands/command_text.h"
 #include "tree/branches.h"
 
 namespace treerec {

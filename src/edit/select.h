@@ -1,7 +1,7 @@
 // Sets of nodes, by what they are and where they are.
 //
 //     all   leaves   forks   common   trunk   measured   inferred   guesses
-//     12   root   12@x:y:z:..                one node (edit/address.h)
+//     12   root   12@x:y:z:..                one node (edit/commands/address.h)
 //     below:12                               the node and all that grows from it
 //     branch:12                              the nodes of its branch (tree/branches.h)
 //     path:12                                from the root to the node
@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/region.h"
+#include "edit/commands/region.h"
 #include "tree/tree.h"
 
 namespace treerec {

@@ -13,7 +13,7 @@ namespace treerec {
 void require_sound_measures(const Tree& tree, const std::string& path);
 
 // What a skeleton file may hold; readers take anything beyond for damage. In the file's units, from zero and
-// from the root, as in clouds (scan/read_cloud.cpp). The second is a radius' limit too.
+// from the root, as in clouds (scan/formats/read_cloud.cpp). The second is a radius' limit too.
 inline constexpr double kLargestCoordinate = 1e12;
 inline constexpr double kLargestOffset = 1e9;
 // And its unit, in metres.

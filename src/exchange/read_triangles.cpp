@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 #include "error.h"
 #include "exchange/quiet_tiny_gltf.h"
 #include "file_bytes.h"

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 #include "error.h"
 #include "fidelity/fidelity_parts.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/parallel.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 
@@ -49,8 +50,8 @@ struct FidelityTracker::State {
     };
     Change change_to(const std::vector<WoodSegment>& segments) const;
     void enter(const ScanFrame& target);
-    void measure_all(const SegmentTree& all, const Progress* progress);
-    void measure_changed(const SegmentTree& all, const Change& change, const Progress* progress);
+    void measure_all(const CapsuleTree& all, const Progress* progress);
+    void measure_changed(const CapsuleTree& all, const Change& change, const Progress* progress);
 };
 
 FidelityTracker::State::Change FidelityTracker::State::change_to(
@@ -82,7 +83,7 @@ void FidelityTracker::State::enter(const ScanFrame& target) {
     }
 }
 
-void FidelityTracker::State::measure_all(const SegmentTree& all, const Progress* progress) {
+void FidelityTracker::State::measure_all(const CapsuleTree& all, const Progress* progress) {
     bark.assign(points.size(), {});
     within.assign(points.size(), kNoNode);
     inside.assign(points.size(), kNoNode);
@@ -105,9 +106,9 @@ void FidelityTracker::State::measure_all(const SegmentTree& all, const Progress*
     });
 }
 
-void FidelityTracker::State::measure_changed(const SegmentTree& all, const Change& change,
+void FidelityTracker::State::measure_changed(const CapsuleTree& all, const Change& change,
                                              const Progress* progress) {
-    const SegmentTree fresh(change.fresh);
+    const CapsuleTree fresh(change.fresh);
     const auto stale = [&](NodeId id) { return id != kNoNode && change.stale[static_cast<size_t>(id)] != 0; };
     std::vector<uint8_t> touched(points.size(), 0);
     parallel_for(points.size(), kChunk, [&](size_t begin, size_t end) {
@@ -131,7 +132,7 @@ void FidelityTracker::State::measure_changed(const SegmentTree& all, const Chang
                  {std::pair(&within[i], options.tolerance), std::pair(&inside[i], 0.0)}) {
                 const bool again = stale(*holder);
                 if (*holder != kNoNode && !again) continue;
-                const SegmentTree& where = again ? all : fresh;
+                const CapsuleTree& where = again ? all : fresh;
                 const int32_t holds = where.find_solid(p, tolerance);
                 *holder = holds < 0 ? kNoNode : where.segment(holds).child;
                 touched[i] |= again || holds >= 0;
@@ -165,7 +166,7 @@ const Fidelity& FidelityTracker::update(const Tree& tree, const Progress* progre
     State::Change change;
     if (!whole) change = state.change_to(segments);
     const double changed = static_cast<double>(change.fresh.size() + change.gone);
-    const SegmentTree all(segments);
+    const CapsuleTree all(segments);
     // Stopped on the way, the next one begins anew.
     state.measured = false;
     if (whole || changed > kMostChanged * static_cast<double>(segments.size())) {

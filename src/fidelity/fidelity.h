@@ -91,7 +91,7 @@ class FidelityTracker {
 Fidelity measure_fidelity(const Tree& tree, const PointCloud& cloud, const FidelityOptions& options = {},
                           const Progress* progress = nullptr);
 
-// A lighter tree (edit/lighten.h) and how faithful it is.
+// A lighter tree (edit/lighten/lighten.h) and how faithful it is.
 struct LevelFidelity {
     size_t nodes = 0;
     double skeleton = 0.0;  // R_s

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fidelity/fidelity.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 
 namespace treerec {
 

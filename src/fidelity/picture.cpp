@@ -6,9 +6,10 @@
 #include <optional>
 
 #include "error.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 
@@ -204,7 +205,7 @@ std::vector<Rgb> bark_heat(const Tree& tree, const Fidelity& fidelity, const Mes
                            const Progress* progress) {
     if (fidelity.node_points.size() != static_cast<size_t>(tree.id_end()))
         throw Error("The fidelity was measured with another tree.");
-    const SegmentTree wood(wood_segments(tree));
+    const CapsuleTree wood(wood_segments(tree));
     std::vector<Rgb> colors(bark.positions.size(), kUnseenWood);
     if (wood.empty()) return colors;
     parallel_for(colors.size(), 1024, [&](size_t begin, size_t end) {

@@ -8,11 +8,12 @@
 #include <numeric>
 
 #include "error.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/morton.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 
@@ -61,7 +62,7 @@ struct Sample {
 };
 
 // Samples every segment about every `step` metres, in the middle of equal parts, against the other's axes.
-std::vector<Sample> sample_against(const std::vector<WoodSegment>& segments, const SegmentTree& other,
+std::vector<Sample> sample_against(const std::vector<WoodSegment>& segments, const CapsuleTree& other,
                                    double step, Progress* progress, const char* stage) {
     std::vector<size_t> first(segments.size() + 1, 0);
     for (size_t i = 0; i < segments.size(); i++) {
@@ -78,7 +79,7 @@ std::vector<Sample> sample_against(const std::vector<WoodSegment>& segments, con
             for (size_t k = 0; k < parts; k++) {
                 const double t = (static_cast<double>(k) + 0.5) / static_cast<double>(parts);
                 const DVec3 p = glm::mix(segments[i].from, segments[i].to, t);
-                const SegmentTree::Hit hit = other.nearest_axis(p, hint);
+                const CapsuleTree::Hit hit = other.nearest_axis(p, hint);
                 hint = hit.segment;
                 samples[first[i] + k] = {hit.distance, segments[i].radius, other.segment(hit.segment).radius};
             }
@@ -126,7 +127,7 @@ std::vector<Vec3> sample_points(const std::vector<Vec3>& points, size_t about) {
 ScanScore score_scan(const Tree& tree, const PointCloud& cloud, double noise, Progress* progress,
                      size_t about) {
     if (cloud.empty()) throw Error("The point cloud is empty; there is nothing to score against.");
-    const SegmentTree wood(segments_in(tree, tree.frame()));
+    const CapsuleTree wood(segments_in(tree, tree.frame()));
     const bool same_frame = tree.frame() == cloud.frame;
     const bool whole = about == 0 || about >= cloud.size();
     const std::vector<Vec3> sample = whole ? std::vector<Vec3>() : sample_points(cloud.positions, about);
@@ -188,9 +189,9 @@ SkeletonScore score_skeleton(const Tree& tree, const Tree& reference, Progress* 
     SubProgress first(progress, 0.0, 0.5);
     SubProgress second(progress, 0.5, 1.0);
     const std::vector<Sample> found =
-        sample_against(wood, SegmentTree(reference_wood), step, &first, "Scoring");
+        sample_against(wood, CapsuleTree(reference_wood), step, &first, "Scoring");
     const std::vector<Sample> wanted =
-        sample_against(reference_wood, SegmentTree(wood), step, &second, "Scoring");
+        sample_against(reference_wood, CapsuleTree(wood), step, &second, "Scoring");
     for (int quarter = 0; quarter <= 4; quarter++) {
         const double factor = 0.25 * quarter;
         score.by_radius.push_back(

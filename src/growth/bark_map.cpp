@@ -9,6 +9,7 @@
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "geometry/segment.h"
+#include "tree/wood_segments.h"
 
 namespace treerec::growth {
 
@@ -55,11 +56,11 @@ BarkAxes::BarkAxes(const Tree& tree, const BranchList& list, const TreePlan& pla
     for (const WoodSegment& segment : wood_segments(tree))
         if (!covered[static_cast<size_t>(list.branch_of[static_cast<size_t>(segment.child)])])
             add(segment, -1);
-    wood_ = SegmentTree(std::move(wood));
+    wood_ = CapsuleTree(std::move(wood));
 }
 
 std::pair<AxisPlace, double> BarkAxes::nearest(int32_t branch, const DVec3& p) const {
-    const SegmentTree::Hit hit = axes_[static_cast<size_t>(branch)].nearest_axis(p);
+    const CapsuleTree::Hit hit = axes_[static_cast<size_t>(branch)].nearest_axis(p);
     const WoodSegment& segment = axes_[static_cast<size_t>(branch)].segment(hit.segment);
     const std::vector<AxisPlace>& axis = planned_.plan.branches[static_cast<size_t>(branch)].axis;
     const AxisPlace &a = axis[static_cast<size_t>(segment.child) - 1],

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "growth/texture.h"
 #include "growth/tree_plan.h"
 #include "progress.h"
@@ -49,8 +49,8 @@ class BarkAxes {
     const TreePlan& planned_;
     std::vector<BranchCoordinates> coordinates_;
     std::vector<int32_t> branch_;    // by segment's child in wood_: of the plan; -1: not covered
-    std::vector<SegmentTree> axes_;  // by branch; a segment's child is the place where it ends
-    SegmentTree wood_;
+    std::vector<CapsuleTree> axes_;  // by branch; a segment's child is the place where it ends
+    CapsuleTree wood_;
 };
 
 // A branch's bark as rows along it and columns around it.

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 #include "error.h"
 #include "geometry/quantile.h"
 #include "growth/bark_map.h"
 #include "growth/lump_fit.h"
 #include "growth/section.h"
 #include "growth/section_fit.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 

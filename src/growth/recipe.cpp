@@ -1,8 +1,8 @@
 #include "growth/recipe.h"
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 
 namespace treerec {
 

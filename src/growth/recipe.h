@@ -1,5 +1,5 @@
-// What a user wants grown, as text: a command a line (edit/command_text.h), so that it is edited, undone and
-// replayed as text is.
+// What a user wants grown, as text: a command a line (edit/commands/command_text.h), so that it is edited,
+// undone and replayed as text is.
 //
 //     edges longest=0.035 shortest=0.015
 //     burl along=1.3 around=90 radius=0.3 inner=0.16 growth=0.5
@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/arguments.h"
+#include "edit/commands/arguments.h"
 #include "tree/tree.h"
 
 namespace treerec {

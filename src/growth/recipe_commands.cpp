@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 #include "growth/recipe.h"
 
 namespace treerec {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 #include "growth/recipe.h"
 #include "tree/measure.h"
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <tuple>
 
-#include "edit/command_text.h"
+#include "edit/commands/command_text.h"
 #include "error.h"
 #include "growth/feature.h"
 #include "growth/judge.h"

@@ -7,7 +7,7 @@
 #include "photos/sky_mask.h"
 #include "photos/sparse_points.h"
 #include "photos/thin_points.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

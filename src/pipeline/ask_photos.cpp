@@ -11,7 +11,7 @@
 #include "photos/cameras_tell.h"
 #include "photos/colmap_model.h"
 #include "photos/quiet_progress.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "scan/robust.h"
 
 namespace treerec {

@@ -9,7 +9,7 @@
 
 #include "error.h"
 #include "file_bytes.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

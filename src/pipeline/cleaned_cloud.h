@@ -18,8 +18,8 @@ inline constexpr std::string_view kCleanedMark = "comment cleaned by treerec\n";
 // foot, 0 for wood. Else its labels stay those of the scan's file.
 void label_found_leaves(Reconstruction& result);
 
-// In the format that the extension names (scan/read_cloud.h), in the scan's own coordinates, axes and units:
-// to be laid over the scan. Throws Error, or Cancelled.
+// In the format that the extension names (scan/formats/read_cloud.h), in the scan's own coordinates, axes and
+// units: to be laid over the scan. Throws Error, or Cancelled.
 void write_cleaned_cloud(const std::string& path, const PointCloud& cloud,
                          const Progress* progress = nullptr);
 

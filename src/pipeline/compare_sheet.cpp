@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "error.h"
-#include "fidelity/segment_tree.h"
 #include "file_bytes.h"
+#include "geometry/capsule_tree.h"
 #include "photos/photo_picture.h"
 #include "photos/pinhole_view.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 

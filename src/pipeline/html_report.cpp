@@ -4,10 +4,10 @@
 #include <bit>
 #include <cmath>
 
+#include "completion/unexplained.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/fidelity.h"
 #include "fidelity/picture.h"
-#include "fidelity/unexplained.h"
 #include "file_bytes.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"

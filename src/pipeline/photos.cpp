@@ -15,7 +15,7 @@
 #include "photos/run_stage.h"
 #include "pipeline/label_photo_leaves.h"
 #include "pipeline/wood_outlines.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 

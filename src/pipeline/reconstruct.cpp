@@ -5,15 +5,15 @@
 #include <string>
 #include <utility>
 
+#include "completion/complete_all.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "geometry/bounds.h"
 #include "pipeline/ask_photos.h"
 #include "scan/check_shape.h"
-#include "scan/thin_cloud.h"
-#include "scan/wood_leaf.h"
-#include "skeleton/complete_all.h"
-#include "skeleton/leaf_twigs.h"
+#include "scan/cleaning/thin_cloud.h"
+#include "scan/leaves/wood_leaf.h"
+#include "skeleton/twigs/leaf_twigs.h"
 
 namespace treerec {
 

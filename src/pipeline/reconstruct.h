@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "edit/prune.h"
+#include "edit/prune/prune.h"
 #include "fidelity/score.h"
 #include "foliage/foliage.h"
 #include "pipeline/export.h"
 #include "pipeline/reconstruct_cache.h"
 #include "progress.h"
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "scan/point_cloud.h"
-#include "scan/read_cloud.h"
-#include "skeleton/radius_rules.h"
+#include "skeleton/cylinders/radius_rules.h"
 #include "skeleton/skeleton.h"
 #include "stage_clock.h"
 #include "tree/measure.h"
@@ -27,7 +27,7 @@ struct ReconstructOptions {
     ReadCloudOptions read;
     OrientOptions orient;
     CleanOptions clean;
-    // Walk over what the tree does not explain and add what is found (skeleton/complete_all.h); not for
+    // Walk over what the tree does not explain and add what is found (completion/complete_all.h); not for
     // palms.
     bool complete = false;
     // Cut twigs that are longer than the mean at last (Chen 2025, algorithm 3).
@@ -97,8 +97,8 @@ Reconstruction reconstruct_file(const std::string& path, const ReconstructOption
 // The scan that a tree was made from, as points in the tree's own frame (metres, so that they lie on its
 // bark): read again, cleaned as `options` say with the frame's way up and unit, of several trees the one that
 // stands at its origin, and thinned to at most
-// `most` points (scan/thin_cloud.h). options: those of read and clean count. cache: may have the file read.
-// Throws Error with a sentence, or Cancelled.
+// `most` points (scan/cleaning/thin_cloud.h). options: those of read and clean count. cache: may have the
+// file read. Throws Error with a sentence, or Cancelled.
 PointCloud load_scan(const std::string& path, const ReconstructOptions& options, const ScanFrame& frame,
                      size_t most, Progress* progress = nullptr, ReconstructCache* cache = nullptr);
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/read_cloud.h"
+#include "scan/leaves/wood_leaf.h"
 #include "scan/point_cloud.h"
-#include "scan/read_cloud.h"
-#include "scan/wood_leaf.h"
 
 namespace treerec {
 

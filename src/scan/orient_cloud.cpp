@@ -5,11 +5,11 @@
 
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
-#include "scan/check_slab.h"
-#include "scan/clean_cloud.h"
-#include "scan/clean_steps.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/cleaning/clean_steps.h"
 #include "scan/robust.h"
 #include "scan/scale.h"
+#include "scan/stems/check_slab.h"
 
 namespace treerec {
 

@@ -1,7 +1,7 @@
 // How long a scan's unit is. Internal to scan/.
 #pragma once
 
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 
 namespace treerec {
 

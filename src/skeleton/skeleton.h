@@ -8,7 +8,7 @@
 
 #include "progress.h"
 #include "scan/point_cloud.h"
-#include "skeleton/flood_steps.h"
+#include "skeleton/flood/flood_steps.h"
 #include "stage_clock.h"
 #include "tree/tree.h"
 
@@ -22,7 +22,7 @@ enum class SkeletonMethod : uint8_t { kGeodesic, kDelaunay, kFlood };
 // Dijkstra's shortest paths in one sentence; they are two trees.
 enum class SpanningTreeKind : uint8_t { kShortestPaths, kMinimum };
 
-// The flood as we do it, or as Zhang 2013 prints it (skeleton/flood_paper.h), to be compared.
+// The flood as we do it, or as Zhang 2013 prints it (skeleton/flood/flood_paper.h), to be compared.
 enum class FloodKind : uint8_t { kOurs, kPaper };
 
 // "geodesic", "delaunay", "flood". Throws Error for any other word, naming all.

@@ -8,7 +8,7 @@ namespace treerec {
 
 namespace {
 
-// A twig's radius at the joint over its limb's, at most, as of what is grafted (edit/graft.h).
+// A twig's radius at the joint over its limb's, at most, as of what is grafted (edit/graft/graft.h).
 constexpr double kJoint = 0.8;
 constexpr double kSame = 1e-6;      // metres along a limb that are one place
 constexpr double kFinest = 0.0004;  // metres of radius: the thinnest wood of a twig

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "foliage/leaf_rules.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"

@@ -33,13 +33,13 @@ struct LimbPlace {
 };
 
 struct DrawnLimb {
-    NodeId host = kNoNode;             // the node that it grows from
-    std::vector<LimbPlace> axis;       // from the host's node to the tip
-    Tree scion;                        // the whole limb, as edit/scion.h has it
-    std::string command;               // of an edit (edit/script.h): one "graft", for the tree as it is
-    size_t twigs = 0;                  // on the axis
-    double length = 0.0;               // metres of the axis,
-    double measured = 0.0;             // and the share of it that the scan shows
+    NodeId host = kNoNode;        // the node that it grows from
+    std::vector<LimbPlace> axis;  // from the host's node to the tip
+    Tree scion;                   // the whole limb, as edit/graft/scion.h has it
+    std::string command;          // of an edit (edit/commands/script.h): one "graft", for the tree as it is
+    size_t twigs = 0;             // on the axis
+    double length = 0.0;          // metres of the axis,
+    double measured = 0.0;        // and the share of it that the scan shows
     std::vector<std::string> remarks;  // sentences for the user
 };
 

@@ -6,9 +6,10 @@
 #include <limits>
 
 #include "error.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/portable_math.h"
 #include "sketch/limb_plane.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 
@@ -136,7 +137,7 @@ std::vector<Vec3> points_beside(const Tree& tree, const PointCloud& cloud, const
         high = glm::max(high, p + reach);
     }
     const bool as_it_is = cloud.frame == tree.frame();
-    const SegmentTree bark(wood_segments(tree));
+    const CapsuleTree bark(wood_segments(tree));
     const double clear = kFringe * tolerance;
     std::vector<Vec3> points;
     int32_t hint = -1;
@@ -151,7 +152,7 @@ std::vector<Vec3> points_beside(const Tree& tree, const PointCloud& cloud, const
             continue;
         if (nearest_sample(line, *pixel).second > reach) continue;
         if (!bark.empty()) {
-            const SegmentTree::Hit axis = bark.nearest_axis(p, hint);
+            const CapsuleTree::Hit axis = bark.nearest_axis(p, hint);
             hint = axis.segment;
             if (axis.distance <= bark.segment(axis.segment).radius + clear) continue;
             int32_t nearest = hint;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "sketch/limbs.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"

@@ -29,8 +29,8 @@ struct TwigOnLimb {
 std::vector<TwigOnLimb> draw_twigs(const LimbStatistics& statistics, int32_t order,
                                    const std::vector<LimbPlace>& axis, uint64_t seed);
 
-// The whole limb as a scion of the host (edit/scion.h): an axis with a node every `step` metres and where
-// twigs leave, guessed segments flagged.
+// The whole limb as a scion of the host (edit/graft/scion.h): an axis with a node every `step` metres and
+// where twigs leave, guessed segments flagged.
 Tree limb_scion(const Tree& tree, NodeId host, const std::vector<LimbPlace>& axis,
                 const std::vector<TwigOnLimb>& twigs, double step);
 

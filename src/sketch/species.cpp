@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/scion.h"
-#include "edit/twig_library.h"
+#include "edit/graft/scion.h"
+#include "edit/graft/twig_library.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "lsystem/lstring.h"

@@ -14,7 +14,7 @@ namespace treerec {
 
 struct SpeciesTwig {
     std::string name;     // of the twig library: "maple_long"
-    Tree scion;           // edit/scion.h, metres
+    Tree scion;           // edit/graft/scion.h, metres
     double length = 0.0;  // metres along its longest path
     double radius = 0.0;  // metres at its root
     int size = 0;         // those of one size stand for one another

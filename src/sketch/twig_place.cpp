@@ -1,6 +1,6 @@
 #include "sketch/twig_place.h"
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 
 namespace treerec {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "lsystem/lstring.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "geometry/quantile.h"
 #include "lsystem/lstring.h"

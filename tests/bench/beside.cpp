@@ -5,7 +5,7 @@
 #include "child.h"
 #include "error.h"
 #include "file_bytes.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec::bench {
 

@@ -6,7 +6,7 @@
 
 #include "bench.h"
 #include "child.h"
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "file_bytes.h"

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "bench.h"
-#include "edit/commands.h"
-#include "edit/prune.h"
+#include "edit/commands/commands.h"
+#include "edit/prune/prune.h"
 #include "mesh/branch_tubes.h"
 #include "synth/grow.h"
 #include "tree/trunk.h"

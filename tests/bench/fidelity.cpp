@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "bench.h"
+#include "completion/unexplained.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/fidelity.h"
-#include "fidelity/unexplained.h"
 #include "file_bytes.h"
 #include "pipeline/reconstruct.h"
 

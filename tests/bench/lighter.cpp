@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "bench.h"
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "fidelity/silhouette.h"

@@ -7,15 +7,16 @@
 #include <filesystem>
 
 #include "bench.h"
+#include "completion/complete.h"
+#include "completion/unexplained.h"
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/score.h"
-#include "fidelity/segment_tree.h"
-#include "fidelity/unexplained.h"
+#include "geometry/capsule_tree.h"
 #include "pipeline/reconstruct.h"
-#include "skeleton/complete.h"
 #include "tree/branches.h"
+#include "tree/wood_segments.h"
 
 namespace treerec::bench {
 
@@ -85,7 +86,7 @@ class Truth {
             for (int i = 0; i < steps; i++) {
                 const DVec3 p = from + (i + 0.5) / steps * (node.position - from);
                 const DVec3 place = tree_.frame().to_tree(tree.frame().to_scan(p));
-                const SegmentTree::Hit hit = wood_.nearest_axis(place);
+                const CapsuleTree::Hit hit = wood_.nearest_axis(place);
                 const double step = glm::distance(from, node.position) / steps;
                 length += step;
                 if (hit.distance <= std::max(kNear, wood_.segment(hit.segment).radius)) right += step;
@@ -96,7 +97,7 @@ class Truth {
 
   private:
     Tree tree_;
-    SegmentTree wood_;
+    CapsuleTree wood_;
 };
 
 void print_clicks(const char* method, int clicks, const Tree& tree, const Truth& truth, const Fidelity& fit) {

@@ -8,7 +8,7 @@
 #include "child.h"
 #include "error.h"
 #include "geometry/random.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec::bench {
 

@@ -8,7 +8,7 @@
 #include "exchange/tree_files.h"
 #include "fidelity/score.h"
 #include "file_bytes.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "tree/measure.h"
 
 namespace treerec::bench {

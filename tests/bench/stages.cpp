@@ -11,7 +11,7 @@
 #include "memory.h"
 #include "pipeline/export.h"
 #include "pipeline/reconstruct.h"
-#include "skeleton/thin.h"
+#include "skeleton/sampling/thin.h"
 
 namespace treerec::bench {
 

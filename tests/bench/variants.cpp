@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "bench.h"
-#include "edit/lighten.h"
-#include "edit/vary.h"
+#include "edit/lighten/lighten.h"
+#include "edit/vary/vary.h"
 #include "exchange/tree_files.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"

@@ -1,4 +1,4 @@
-#include "edit/script.h"
+#include "edit/commands/script.h"
 #include "fuzz.h"
 
 namespace {

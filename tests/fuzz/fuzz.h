@@ -9,7 +9,7 @@
 
 #include "error.h"
 #include "geometry/parallel.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "tree/tree.h"
 
 namespace treerec::fuzz {

@@ -19,8 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addons/tree_reconstruction"
 # Tables of options, and what ends each.
 OPTIONS = {
-    ROOT / "extension/reconstruct_options.cpp": "#undef OPTION_MEMBER",
-    ROOT / "extension/photo_options.cpp": "    };",
+    ROOT / "extension/tree_reconstructor/reconstruct_options.cpp": "#undef OPTION_MEMBER",
+    ROOT / "extension/tree_reconstructor/photo_options.cpp": "    };",
 }
 SENTENCES = ADDON / "editor/translations/sentences.gd"
 FOLDER = ADDON / "editor/translations"

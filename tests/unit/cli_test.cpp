@@ -13,7 +13,7 @@
 #include "error.h"
 #include "exchange/tree_files.h"
 #include "geometry/random.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
 #include "tree/measure.h"

@@ -1,5 +1,5 @@
 // All commands of the registry, whatever they are: undo, redo, text.
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "edit/collide.h"
-#include "edit/graft.h"
-#include "edit/scion.h"
-#include "edit/twig.h"
+#include "edit/graft/graft.h"
+#include "edit/graft/scion.h"
+#include "edit/graft/twig.h"
 #include "error.h"
 #include "random_tree.h"
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
-#include "edit/commands.h"
-#include "edit/scion.h"
-#include "edit/twig_library.h"
-#include "edit/twig_picture.h"
+#include "edit/commands/commands.h"
+#include "edit/graft/scion.h"
+#include "edit/graft/twig_library.h"
+#include "edit/graft/twig_picture.h"
 #include "error.h"
 #include "lsystem/lstring.h"
 #include "random_tree.h"

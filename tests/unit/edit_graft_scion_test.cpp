@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "random_tree.h"
 

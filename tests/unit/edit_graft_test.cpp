@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "edit/graft.h"
-#include "edit/scion.h"
+#include "edit/graft/graft.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "lsystem/lstring.h"
 #include "random_tree.h"

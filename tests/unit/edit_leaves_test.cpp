@@ -6,9 +6,9 @@
 #include <string>
 
 #include "cases.h"
-#include "edit/commands.h"
-#include "edit/script.h"
-#include "edit/vary.h"
+#include "edit/commands/commands.h"
+#include "edit/commands/script.h"
+#include "edit/vary/vary.h"
 #include "edit_at_random.h"
 #include "random_tree.h"
 #include "synth/grow.h"

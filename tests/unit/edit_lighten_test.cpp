@@ -1,4 +1,4 @@
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 
 #include <gtest/gtest.h>
 

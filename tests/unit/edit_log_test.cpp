@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
+#include "edit/commands/script.h"
 #include "edit/delta.h"
-#include "edit/script.h"
 #include "edit/select.h"
 #include "random_edit.h"
 #include "random_tree.h"

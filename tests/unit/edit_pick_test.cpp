@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 #include "edit/preview.h"
 #include "random_edit.h"
 #include "random_tree.h"

@@ -1,5 +1,5 @@
 // Pruning: what goes, what stays, what is handed over.
-#include "edit/prune.h"
+#include "edit/prune/prune.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
 #include "edit/delta.h"
 #include "edit/select.h"
 #include "random_tree.h"

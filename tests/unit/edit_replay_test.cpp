@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cases.h"
-#include "edit/address.h"
-#include "edit/commands.h"
-#include "edit/script.h"
+#include "edit/commands/address.h"
+#include "edit/commands/commands.h"
+#include "edit/commands/script.h"
 #include "edit/select.h"
 #include "geometry/random.h"
 #include "random_tree.h"

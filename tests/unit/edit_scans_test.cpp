@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "cases.h"
-#include "edit/script.h"
+#include "edit/commands/script.h"
 #include "edit_at_random.h"
 #include "pipeline/reconstruct.h"
 

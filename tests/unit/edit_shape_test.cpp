@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
 #include "edit/delta.h"
 #include "edit/move.h"
-#include "edit/sag.h"
 #include "edit/select.h"
 #include "edit/smooth.h"
+#include "edit/vary/sag.h"
 #include "random_tree.h"
 #include "tree/branches.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "edit/delta.h"
-#include "edit/vary.h"
+#include "edit/vary/vary.h"
 #include "error.h"
 #include "geometry/random.h"
 #include "random_tree.h"

@@ -1,5 +1,5 @@
 // New individuals made from a tree's own branches.
-#include "edit/vary.h"
+#include "edit/vary/vary.h"
 
 #include <gtest/gtest.h>
 

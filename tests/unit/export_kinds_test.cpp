@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 #include "mesh/leaf_cards.h"
 #include "pipeline/export.h"
 #include "random_tree.h"

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/lighten.h"
+#include "edit/lighten/lighten.h"
 #include "error.h"
 #include "fidelity/fidelity.h"
 #include "fidelity/score.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "random_tree.h"
 #include "tree/branches.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 namespace {
@@ -79,7 +80,7 @@ TEST(Fidelity, TheSearchFindsWhatLookingAtAllFinds) {
     for (uint64_t seed = 1; seed < 6; seed++) {
         const Tree tree = test::wild_tree(seed, 150);
         const std::vector<WoodSegment> wood = wood_segments(tree);
-        const SegmentTree search(wood);
+        const CapsuleTree search(wood);
         Random random(seed);
         for (int i = 0; i < 300; i++) {
             const DVec3 p = random.uniform(0.0, 4.0) * random.direction();

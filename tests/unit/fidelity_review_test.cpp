@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
+#include "completion/unexplained.h"
 #include "error.h"
 #include "fidelity/doubtful.h"
-#include "fidelity/unexplained.h"
 #include "geometry/random.h"
 #include "random_tree.h"
 #include "tree/branches.h"

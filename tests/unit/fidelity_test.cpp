@@ -6,10 +6,11 @@
 
 #include "error.h"
 #include "fidelity/score.h"
-#include "fidelity/segment_tree.h"
+#include "geometry/capsule_tree.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "synth/grow.h"
+#include "tree/wood_segments.h"
 
 namespace treerec {
 namespace {
@@ -36,9 +37,9 @@ PointCloud bark_points(const Tree& tree, size_t count, double noise, uint64_t se
     return cloud;
 }
 
-TEST(SegmentTree, FindsWhatASlowSearchFinds) {
+TEST(CapsuleTree, FindsWhatASlowSearchFinds) {
     const std::vector<WoodSegment> wood = wood_segments(grown(3));
-    const SegmentTree tree(wood);
+    const CapsuleTree tree(wood);
     Random random(5);
     int32_t hint = -1, surface_hint = -1;
     for (int i = 0; i < 300; i++) {
@@ -49,7 +50,7 @@ TEST(SegmentTree, FindsWhatASlowSearchFinds) {
             axis = std::min(axis, d);
             surface = std::min(surface, std::abs(d - segment.radius));
         }
-        const SegmentTree::Hit hit = tree.nearest_axis(p, hint);
+        const CapsuleTree::Hit hit = tree.nearest_axis(p, hint);
         hint = hit.segment;
         EXPECT_DOUBLE_EQ(hit.distance, axis);
         int32_t none = -1;

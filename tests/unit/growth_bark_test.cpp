@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "edit/address.h"
+#include "edit/commands/address.h"
 #include "foliage/branch_axis.h"
 #include "geometry/random.h"
 #include "growth/grow_bark.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
 #include "geometry/segment.h"

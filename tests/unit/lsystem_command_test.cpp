@@ -1,8 +1,8 @@
 // The edit command 'lstring'.
 #include <gtest/gtest.h>
 
-#include "edit/commands.h"
-#include "edit/scion.h"
+#include "edit/commands/commands.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "lsystem/lstring.h"
 #include "random_tree.h"

@@ -9,8 +9,8 @@
 #include "geometry/random.h"
 #include "photos/bark_colours.h"
 #include "pipeline/label_photo_leaves.h"
-#include "scan/read_cloud.h"
-#include "scan/wood_leaf.h"
+#include "scan/formats/read_cloud.h"
+#include "scan/leaves/wood_leaf.h"
 
 namespace treerec {
 namespace {

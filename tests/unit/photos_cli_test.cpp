@@ -10,7 +10,7 @@
 #include "photos/photo_picture.h"
 #include "photos_standin.h"
 #include "photos_warps.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 namespace {

@@ -11,7 +11,7 @@
 #include "photos/run_colmap.h"
 #include "photos/sparse_points.h"
 #include "photos_standin.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "geometry/random.h"
 #include "photos/subject_stem.h"
-#include "scan/lone_trunk.h"
+#include "scan/stems/lone_trunk.h"
 #include "skeleton/skeleton.h"
 
 namespace treerec {

@@ -8,7 +8,7 @@
 #include "geometry/quantile.h"
 #include "photos_standin.h"
 #include "pipeline/photos.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 
 namespace treerec {
 namespace {

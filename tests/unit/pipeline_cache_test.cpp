@@ -20,7 +20,7 @@
 #include "geometry/random.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/report.h"
-#include "scan/thin_cloud.h"
+#include "scan/cleaning/thin_cloud.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/commands.h"
+#include "edit/commands/commands.h"
 #include "geometry/random.h"
 #include "tree/tree.h"
 

@@ -1,4 +1,4 @@
-// What stands beside a tree of which it is known where it stands: scan/clean_beside.cpp.
+// What stands beside a tree of which it is known where it stands: scan/cleaning/clean_beside.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 
 #include <algorithm>
 

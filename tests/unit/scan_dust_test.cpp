@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "geometry/random.h"
-#include "scan/clean_cloud.h"
-#include "scan/clean_steps.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/cleaning/clean_steps.h"
 
 namespace treerec {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 #include "scan_samples.h"
 
 namespace treerec {

@@ -1,5 +1,5 @@
 // Damaged files: an Error or a sound cloud, nothing else. Meant to be run with sanitizers too.
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 #include "scan_samples.h"
 
 namespace treerec {

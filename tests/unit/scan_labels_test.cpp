@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scan/wood_leaf.h"
+#include "scan/leaves/wood_leaf.h"
 #include "scan_samples.h"
 
 namespace treerec {

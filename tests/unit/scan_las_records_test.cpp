@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "scan/clean_cloud.h"
-#include "scan/las_records.h"
-#include "scan/read_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/las_records.h"
+#include "scan/formats/read_cloud.h"
 #include "scan_samples.h"
 
 namespace treerec {

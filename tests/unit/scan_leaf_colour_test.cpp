@@ -1,5 +1,5 @@
 // Leaves that are told by their green, however much the light has bleached it.
-#include "scan/leaf_colour.h"
+#include "scan/leaves/leaf_colour.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "geometry/quantile.h"
 #include "geometry/random.h"
-#include "scan/wood_leaf.h"
+#include "scan/leaves/wood_leaf.h"
 #include "scan_samples.h"
 #include "synth/grow.h"
 #include "synth/scan.h"

@@ -8,8 +8,8 @@
 #include "error.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
-#include "scan/read_cloud.h"
-#include "scan/wood_leaf.h"
+#include "scan/formats/read_cloud.h"
+#include "scan/leaves/wood_leaf.h"
 #include "scan_samples.h"
 
 namespace treerec {

@@ -1,5 +1,5 @@
 // Trunks without crowns, as photos of a trunk give them.
-#include "scan/lone_trunk.h"
+#include "scan/stems/lone_trunk.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The unit of a scan: guessed, given, or set by one known length.
 #include <gtest/gtest.h>
 
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 #include "scan_samples.h"
 
 namespace treerec {

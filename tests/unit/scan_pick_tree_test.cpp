@@ -5,7 +5,7 @@
 
 #include "cases.h"
 #include "geometry/parallel.h"
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 #include "scan_samples.h"
 #include "synth/grow.h"
 #include "synth/scan.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/random.h"
+#include "scan/cleaning/samples.h"
 #include "scan/robust.h"
-#include "scan/samples.h"
 
 namespace treerec {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "scan/thin_cloud.h"
+#include "scan/cleaning/thin_cloud.h"
 #include "scan/usual_size.h"
 #include "scan_samples.h"
 

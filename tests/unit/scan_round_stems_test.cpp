@@ -1,4 +1,4 @@
-#include "scan/round_stems.h"
+#include "scan/stems/round_stems.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 
 #include "geometry/random.h"
 #include "pipeline/reconstruct.h"
-#include "scan/read_cloud.h"
-#include "scan/samples.h"
-#include "scan/separate_trees.h"
-#include "scan/wood_leaf.h"
+#include "scan/cleaning/samples.h"
+#include "scan/formats/read_cloud.h"
+#include "scan/leaves/wood_leaf.h"
+#include "scan/stems/separate_trees.h"
 #include "scan_samples.h"
 
 namespace treerec {

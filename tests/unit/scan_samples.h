@@ -16,9 +16,9 @@
 
 #include "error.h"
 #include "geometry/random.h"
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "scan/point_cloud.h"
-#include "scan/read_cloud.h"
 
 #ifdef _WIN32
 #include <process.h>

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "scan/check_shape.h"
-#include "scan/clean_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
 #include "scan_samples.h"
 
 namespace treerec {

@@ -8,9 +8,9 @@
 
 #include "geometry/parallel.h"
 #include "geometry/random.h"
-#include "scan/clean_cloud.h"
-#include "scan/read_cloud.h"
-#include "scan/wood_leaf.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/read_cloud.h"
+#include "scan/leaves/wood_leaf.h"
 #include "scan_samples.h"
 #include "synth/grow.h"
 #include "synth/scan.h"

@@ -1,5 +1,5 @@
 // The surface of limbs.
-#include "skeleton/bark.h"
+#include "skeleton/cylinders/bark.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skeleton/base_end.h"
+#include "skeleton/cylinders/base_end.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "edit/script.h"
-#include "skeleton/complete.h"
-#include "skeleton/complete_all.h"
+#include "completion/complete.h"
+#include "completion/complete_all.h"
+#include "edit/commands/script.h"
 #include "skeleton_shapes.h"
 
 namespace treerec {

@@ -1,5 +1,5 @@
 // The flood as Zhang 2013 prints it.
-#include "skeleton/flood_paper.h"
+#include "skeleton/flood/flood_paper.h"
 
 #include <gtest/gtest.h>
 

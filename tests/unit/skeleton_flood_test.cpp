@@ -7,8 +7,8 @@
 
 #include "fidelity/score.h"
 #include "geometry/segment.h"
-#include "skeleton/flood.h"
-#include "skeleton/flood_fit.h"
+#include "skeleton/flood/flood.h"
+#include "skeleton/flood/flood_fit.h"
 #include "skeleton/skeleton.h"
 #include "skeleton_shapes.h"
 #include "tree/branches.h"

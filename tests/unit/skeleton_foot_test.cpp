@@ -1,5 +1,5 @@
 // Where a stem stands.
-#include "skeleton/foot.h"
+#include "skeleton/cylinders/foot.h"
 
 #include <gtest/gtest.h>
 

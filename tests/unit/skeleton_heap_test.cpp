@@ -1,4 +1,4 @@
-#include "skeleton/heap.h"
+#include "skeleton/geodesics/heap.h"
 
 #include <gtest/gtest.h>
 

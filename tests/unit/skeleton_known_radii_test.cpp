@@ -1,5 +1,5 @@
-// Skeletons of clouds whose maker knows how thick the wood is (skeleton/known_radii.h).
-#include "skeleton/known_radii.h"
+// Skeletons of clouds whose maker knows how thick the wood is (skeleton/cylinders/known_radii.h).
+#include "skeleton/cylinders/known_radii.h"
 
 #include <gtest/gtest.h>
 

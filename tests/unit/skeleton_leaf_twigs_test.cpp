@@ -11,8 +11,8 @@
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "pipeline/reconstruct.h"
-#include "scan/read_cloud.h"
-#include "skeleton/leaf_twigs.h"
+#include "scan/formats/read_cloud.h"
+#include "skeleton/twigs/leaf_twigs.h"
 #include "synth/grow.h"
 #include "synth/scan.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "geometry/random.h"
-#include "skeleton/one_sided.h"
+#include "skeleton/cylinders/one_sided.h"
 
 namespace treerec {
 namespace {

@@ -1,5 +1,5 @@
 // Radii by a rule (Zhang 2013, 5.4).
-#include "skeleton/radius_rules.h"
+#include "skeleton/cylinders/radius_rules.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "skeleton/radii.h"
-#include "skeleton/refine.h"
+#include "skeleton/cylinders/radii.h"
+#include "skeleton/cylinders/refine.h"
 #include "skeleton_test_clouds.h"
 
 namespace treerec {

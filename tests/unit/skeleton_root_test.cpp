@@ -1,4 +1,4 @@
-#include "skeleton/root.h"
+#include "skeleton/geodesics/root.h"
 
 #include <gtest/gtest.h>
 

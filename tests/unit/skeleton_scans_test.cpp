@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "scan/clean_cloud.h"
-#include "scan/read_cloud.h"
+#include "scan/cleaning/clean_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "skeleton/skeleton.h"
 #include "tree/measure.h"
 

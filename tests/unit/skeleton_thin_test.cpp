@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "geometry/random.h"
-#include "skeleton/thin.h"
+#include "skeleton/sampling/thin.h"
 
 namespace treerec {
 namespace {

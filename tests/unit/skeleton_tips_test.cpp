@@ -1,5 +1,5 @@
 // Where branches end.
-#include "skeleton/tips.h"
+#include "skeleton/cylinders/tips.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Twigs that grow at once are those that grow one after another.
-#include "skeleton/twig_growth.h"
+#include "skeleton/twigs/twig_growth.h"
 
 #include <gtest/gtest.h>
 

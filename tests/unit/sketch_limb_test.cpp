@@ -5,10 +5,10 @@
 #include <string>
 
 #include "cli_runner.h"
-#include "edit/script.h"
+#include "edit/commands/script.h"
 #include "exchange/tree_files.h"
 #include "limb_trials.h"
-#include "scan/read_cloud.h"
+#include "scan/formats/read_cloud.h"
 #include "skeleton_shapes.h"
 #include "sketch/flat_line.h"
 #include "sketch/limb_stroke.h"

@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "edit/scion.h"
-#include "edit/twig_library.h"
+#include "edit/graft/scion.h"
+#include "edit/graft/twig_library.h"
 #include "file_bytes.h"
 #include "geometry/quantile.h"
 #include "lsystem/lstring.h"

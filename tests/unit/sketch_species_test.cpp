@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/scion.h"
+#include "edit/graft/scion.h"
 #include "error.h"
 #include "foliage/leaves.h"
 #include "lsystem/lstring.h"

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "edit/script.h"
-#include "edit/vary.h"
+#include "edit/commands/script.h"
+#include "edit/vary/vary.h"
 #include "foliage/leaves.h"
 #include "geometry/random.h"
 #include "lsystem/grammar.h"

@@ -2,7 +2,7 @@
 """Grows the twigs of the library anew: python3 src/edit/twigs/grow_twigs.py [NAME...] writes NAME.lstring here and
 its thumbnail into the addon.
 
-Each is a scion (edit/scion.h) as the wood looks without leaves: how its buds are arranged, how its shoots bend,
+Each is a scion (edit/graft/scion.h) as the wood looks without leaves: how its buds are arranged, how its shoots bend,
 which of them grow on. They are grown as if they rose from a limb at `rise` degrees; the strings are what ships, so
 that a change here is a change to look at.
 """

@@ -7,7 +7,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/point_tree.h"
-#include "skeleton/thin.h"
+#include "skeleton/sampling/thin.h"
 
 namespace treerec {
 

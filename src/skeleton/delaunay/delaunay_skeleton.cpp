@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-#include "skeleton/assemble.h"
+#include "skeleton/cylinders/foot.h"
 #include "skeleton/delaunay/centralise.h"
 #include "skeleton/delaunay/initial_skeleton.h"
 #include "skeleton/delaunay/simplify.h"
 #include "skeleton/delaunay/trunk_cylinder.h"
-#include "skeleton/flood_skeleton.h"
-#include "skeleton/foot.h"
-#include "skeleton/paths.h"
-#include "skeleton/root.h"
-#include "skeleton/thin.h"
+#include "skeleton/flood/flood_skeleton.h"
+#include "skeleton/geodesics/paths.h"
+#include "skeleton/geodesics/root.h"
+#include "skeleton/sampling/thin.h"
+#include "skeleton/simplify/assemble.h"
 #include "tree/trunk.h"
 
 namespace treerec {

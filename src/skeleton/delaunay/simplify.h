@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "skeleton/axis.h"
+#include "skeleton/cylinders/axis.h"
 #include "skeleton/delaunay/initial_skeleton.h"
 #include "skeleton/delaunay/trunk_cylinder.h"
 

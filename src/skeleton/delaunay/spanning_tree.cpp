@@ -3,7 +3,7 @@
 #include <bit>
 #include <limits>
 
-#include "skeleton/heap.h"
+#include "skeleton/geodesics/heap.h"
 
 namespace treerec {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "skeleton/paths.h"
+#include "skeleton/geodesics/paths.h"
 #include "skeleton/skeleton.h"
 
 namespace treerec {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "progress.h"
-#include "skeleton/point_graph.h"
+#include "skeleton/sampling/point_graph.h"
 
 namespace treerec {
 

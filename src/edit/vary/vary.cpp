@@ -1,0 +1,468 @@
+#include "edit/vary/vary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edit/vary/vary_parts.h"
+#include "error.h"
+#include "geometry/portable_trig.h"
+#include "geometry/random.h"
+#include "tree/branches.h"
+
+namespace treerec {
+
+namespace {
+
+// How much varies at an amount of 1. Angles in radians.
+constexpr double kTrunkBend = 0.05;    // at its top
+constexpr double kTrunkGrowth = 0.06;  // share of its length,
+constexpr double kTrunkGauge = 0.06;   // and of its radii
+constexpr double kBend = 0.16;         // of a branch at its tip
+constexpr double kWave = 0.10;         // on its way
+constexpr double kAround = 0.35;       // about the trunk, beside its twist,
+constexpr double kAside = 0.22;        // and about a branch
+constexpr double kFork = 0.10;         // of the angle with the parent
+constexpr double kGrowth = 0.10;       // share of a branch's length,
+constexpr double kGauge = 0.12;        // and of its radii
+constexpr double kShift = 0.035;       // of the parent's length
+constexpr double kReshaped = 0.85;     // share of branches that take another one's shape
+constexpr double kMirrored = 0.5;      // and of those that are mirrored
+constexpr double kLeftOut = 0.07;      // and of slender ones that are left out, or stand twice
+constexpr double kSlender = 0.02;      // of the tree's wood, at most
+constexpr double kWindow = 0.12;       // of the pool: how far the rank of another shape may be
+constexpr int kTries = 6;
+
+constexpr double kLeastDrift = 0.75, kMostDrift = 1.3;
+constexpr double kShapeLength = 1.5, kShapeRadius = 2.5;  // at most, of another shape over one's own
+constexpr double kShapeRise = 0.2;                        // the sines of the two elevations differ by no more
+constexpr double kShapeTip = 0.35;  // of its length: how far its tip may be from where it was
+constexpr double kBalance = 0.12;   // of the tree's nodes and wood: how far a variant may be from it
+constexpr double kUpright = 0.8;    // the least rise of a trunk that branches turn about
+constexpr double kRival = 0.4, kRivalRange = 0.35;  // thicker beside the leader, it turns less about it
+constexpr int32_t kFewLimbs = 8;                    // fewer tell nothing of their order alone
+constexpr double kAllowance = 0.03;                 // outside of the observed ranges
+constexpr double kMostRadius = 1.0;                 // at the joint, of the parent's
+
+// A bell of standard deviation 1, between -3 and 3; no logarithm in it, so that it is the same everywhere.
+double bell(Random& random) {
+    return 2.0 * (random.uniform() + random.uniform() + random.uniform() - 1.5);
+}
+
+// The smallest rotation from one unit vector to another; without angles, for the same reason.
+DMat3 turn_onto(const DVec3& from, const DVec3& to) {
+    const double cosine = glm::dot(from, to);
+    if (cosine < -0.99) {
+        // Half a turn about something across.
+        const DVec3 k = any_perpendicular(from);
+        return DMat3(2.0 * k * k.x - DVec3(1, 0, 0), 2.0 * k * k.y - DVec3(0, 1, 0),
+                     2.0 * k * k.z - DVec3(0, 0, 1));
+    }
+    const DVec3 v = glm::cross(from, to);
+    const double s = 1.0 / (1.0 + cosine);
+    return DMat3(DVec3(cosine + s * v.x * v.x, s * v.x * v.y + v.z, s * v.x * v.z - v.y),
+                 DVec3(s * v.x * v.y - v.z, cosine + s * v.y * v.y, s * v.y * v.z + v.x),
+                 DVec3(s * v.x * v.z + v.y, s * v.y * v.z - v.x, cosine + s * v.z * v.z));
+}
+
+DVec3 turned_about(const DVec3& axis, const SineCosine& by, const DVec3& v) {
+    return v * by.cosine + glm::cross(axis, v) * by.sine + axis * (glm::dot(axis, v) * (1.0 - by.cosine));
+}
+
+DMat3 rotation(const DVec3& axis, double radians) {
+    const SineCosine by = portable_sine_cosine(radians);
+    return DMat3(turned_about(axis, by, {1, 0, 0}), turned_about(axis, by, {0, 1, 0}),
+                 turned_about(axis, by, {0, 0, 1}));
+}
+
+// Axes that look along a way and know up: to its right, along it, up.
+DMat3 standing_axes(const DVec3& way) {
+    const DVec3 right = normalized_or(glm::cross(way, DVec3(0, 1, 0)), DVec3(1, 0, 0));
+    return DMat3(right, way, glm::cross(right, way));
+}
+
+}  // namespace
+
+void VariantMaker::Range::add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+}
+
+VariantMaker::VariantMaker(const Tree& tree, const Foliage& foliage) : tree_(tree), foliage_(foliage) {
+    if (tree.size() < 2) return;
+    look_at_limbs();
+    look_at_habits();
+    look_at_growth();
+    if (!foliage.empty()) carry_foliage(foliage);
+}
+
+void VariantMaker::look_at_limbs() {
+    const BranchList list = list_branches(tree_);
+    floor_ = tree_.node(tree_.root()).position.y;
+    for (const NodeId id : list.nodes)
+        floor_ = std::min(floor_, tree_.node(id).position.y);
+    limbs_.resize(list.branches.size());
+    std::vector<int32_t> place(static_cast<size_t>(tree_.id_end()), -1);  // along its limb
+    for (size_t b = 0; b < limbs_.size(); b++) {
+        const Branch& branch = list.branches[b];
+        Limb& limb = limbs_[b];
+        limb.parent = branch.parent;
+        limb.order = branch.order;
+        limb.begin = static_cast<int32_t>(steps_.size());
+        const NodeId foot = b == 0 ? tree_.root() : branch.attach;
+        if (b > 0) limb.attach = place[foot];
+        DVec3 from = tree_.node(foot).position;
+        for (NodeId id : list.nodes_of(branch)) {
+            if (id == tree_.root()) continue;
+            const Node& node = tree_.node(id);
+            const DVec3 step = node.position - from;
+            const double length = glm::length(step);
+            limb.length += length;
+            place[id] = static_cast<int32_t>(steps_.size()) - limb.begin;
+            steps_.push_back(step);
+            lengths_.push_back(length);
+            along_.push_back(limb.length);
+            radii_.push_back(node.radius);
+            flags_.push_back(node.flags & kTrunkFlag);
+            leaf_rules_.push_back(node.leaf_rule);
+            limb.stem = limb.stem || node.is_trunk();
+            if (place[id] == 0) limb.least_rule = limb.most_rule = node.leaf_rule;
+            limb.least_rule = std::min(limb.least_rule, node.leaf_rule);
+            limb.most_rule = std::max(limb.most_rule, node.leaf_rule);
+            from = node.position;
+        }
+        limb.end = static_cast<int32_t>(steps_.size());
+        limb.nodes = limb.end - limb.begin;
+        limb.wood = limb.length;
+        limb.radius = radii_[limb.begin];
+        const DVec3 start = tree_.node(foot).position;
+        const auto middle =
+            std::lower_bound(along_.begin() + limb.begin, along_.begin() + limb.end - 1, 0.5 * limb.length) -
+            along_.begin();
+        DVec3 way(0.0);
+        for (int32_t k = limb.begin; k <= static_cast<int32_t>(middle); k++)
+            way += steps_[k];
+        limb.way = normalized_or(way, normalized_or(from - start, DVec3(0, 1, 0)));
+        limb.reach = from - start;
+        limb.axes = standing_axes(limb.way);
+        limb.reach_in_axes = limb.reach * limb.axes;
+        if (b == 0) continue;
+        const Limb& parent = limbs_[limb.parent];
+        const int32_t joint = parent.begin + limb.attach;
+        DVec3 axis = limb.attach >= 0 ? steps_[joint] : DVec3(0.0);
+        if (joint + 1 < parent.end) {
+            axis += steps_[joint + 1];
+            limb.beside = limb.radius / radii_[joint + 1];
+        }
+        limb.axis = normalized_or(axis, parent.way);
+    }
+    // Children stand behind their parents, in order along them; all of one limb one after another.
+    for (size_t b = limbs_.size(); b-- > 1;) {
+        Limb& parent = limbs_[limbs_[b].parent];
+        parent.nodes += limbs_[b].nodes;
+        parent.wood += limbs_[b].wood;
+        parent.stem = parent.stem || limbs_[b].stem;
+        parent.least_rule = std::min(parent.least_rule, limbs_[b].least_rule);
+        parent.most_rule = std::max(parent.most_rule, limbs_[b].most_rule);
+        parent.first_child = static_cast<int32_t>(b);
+        if (parent.last_child == 0) parent.last_child = static_cast<int32_t>(b) + 1;
+    }
+}
+
+double VariantMaker::parent_radius(const Limb& limb) const {
+    return limb.attach < 0 ? tree_.node(tree_.root()).radius
+                           : radii_[limbs_[limb.parent].begin + limb.attach];
+}
+
+void VariantMaker::look_at_habits() {
+    Habit all;
+    for (size_t b = 1; b < limbs_.size(); b++) {
+        const Limb& limb = limbs_[b];
+        if (static_cast<size_t>(limb.order) >= habits_.size()) habits_.resize(limb.order + size_t{1});
+        const double parent_length = limbs_[limb.parent].length;
+        for (Habit* habit : {&all, &habits_[limb.order]}) {
+            habit->limbs++;
+            habit->cosine.add(glm::dot(limb.axis, limb.way));
+            if (parent_length > 0.0) habit->length.add(limb.length / parent_length);
+            habit->radius.add(limb.radius / parent_radius(limb));
+        }
+        habits_[limb.order].pool.push_back(static_cast<int32_t>(b));
+    }
+    for (Habit& habit : habits_) {
+        std::stable_sort(habit.pool.begin(), habit.pool.end(),
+                         [&](int32_t a, int32_t b) { return limbs_[a].length < limbs_[b].length; });
+        for (size_t i = 0; i < habit.pool.size(); i++)
+            limbs_[habit.pool[i]].rank = static_cast<int32_t>(i);
+        if (habit.limbs >= kFewLimbs) continue;
+        habit.cosine = all.cosine;
+        habit.length = all.length;
+        habit.radius = all.radius;
+    }
+}
+
+TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
+    if (!(amount >= 0.0 && amount <= 1.0)) throw Error("The amount of variation must be 0 to 1.");
+    if (!(age >= kLeastAge && age <= kMostAge))
+        throw Error("The age of a variant must be 0.2 to 1.2 of the tree's own.");
+    if ((amount == 0.0 && age == 1.0) || tree_.size() < 2) return {tree_, foliage_};
+    Work work;
+    work.amount = amount;
+    set_age(work, age);
+    const size_t expected = tree_.size() + tree_.size() / 4;
+    work.positions.reserve(expected);
+    work.radii.reserve(expected);
+    work.parents.reserve(expected);
+    work.flags.reserve(expected);
+    work.leaf_rules.reserve(expected);
+    work.slots.reserve(limbs_.size() + limbs_.size() / 4);
+    Random random(seed, 7);
+    work.twist_start = kPi * amount * random.uniform(-1.0, 1.0);
+    work.twist_even = 0.5 * kPi * amount * random.uniform(-1.0, 1.0);
+    work.twist_swing = 0.25 * kPi * amount * random.uniform(-1.0, 1.0);
+    Slot trunk;
+    trunk.drift = trunk.scale = 1.0 + kTrunkGrowth * amount * random.uniform(-1.7, 1.7);
+    trunk.gauge = trunk.scale * (1.0 + kTrunkGauge * amount * random.uniform(-1.7, 1.7));
+    trunk.scale *= work.size;
+    trunk.gauge *= work.gauge;
+    trunk.key = hash_seed(seed, 0);
+    const Node& root = tree_.node(tree_.root());
+    trunk.foot = root.position;
+    trunk.parent = 0;
+    work.positions.push_back(root.position);
+    work.radii.push_back(root.radius * trunk.gauge);
+    work.parents.push_back(kNoNode);
+    work.flags.push_back(root.flags & kTrunkFlag);
+    work.leaf_rules.push_back(root.leaf_rule);
+    work.slots.push_back(trunk);
+    for (size_t i = 0; i < work.slots.size(); i++) {
+        const Slot slot = work.slots[i];
+        grow(work, slot);
+    }
+    TreeVariant variant;
+    variant.tree = Tree::from_arrays(work.parents, work.positions, work.radii, work.flags);
+    variant.tree.set_frame(tree_.frame());
+    for (const std::string& rule : tree_.leaf_rules())
+        variant.tree.name_leaf_rule(rule);
+    for (NodeId id = 0; id < variant.tree.id_end(); id++)
+        variant.tree.set_leaf_rule(id, work.leaf_rules[id]);
+    if (!foliage_.empty()) variant.foliage = settle(work.cells, work.places);
+    return variant;
+}
+
+// Sets the limb's own nodes and plans what it bears.
+void VariantMaker::grow(Work& work, const Slot& slot) const {
+    const Limb& limb = limbs_[slot.limb];
+    const bool trunk = slot.limb == 0;
+    Random random(slot.key);
+    // Bends are small: a tilt across the way does for a turn, and needs no angles.
+    const double bend = work.amount * (trunk ? kTrunkBend : kBend);
+    const double wave = work.amount * (trunk ? kTrunkBend : kWave);
+    const DVec3 arc = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * bend);
+    const DVec3 swing = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * wave);
+    const double over_length = limb.length > 0.0 ? 1.0 / limb.length : 0.0;
+    const auto first = static_cast<NodeId>(work.positions.size());
+    const size_t count = static_cast<size_t>(limb.end - limb.begin);
+    work.tilts.resize(count);
+    DVec3 at = slot.foot;
+    for (size_t k = 0; k < count; k++) {
+        const size_t n = static_cast<size_t>(limb.begin) + k;
+        const double t = (along_[n] - 0.5 * lengths_[n]) * over_length;
+        // The swing is 0 at both ends and in the middle.
+        const DVec3 tilt = arc * t + swing * (10.0 * t * (1.0 - t) * (1.0 - 2.0 * t));
+        const DVec3 step = steps_[n] + tilt * lengths_[n];
+        const double length = glm::length(step);
+        const double same = length > 0.0 ? lengths_[n] / length : 1.0;
+        at += slot.turn * (step * (same * slot.scale));
+        at.y = std::max(at.y, floor_);
+        work.tilts[k] = tilt;
+        work.positions.push_back(at);
+        const NodeId parent = k == 0 ? slot.parent : first + static_cast<NodeId>(k) - 1;
+        double radius = radii_[n] * slot.gauge;
+        // Twigs are as thick on a young tree.
+        if (work.size < 1.0)
+            radius = std::max(radius, std::min({radii_[n], twig_radius_, work.radii[parent]}));
+        work.radii.push_back(radius);
+        work.parents.push_back(parent);
+        work.flags.push_back(flags_[n]);
+        work.leaf_rules.push_back(leaf_rules_[n]);
+    }
+    for (int32_t child = limb.first_child; child < limb.last_child; child++) {
+        const uint64_t key = hash_seed(slot.key, 2 * static_cast<uint64_t>(child - limb.first_child) + 2);
+        bear(work, slot, child, key, false);
+    }
+    if (carried_.empty()) return;
+    for (int32_t c = carried_begin_[slot.limb]; c < carried_begin_[slot.limb + 1]; c++) {
+        const Carried& one = carried_[c];
+        // As dense as they are, in a smaller crown.
+        if (work.size < 1.0 &&
+            static_cast<double>(hash_seed(slot.key, one.cell) >> 11) * 0x1p-53 >= work.size * work.size)
+            continue;
+        const DVec3 from = one.node < 0 ? slot.foot : work.positions[first + one.node];
+        work.cells.push_back(one.cell);
+        work.places.push_back(from + slot.turn * one.offset * slot.scale);
+    }
+}
+
+// Plans one child of a limb that has its nodes: where it stands, whose shape it takes, which way it goes.
+void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t key, bool again) const {
+    const Limb& limb = limbs_[slot.limb];
+    const Limb& own = limbs_[child];
+    const Habit& habit = habits_[own.order];
+    const double amount = work.amount;
+    Random random(key, 1);
+    const auto first = static_cast<NodeId>(work.positions.size()) - (limb.end - limb.begin);
+
+    if (!again && is_yet_to_grow(work, own, key)) return;
+    const double fate = random.uniform();
+    if (!again && !own.stem && own.wood < kSlender * limbs_[0].wood && own.order > 1) {
+        if (fate < kLeftOut * amount && work.more_wood > -kBalance * limbs_[0].wood) {
+            work.more_nodes -= own.nodes;
+            work.more_wood -= own.wood;
+            return;
+        }
+        if (fate > 1.0 - kLeftOut * amount && work.more_wood < kBalance * limbs_[0].wood &&
+            work.more_nodes < kBalance * limbs_[0].nodes) {
+            work.more_nodes += own.nodes;
+            work.more_wood += own.wood;
+            bear(work, slot, child, key + 1, true);
+        }
+    }
+
+    // Stout limbs keep their place beside the leader, further stems all the more.
+    const double slim = own.stem ? 0.0 : std::clamp(1.0 - (own.beside - kRival) / kRivalRange, 0.0, 1.0);
+
+    // Where: not below the lowest of its siblings, nor at the tip.
+    int32_t joint = own.attach;
+    if (joint >= 0) {
+        // What is low on its parent moves less.
+        const double own_along = along_[limb.begin + joint];
+        const double reach =
+            (again ? 3.0 : 1.0) * slim * kShift * amount * std::min(limb.length, 3.0 * own_along);
+        const double wanted = own_along + reach * std::clamp(bell(random), -2.0, 2.0);
+        const int32_t lowest = std::max(limbs_[limb.first_child].attach, 0);
+        const int32_t highest = std::max(limb.end - limb.begin - 2, joint);
+        while (joint < highest && along_[limb.begin + joint + 1] <= wanted)
+            joint++;
+        while (joint > lowest && along_[limb.begin + joint] > wanted)
+            joint--;
+    }
+    const NodeId parent = joint < 0 ? slot.parent : first + joint;
+    const DVec3 foot = joint < 0 ? slot.foot : work.positions[parent];
+    const double share = joint < 0 || !(limb.length > 0.0) ? 0.0 : along_[limb.begin + joint] / limb.length;
+
+    // Which way: with the limb, about it, and at another angle.
+    DMat3 turn = slot.turn;
+    if (joint >= 0) turn = turn * turn_onto(own.axis, normalized_or(own.axis + work.tilts[joint], own.axis));
+    DVec3 axis = turn * own.axis;
+    if (joint >= 0) {
+        axis = work.positions[parent] - work.positions[joint > 0 ? parent - 1 : slot.parent];
+        if (joint + 1 < limb.end - limb.begin) axis += work.positions[parent + 1] - work.positions[parent];
+    }
+    axis = normalized_or(axis, normalized_or(turn * own.axis, DVec3(0, 1, 0)));
+    const double jitter = amount * bell(random);
+    if (slot.limb == 0 && axis.y > kUpright) {
+        const double swing = 10.0 * share * (1.0 - share) * (1.0 - 2.0 * share);
+        const double twist = work.twist_start + work.twist_even * share + work.twist_swing * swing;
+        const double around =
+            slim * twist + (0.2 + 0.8 * slim) * kAround * jitter + (again ? random.uniform(-kPi, kPi) : 0.0);
+        turn = rotation({0, 1, 0}, around) * turn;
+    } else {
+        const double around =
+            (0.2 + 0.8 * slim) * kAside * jitter + (again && random.uniform() < 0.5 ? kPi : 0.0);
+        turn = rotation(axis, around) * turn;
+    }
+    DVec3 way = normalized_or(turn * own.way, axis);
+    // At another angle, as far as this order of branches goes. A tilt again, for a turn.
+    const double cosine = glm::dot(axis, way);
+    const DVec3 across = way - axis * cosine;
+    if (glm::dot(across, across) > 1e-6) {
+        const DVec3 aside = glm::normalize(across);
+        const double fork = kFork * amount * bell(random);
+        const DVec3 tilted = way + (aside * cosine - axis * glm::dot(aside, way)) * fork;
+        const double wanted =
+            std::clamp(glm::dot(axis, glm::normalize(tilted)), habit.cosine.least, habit.cosine.most);
+        const double bounded = std::clamp(wanted, -1.0, 1.0);
+        const DVec3 forked =
+            glm::normalize(axis * bounded + aside * std::sqrt(std::max(0.0, 1.0 - bounded * bounded)));
+        turn = turn_onto(way, forked) * turn;
+        way = forked;
+    }
+
+    // Whose shape.
+    Slot next;
+    next.limb = !own.stem && random.uniform() < kReshaped * std::min(1.0, 1.5 * amount)
+                    ? choose_shape(work, child, turn, way, key)
+                    : child;
+    const Limb& shape = limbs_[next.limb];
+    const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
+    const DMat3 axes = next.limb != child || mirrored ? standing_axes(way) : DMat3(1.0);
+    if (next.limb != child) turn = axes * glm::transpose(shape.axes);
+    if (mirrored) {
+        const DVec3& right = axes[0];
+        turn = turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
+                            2.0 * right * glm::dot(right, turn[2]));
+    }
+    next.turn = turn;
+
+    // How long: as the one whose place it takes, but for its own growth.
+    next.drift = std::clamp(slot.drift * (1.0 + kGrowth * amount * std::clamp(bell(random), -2.0, 2.0)),
+                            kLeastDrift, kMostDrift);
+    const double growth = next.drift / slot.drift;
+    double length = own.length * slot.scale * growth;
+    const double parent_length = limb.length * slot.scale;
+    if (parent_length > 0.0 && habit.length.most > 0.0)
+        length = std::clamp(length, parent_length * habit.length.least * (1.0 - kAllowance),
+                            parent_length * habit.length.most * (1.0 + kAllowance));
+    next.scale = shape.length > 0.0 ? length / shape.length : slot.scale;
+
+    // How thick: likewise, and no more than its parent there.
+    const double thick = work.radii[parent];
+    const double own_share = own.radius / parent_radius(own);
+    double radius =
+        own.radius * slot.gauge * growth * (1.0 + kGauge * amount * std::clamp(bell(random), -2.0, 2.0));
+    const double most = std::max(own_share, std::min(kMostRadius, habit.radius.most)) * thick;
+    const double least = habit.radius.least * (1.0 - kAllowance) * thick;
+    radius = std::min(std::max(radius, std::min(least, most)), most);
+    next.gauge = radius / shape.radius;
+
+    next.parent = parent;
+    next.foot = foot;
+    next.key = hash_seed(key, 1);
+    work.slots.push_back(next);
+}
+
+// Another limb of the child's order and about its length, or the child itself.
+int32_t VariantMaker::choose_shape(Work& work, int32_t child, const DMat3& turn, const DVec3& way,
+                                   uint64_t key) const {
+    const Limb& own = limbs_[child];
+    const std::vector<int32_t>& pool = habits_[own.order].pool;
+    const auto size = static_cast<int32_t>(pool.size());
+    Random random(key, 2);
+    const int32_t window = std::max(2, static_cast<int32_t>(kWindow * work.amount * size) + 1);
+    const DVec3 tip = turn * own.reach;
+    const DMat3 axes = standing_axes(way);
+    const auto fits = [](double more, double limit, double change) {
+        return std::abs(more + change) <= limit || std::abs(more + change) <= std::abs(more);
+    };
+    for (int tries = 0; tries < kTries; tries++) {
+        const int32_t rank =
+            own.rank - window + static_cast<int32_t>(random.below(2 * static_cast<uint32_t>(window) + 1));
+        if (rank < 0 || rank >= size || rank == own.rank) continue;
+        const int32_t other = pool[rank];
+        const Limb& shape = limbs_[other];
+        if (shape.stem || shape.least_rule != own.least_rule || shape.most_rule != own.most_rule) continue;
+        if (!(shape.length < kShapeLength * own.length && own.length < kShapeLength * shape.length)) continue;
+        if (!(shape.radius < kShapeRadius * own.radius && own.radius < kShapeRadius * shape.radius)) continue;
+        if (std::abs(shape.way.y - way.y) > kShapeRise) continue;
+        const double nodes = shape.nodes - own.nodes, wood = shape.wood - own.wood;
+        if (!fits(work.more_nodes, kBalance * limbs_[0].nodes, nodes)) continue;
+        if (!fits(work.more_wood, kBalance * limbs_[0].wood, wood)) continue;
+        const DVec3 there = axes * shape.reach_in_axes * (own.length / shape.length);
+        if (glm::distance(tip, there) > kShapeTip * own.length) continue;
+        work.more_nodes += nodes;
+        work.more_wood += wood;
+        return other;
+    }
+    return child;
+}
+
+}  // namespace treerec

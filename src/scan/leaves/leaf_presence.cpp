@@ -1,0 +1,167 @@
+#include "scan/leaves/leaf_presence.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "geometry/quantile.h"
+#include "scan/leaves/shape_terms.h"
+
+namespace treerec {
+
+namespace {
+
+// A cloud with fewer cells along its extent, or with fewer ones finer than a leaf, shows neither leaves nor
+// twigs, unless it is filled as no bare crown is.
+constexpr double kLeastResolution = 95.0;
+constexpr double kFineCell = 0.06;  // metres
+constexpr double kLeastFineResolution = 60.0;
+struct Filled {
+    double resolution;
+    double filled;
+    double scattered;
+};
+// The coarser the cells, the fuller is a bare crown: 0.49 and 0.46 at 46 cells, 0.57 and 0.55 at 27.
+constexpr Filled kFilled[] = {{40.0, 0.58, 0.5}, {20.0, 0.62, 0.59}};
+
+// Of fewer cells the leafiness may tell, in crowns that are at least as full as this: there it is below -0.7
+// for bare trees and above 1 for leafy ones.
+constexpr double kLeastLushResolution = 60.0;
+constexpr double kLushFilled = 0.4;
+constexpr double kLush = 0.5;
+
+// Blur makes bare crowns fuller and lush, but then nearly all of them looks like leaves: at a leafiness above
+// 3 a share of 0.78 and more.
+constexpr double kMostBlurFilled = 0.55;
+constexpr double kMostBlurShare = 0.6;
+constexpr double kLushNotBlur = 3.5;
+
+// A tree with a smaller share of leaves counts as bare, unless its leafiness is far from that of bare trees:
+// leafless trees of dense twigs reach 0.36 by chance, and 0.45 where they were thinned.
+constexpr double kLeastShare = 0.4;
+constexpr double kSureShare = 0.5;
+constexpr double kSurelyLush = 3.0;
+// Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
+constexpr double kSparseFilled = 0.37;
+
+// Of blurred bare trees none is as lush as that and fills more than 0.43; leafy ones are at 5.3 and 0.46 or
+// more.
+constexpr double kSurelyFilled = 0.445;
+
+// Means of so many points have less than half of their noise: bare trees reach a leafiness of 4.5 then, with
+// noise of 3 cm, and leafy ones with 2 cm are above 6.6. (With 4 points, bare ones reach 8.3.)
+constexpr double kLeastInMean = 5.0;
+constexpr double kOutshining = 5.3;
+
+constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to 0.25
+// Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
+constexpr double kBroadPlanarity = 0.4;
+
+// As the rule of wood_leaf.cpp, for shapes on the coarser grids alone, which are quick to find.
+constexpr float kQuickBias = -0.6825F;
+constexpr double kSurelyBare = -1.6;  // leafy clouds have a mean above -1.4, most bare ones one below -1.6
+constexpr ShapeTerms kQuickTerms{{
+    {{{0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}},
+    {{{0.3997F, 0.2186F, -0.168F},
+      {0.2666F, 0.1669F, -0.030F},
+      {0.3336F, 0.1836F, 0.165F},
+      {0.4283F, 0.1876F, 0.442F},
+      {2.778F, 0.6209F, -0.512F}}},
+    {{{0.3375F, 0.1858F, -0.217F},
+      {0.2553F, 0.1533F, 0.189F},
+      {0.4072F, 0.1842F, 0.061F},
+      {0.5084F, 0.2021F, 0.225F},
+      {3.366F, 0.7300F, -0.591F}}},
+    {{{0.0F, 1.0F, 0.0F},
+      {0.0F, 1.0F, 0.0F},
+      {0.5064F, 0.1801F, 0.553F},
+      {0.6387F, 0.2271F, -1.276F},
+      {4.113F, 0.7961F, 2.616F}}},
+}};
+
+double extent_of(const std::vector<Vec3>& points) {
+    double extent = 0.0;
+    std::vector<float> values(points.size());
+    for (int axis = 0; axis < 3; axis++) {
+        for (size_t v = 0; v < points.size(); v++)
+            values[v] = points[v][axis];
+        extent = std::max<double>(extent, quantile(values, 0.99) - quantile(values, 0.01));
+    }
+    return extent;
+}
+
+}  // namespace
+
+bool surely_bare(const Cells& cells, const CellShapes& shapes) {
+    double sum = 0.0, flat = 0.0;
+    for (const uint32_t v : cells.of_point) {
+        sum += sum_of_terms(&shapes[v * kShapeScales], kQuickTerms);
+        flat += shapes[v * kShapeScales + 1].planarity;
+    }
+    const auto points = static_cast<double>(cells.of_point.size());
+    return sum / points + kQuickBias < kSurelyBare && flat / points < kBroadPlanarity;
+}
+
+CrownLooks look_at_crown(const Cells& cells, const CellShapes& shapes) {
+    CrownLooks looks;
+    for (const uint32_t v : cells.of_point) {
+        looks.filled += shapes[v * kShapeScales].occupied / 26.0;
+        looks.scattered += shapes[v * kShapeScales].scatter;
+        looks.flat += shapes[v * kShapeScales + 1].planarity;
+    }
+    const auto points = static_cast<double>(cells.of_point.size());
+    looks.filled /= points;
+    looks.scattered /= points;
+    looks.flat /= points;
+    looks.cell = cells.size;
+    looks.resolution = extent_of(cells.centres) / cells.size;
+    return looks;
+}
+
+bool resolves_leaves(const CrownLooks& looks) {
+    if (looks.resolution > kLeastResolution) return true;
+    if (looks.cell < kFineCell && looks.resolution > kLeastFineResolution) return true;
+    return std::any_of(std::begin(kFilled), std::end(kFilled), [&](const Filled& least) {
+        return looks.resolution > least.resolution && looks.filled > least.filled &&
+               looks.scattered > least.scattered;
+    });
+}
+
+bool may_resolve_leaves(const CrownLooks& looks) {
+    return looks.resolution > kLeastLushResolution && looks.filled > kLushFilled;
+}
+
+bool is_lush(double leafiness) {
+    return leafiness > kLush;
+}
+
+bool may_be_leaves_not_blur(const CrownLooks& looks) {
+    return looks.resolution > kLeastLushResolution && looks.filled < kMostBlurFilled;
+}
+
+bool are_leaves_not_blur(double share, double leafiness) {
+    return share < kMostBlurShare && leafiness > kLushNotBlur;
+}
+
+bool may_outshine_blur(const CrownLooks& looks, double points) {
+    return looks.resolution > kLeastResolution && points > kLeastInMean;
+}
+
+bool outshines_blur(double leafiness) {
+    return leafiness > kOutshining;
+}
+
+bool looks_like_fronds(const CrownLooks& looks) {
+    return looks.flat > kFrondPlanarity;
+}
+
+bool is_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+    if (share < kLeastShare) return leafiness > kSurelyLush;
+    // Of a bare tree's twigs too few points may be left to look like twigs.
+    return leafiness > 0.0 || (share >= kSureShare && looks.filled >= kSparseFilled);
+}
+
+bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+    return is_in_leaf(looks, share, leafiness) && leafiness > kSurelyLush && looks.filled > kSurelyFilled;
+}
+
+}  // namespace treerec

@@ -1,0 +1,188 @@
+#include "skeleton/cylinders/known_radii.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "geometry/groups.h"
+#include "geometry/parallel.h"
+#include "geometry/quantile.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr size_t kAsked = 16;      // points around a station
+constexpr size_t kLeast = 4;       // of them, of known radius,
+constexpr double kMost = 0.66;     // and that share
+constexpr double kReach = 2.0;     // radii and spacings, within which they lie
+constexpr double kThicker = 1.25;  // times the known radius, and a spacing more: a surface with lines on it
+
+constexpr double kStout = 0.5;    // spacings: thinner wood than that is linked as it is
+constexpr double kFar = 6.0;      // radii, to other wood
+constexpr float kAsThick = 0.8F;  // of the radius: what may bear it
+constexpr float kAlike = 0.5F;    // one radius by the other of the same wood
+
+constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+// The nearest point of other wood that is at least as thick as asked for.
+struct NearestThick {
+    const std::vector<float>& radii;
+    const std::vector<uint32_t>& wood;
+    uint32_t own;
+    float thick;
+    float best;  // squared metres
+    uint32_t found = kNone;
+
+    float limit() const { return best; }
+    void add(float squared, uint32_t v) {
+        if (radii[v] < thick || wood[v] == own || squared > best || (squared == best && v > found)) return;
+        best = squared;
+        found = v;
+    }
+};
+
+// Of a tree's nodes: the wood that all their points are of, or kNone, and how thick the thickest is. Without
+// these a thick trunk's points would all look at each other for other wood.
+struct NodeWood {
+    std::vector<uint32_t> wood;
+    std::vector<float> thickest;
+};
+
+NodeWood wood_of_nodes(const PointTree& tree, const std::vector<uint32_t>& wood,
+                       const std::vector<float>& radii) {
+    NodeWood nodes{std::vector<uint32_t>(tree.node_count()), std::vector<float>(tree.node_count(), 0.0F)};
+    for (size_t node = 0; node < tree.node_count(); node++) {
+        const bool group = node < tree.group_count();
+        const std::span<const uint32_t> members = group ? tree.in_group(node) : tree.in_block(node);
+        const std::vector<uint32_t>& of = group ? wood : nodes.wood;
+        const std::vector<float>& thick = group ? radii : nodes.thickest;
+        nodes.wood[node] = of[members.front()];
+        for (const uint32_t member : members) {
+            if (of[member] != nodes.wood[node]) nodes.wood[node] = kNone;
+            nodes.thickest[node] = std::max(nodes.thickest[node], thick[member]);
+        }
+    }
+    return nodes;
+}
+
+// By point, what is linked without gaps and about as thick: the smallest of its points.
+std::vector<uint32_t> pieces_of(const PointGraph& graph, const LocalScale& scale) {
+    Groups groups(graph.size());
+    groups.join_all([&](uint32_t v, const auto& link) {
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+            const uint32_t n = graph.neighbour[e];
+            if (n > v) break;  // they ascend
+            const auto [thin, thick] = std::minmax(scale.radius[v], scale.radius[n]);
+            if (thin >= kAlike * thick && graph.length[e] <= edge_reach(scale, v, n)) link(n);
+        }
+    });
+    return groups.names();
+}
+
+}  // namespace
+
+KnownRadii::KnownRadii(const PointCloud& cloud, double spacing, const Progress* progress)
+    : spacing_(spacing) {
+    const auto known = [](float radius) { return std::isfinite(radius) && radius > 0.0F; };
+    if (std::none_of(cloud.radii.begin(), cloud.radii.end(), known)) return;
+    // Each place once, and in an order that is not the cloud's.
+    std::vector<std::pair<Vec3, float>> places;
+    places.reserve(cloud.size());
+    for (size_t i = 0; i < cloud.size(); i++)
+        if (is_finite(DVec3(cloud.positions[i])))
+            places.emplace_back(cloud.positions[i], known(cloud.radii[i]) ? cloud.radii[i] : 0.0F);
+    const auto key = [](const std::pair<Vec3, float>& place) {
+        return std::tuple(place.first.x, place.first.y, place.first.z, -place.second);
+    };
+    std::sort(places.begin(), places.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    places.erase(std::unique(places.begin(), places.end(),
+                             [](const auto& a, const auto& b) { return a.first == b.first; }),
+                 places.end());
+    std::vector<Vec3> positions;
+    positions.reserve(places.size());
+    radii_.reserve(places.size());
+    for (const auto& [position, radius] : places) {
+        positions.push_back(position);
+        radii_.push_back(radius);
+    }
+    tree_.emplace(positions, progress);
+}
+
+std::optional<double> KnownRadii::around(const Station& station) const {
+    std::array<uint32_t, kAsked> index{};
+    std::array<float, kAsked> squared{};
+    const size_t count = tree_->nearest(Vec3(station.position), kAsked, index.data(), squared.data());
+    const double reach = kReach * (station.radius + spacing_);
+    std::vector<float> known;
+    size_t near = 0;
+    for (; near < count && static_cast<double>(squared[near]) <= reach * reach; near++)
+        if (const float radius = radii_[index[near]]; radius > 0.0F) known.push_back(radius);
+    if (known.size() < kLeast || static_cast<double>(known.size()) < kMost * static_cast<double>(near))
+        return {};
+    return static_cast<double>(quantile(known, 0.5));
+}
+
+std::vector<float> KnownRadii::at(const std::vector<Vec3>& points, const Progress& progress) const {
+    std::vector<float> radii(points.size(), 0.0F);
+    if (!tree_) return radii;
+    parallel_for(points.size(), 1024, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t v = begin; v < end; v++) {
+            uint32_t index = 0;
+            float squared = 0.0F;
+            if (tree_->nearest(points[v], 1, &index, &squared) == 1) radii[v] = radii_[index];
+        }
+    });
+    return radii;
+}
+
+void KnownRadii::tell(std::vector<std::vector<Station>>& axes) const {
+    if (!tree_) return;
+    parallel_for(axes.size(), 16, [&](size_t begin, size_t end) {
+        for (size_t l = begin; l < end; l++)
+            for (Station& station : axes[l]) {
+                const std::optional<double> known = around(station);
+                if (!known || (station.measured && station.radius > kThicker * *known + spacing_)) continue;
+                station.radius = *known;
+                station.scatter = 0.0;
+                station.measured = true;
+            }
+    });
+}
+
+void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, double spacing,
+                     PointGraph& graph, const Progress& progress) {
+    const PointTree tree(points, &progress);
+    const std::vector<uint32_t> wood = pieces_of(graph, scale);
+    const NodeWood nodes = wood_of_nodes(tree, wood, scale.radius);
+    std::vector<uint32_t> other(points.size(), kNone);
+    parallel_for(points.size(), 256, [&](size_t begin, size_t end) {
+        progress.check();
+        for (size_t v = begin; v < end; v++) {
+            const float radius = scale.radius[v];
+            if (static_cast<double>(radius) < kStout * spacing) continue;
+            const float far = static_cast<float>(kFar) * radius;
+            NearestThick nearest{scale.radius, wood, wood[v], kAsThick * radius, far * far};
+            tree.search(points[v], nearest, [&](uint32_t node) {
+                return nodes.wood[node] != wood[v] && nodes.thickest[node] >= nearest.thick;
+            });
+            other[v] = nearest.found;
+        }
+    });
+    std::vector<PointEdge> edges;
+    for (uint32_t v = 0; v < points.size(); v++) {
+        if (other[v] == kNone) continue;
+        const PointEdge edge(std::min(v, other[v]), std::max(v, other[v]));
+        if (!find_edge(graph, edge)) edges.push_back(edge);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    if (!edges.empty()) add_edges(graph, points, std::move(edges));
+}
+
+}  // namespace treerec

@@ -1,0 +1,221 @@
+#include "skeleton/flood/flood_skeleton.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "skeleton/cylinders/bark.h"
+#include "skeleton/cylinders/foot.h"
+#include "skeleton/cylinders/known_radii.h"
+#include "skeleton/cylinders/radii.h"
+#include "skeleton/cylinders/tips.h"
+#include "skeleton/flood/flood_limbs.h"
+#include "skeleton/flood/flood_paper.h"
+#include "skeleton/flood/flood_twigs.h"
+#include "skeleton/geodesics/root.h"
+#include "skeleton/simplify/assemble.h"
+#include "tree/trunk.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kBranchVoxels = 1.5;   // what reaches less far out of the bark is bark
+constexpr double kLeastEscape = 0.02;   // metres,
+constexpr double kNoiseEscape = 2.5;    // and times the scan's noise, likewise
+constexpr double kFineVoxel = 0.4;      // of the automatic size: the user is told of finer voxels
+constexpr double kResolved = 2.0;       // points in a voxel
+constexpr int kPasses = 2;              // the flood's nodes lie farther from the axis than slices do
+constexpr double kThinnest = 0.001;     // metres
+constexpr double kFewestPrinted = 8.0;  // voxels along an axis of the printed flood
+constexpr double kCoarser = 1.3;        // times fewer in the next try
+constexpr double kMostReached = 0.9;    // of the points: the user is told that the printed flood left more
+
+// The flood's own tree, before anything is smoothed or left out.
+Tree raw_tree(const std::vector<FloodNode>& nodes) {
+    std::vector<NodeId> parents;
+    std::vector<DVec3> positions;
+    std::vector<double> radii;
+    std::vector<uint8_t> flags;
+    for (const FloodNode& node : nodes) {
+        parents.push_back(node.parent);
+        positions.push_back(node.position);
+        radii.push_back(std::max(kThinnest, node.radius));
+        flags.push_back(node.bridged ? kGuessFlag : 0);
+    }
+    return Tree::from_arrays(parents, positions, radii, flags);
+}
+
+std::vector<uint32_t> vertices_of(const std::vector<PathSeed>& seeds) {
+    std::vector<uint32_t> vertices;
+    for (const PathSeed& seed : seeds)
+        vertices.push_back(seed.vertex);
+    return vertices;
+}
+
+// A solid's points tell its radius, but lie on no surface that could be fitted.
+void trust_radii(std::vector<std::vector<Station>>& axes, double voxel) {
+    for (std::vector<Station>& line : axes)
+        for (Station& station : line)
+            station.measured = station.radius > voxel;
+}
+
+// The tree that the printed flood makes of the points, which the wood found so far fills where they are its
+// skin. Nothing of it is fitted again or left out.
+Tree printed_tree(const std::vector<Vec3>& points, const DVec3& root, const SkeletonOptions& options,
+                  SkeletonResult& result, std::vector<FloodStep>& steps, Progress& progress) {
+    const std::vector<Vec3> filled =
+        result.kind == CloudKind::kSolid
+            ? points
+            : filled_solid(points, result.tree, result.spacing, result.voxel, options.seed);
+    Bounds bounds;
+    for (const Vec3& p : filled)
+        bounds.add(DVec3(p));
+    const DVec3 size = bounds.size();
+    const double extent = std::max({size.x, size.y, size.z});
+    // As small as continuity allows (5.1), where the user says nothing: a slender tree's are far narrower
+    // across.
+    PaperFlood found;
+    for (double dimension = std::ceil(extent / result.voxel); dimension >= kFewestPrinted;
+         dimension = std::floor(dimension / kCoarser)) {
+        PaperFloodOptions printed;
+        printed.dimension = static_cast<int>(dimension);
+        printed.keep_steps = options.keep_steps;
+        PaperFlood tried = flood_as_printed(filled, root, printed, progress);
+        if (found.flooded.nodes.empty() || tried.reached > found.reached) {
+            found = std::move(tried);
+            result.voxel = extent / dimension;
+        }
+        if (found.reached >= kMostReached || options.voxel > 0.0) break;
+    }
+    std::vector<FloodNode>& nodes = found.flooded.nodes;
+    if (nodes.size() < 2)
+        throw Error(
+            "The flood as printed finds no point beside the root: the voxels around it are empty. Take "
+            "larger "
+            "ones, or our own flood.");
+    nodes[0].radius = nodes[1].radius;
+    if (found.reached < kMostReached)
+        result.warnings.push_back("The flood as printed ended early: it reached " +
+                                  std::to_string(std::lround(100.0 * found.reached)) +
+                                  " % of the points. It goes over no gap, and not on where a node lies "
+                                  "beside the wood.");
+    steps = std::move(found.flooded.steps);
+    return raw_tree(nodes);
+}
+
+std::string fine_voxel_warning(double fitting) {
+    std::array<char, 200> text;
+    std::snprintf(
+        text.data(), text.size(),
+        "The voxels are finer than the scan's points are apart, so that wood falls to pieces and its "
+        "thickness cannot be told; take about %.0f mm.",
+        1e3 * fitting);
+    return text.data();
+}
+
+}  // namespace
+
+void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
+                    double factor, SkeletonResult& result, StageClock& clock, Progress* listener) {
+    SubProgress gridding(listener, 0.1, 0.4);
+    gridding.update(0.0, "Voxels");
+    const double fitting_voxel = automatic_voxel(points, result.spacing, options.one_stem, gridding);
+    result.voxel = options.voxel > 0.0 ? options.voxel : fitting_voxel;
+    if (result.voxel < kFineVoxel * fitting_voxel)
+        result.warnings.push_back(fine_voxel_warning(fitting_voxel / factor));
+    const FloodGrid grid(points, result.voxel, gridding);
+    gridding.check();
+    const LocalScale scale = local_scale(grid.graph, result.voxel);
+    const RootGuess root = find_root(grid.means, grid.graph, scale, options.foot, gridding);
+    clock.stop("Voxels", grid.size());
+
+    SubProgress flooding(listener, 0.4, 0.8);
+    flooding.update(0.0, "Flooding");
+    FloodOptions flood_options;
+    flood_options.seed = options.seed;
+    flood_options.keep_steps = options.keep_steps;
+    FloodResult flooded =
+        flood(grid, points, root.position, vertices_of(root.seeds), flood_options, flooding);
+    if (options.keep_raw) result.raw = raw_tree(flooded.nodes);
+    result.kind = flooded.kind;
+    result.kind_told = flooded.kind_told;
+    clock.stop("Flooding", flooded.nodes.size());
+
+    SubProgress fitting(listener, 0.8, 0.95);
+    fitting.update(0.0, "Refinement");
+    FloodLimbs made = limbs_of(flooded, grid, points.size());
+    if (options.one_stem) {
+        made.limbs.resize(1);
+        made.axes.resize(1);
+        for (int32_t& limb : made.places.limb)
+            if (limb > 0) limb = -1;
+    }
+    double extent = 0.0;
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root.position));
+    const double least_branch =
+        options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
+    const bool solid = flooded.kind == CloudKind::kSolid;
+    if (solid) trust_radii(made.axes, result.voxel);
+    infer_radii(made.axes, made.limbs);
+    const double noise = std::max(noise_of(made.axes), options.noise);
+    const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel, kNoiseEscape * noise});
+    double least_escape = escape;
+    // Voxels that hold several points are fine enough for the wood.
+    const bool sparse = static_cast<double>(points.size()) < kResolved * static_cast<double>(grid.size());
+    if (sparse && !options.one_stem) {
+        // Voxels are too coarse to tell a short branch from a strip of bark, but what is left over then is
+        // finer.
+        drop_flood_strips(made, escape);
+        TwigOptions twigs;
+        twigs.minimum_branch = least_branch;
+        twigs.least_escape = std::max(kLeastEscape, kNoiseEscape * noise);
+        add_flood_twigs(points, grid, scale, root, twigs, made, fitting);
+        infer_radii(made.axes, made.limbs);
+        least_escape = 0.5 * twigs.least_escape;
+    }
+    if (options.fit_radii && !solid) {
+        for (int pass = 0; pass < kPasses; pass++) {
+            refine_axes(made.axes, made.limbs, made.places, points, fitting, options.noise);
+            infer_radii(made.axes, made.limbs);
+        }
+    }
+    if (options.fit_radii && !solid) {
+        KnownRadii(cloud, result.spacing, &fitting).tell(made.axes);
+        if (!root.lying) limit_foot(made.axes.front());
+        infer_radii(made.axes, made.limbs, true);
+    }
+    drop_strips(made.limbs, made.axes, least_escape);
+    // Around wood that is thicker than a voxel, the flood's first lines lie too far from the axis for that.
+    drop_beside_stout(made, result.voxel, escape);
+    drop_short(made, least_branch);
+    draw_back_tips(made.axes, made.limbs, least_branch);
+    clock.stop("Refinement", made.limbs.size());
+
+    fitting.update(1.0, "Simplification");
+    result.tree = assemble_tree(made.axes, made.limbs, options.simplify_distance);
+    if (options.flood == FloodKind::kPaper) {
+        result.tree = printed_tree(points, root.position, options, result, flooded.steps, fitting);
+        if (options.keep_raw) result.raw = result.tree;
+    }
+    mark_trunk(result.tree);
+    result.tree.set_frame(cloud.frame);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    result.tree.rebase(base);
+    if (options.keep_raw) {
+        result.raw.set_frame(cloud.frame);
+        result.raw.rebase(base);
+    }
+    result.steps = std::move(flooded.steps);
+    for (FloodStep& step : result.steps) {
+        step.position -= base;
+        for (Vec3& voxel : step.voxels)
+            voxel = Vec3(DVec3(voxel) - base);
+    }
+    clock.stop("Simplification", result.tree.size());
+    if (listener) listener->update(1.0, "Skeleton");
+}
+
+}  // namespace treerec

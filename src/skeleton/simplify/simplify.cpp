@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "scan/stems/lone_trunk.h"
+#include "skeleton/simplify/assemble.h"
+#include "skeleton/stages.h"
+#include "tree/trunk.h"
+
+namespace treerec {
+
+namespace {
+
+constexpr double kLeastGap = 0.3;   // metres: a gap that the user is told of,
+constexpr double kGapShare = 0.04;  // and of the tree's extent
+
+// A sentence about the widest gap that was bridged, if it is a remarkable one.
+// factor: by how much the cloud was enlarged.
+std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& axes,
+                                      const std::vector<Limb>& limbs, double extent, double factor) {
+    double widest = 0.0;
+    int gaps = 0;
+    const double least = std::max(kLeastGap, kGapShare * extent);
+    for (size_t l = 0; l < axes.size(); l++)
+        for (size_t i = limbs[l].parent < 0 ? 1 : 0; i < axes[l].size(); i++) {
+            if (!axes[l][i].bridged) continue;
+            const Station& before = i > 0 ? axes[l][i - 1] : axes[limbs[l].parent][limbs[l].attach];
+            const double width = glm::distance(axes[l][i].position, before.position);
+            if (width < least) continue;
+            gaps++;
+            widest = std::max(widest, width);
+        }
+    if (gaps == 0) return {};
+    std::array<char, 200> text;
+    std::snprintf(text.data(), text.size(),
+                  "The scan has %s of up to %.1f m in the wood; what lies between is a guess.",
+                  gaps == 1 ? "a gap" : (std::to_string(gaps) + " gaps").c_str(), widest / factor);
+    return {text.data()};
+}
+
+// A stump is one piece of wood: its sections, one after another.
+Tree stump_tree(const std::vector<TrunkRing>& rings, const SkeletonOptions& options) {
+    std::vector<Station> axis;
+    for (const TrunkRing& ring : rings)
+        axis.push_back({ring.centre, ring.radius, ring.scatter, options.fit_radii});
+    Limb limb;
+    limb.slices.resize(axis.size());
+    return assemble_tree({axis}, {limb}, options.simplify_distance);
+}
+
+// The trunk, the cloud's frame, and the root at the origin.
+void finish(SkeletonWork& work) {
+    SkeletonResult& result = work.result;
+    mark_trunk(result.tree);
+    result.tree.set_frame(work.cloud.frame);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    result.tree.rebase(base);
+    if (result.raw.size() > 0) {
+        result.raw.set_frame(work.cloud.frame);
+        result.raw.rebase(base);
+    }
+    work.clock.stop("Simplification", result.tree.size());
+    work.progress.update(1.0, "Skeleton");
+}
+
+}  // namespace
+
+bool take_stump(SkeletonWork& work) {
+    const std::vector<Vec3>& all = work.cloud.positions;
+    const std::vector<TrunkRing> rings =
+        work.options.trunk_alone ? trunk_rings(all, &work.progress) : stump_rings(all, &work.progress);
+    if (rings.empty()) return false;
+    work.result.tree = stump_tree(rings, work.options);
+    finish(work);
+    if (work.options.keep_raw) work.result.raw = work.result.tree;
+    return true;
+}
+
+void simplify(SkeletonWork& work) {
+    work.result.warnings = gap_warnings(work.axes, work.limbs, work.extent, work.factor);
+    work.progress.update(0.95, "Simplification");
+    work.result.tree = assemble_tree(work.axes, work.limbs, work.options.simplify_distance);
+    finish(work);
+}
+
+}  // namespace treerec
