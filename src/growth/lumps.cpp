@@ -11,6 +11,7 @@
 #include "growth/lump_fit.h"
 #include "growth/section.h"
 #include "growth/section_fit.h"
+#include "growth/twist_fit.h"
 #include "tree/wood_segments.h"
 
 namespace treerec {
@@ -136,6 +137,9 @@ class Proposer {
             rest.height[cell] -= fluted[cell];
         const Lumps found = fit_lumps(rest, recipe_.longest, progress_);
         take_off(found, map);
+        // The grain winds about all wood alike; the trunk tells how.
+        if (branch == 0)
+            if (const std::optional<double> twist = fit_twist(map)) add_grain(*twist);
         const SectionFit outline = fit_sections(map, recipe_.longest, Along::kShort, progress_);
         BranchSections shape;
         for (const FittedSection& section : thinned(outline.sections, kTolerance))
@@ -165,6 +169,16 @@ class Proposer {
         append_word(line_, key, number_text(std::round(value * steps) / steps));
     }
     void end_line() { proposal_.recipe += line_ + "\n"; }
+
+    void add_grain(double twist) {
+        proposal_.twist = std::round(100.0 * twist) / 100.0;
+        line_ = "grain";
+        put("twist", proposal_.twist, 100.0);
+        end_line();
+        proposal_.remarks.push_back("The scan's bark winds about the trunk by " +
+                                    number_text(proposal_.twist) +
+                                    " radians a metre, and so does the grain.");
+    }
 
     void add_section(int32_t branch, const FittedSection& section, BranchSections& shape) {
         begin_line("section", branch, section.along, 0.0);

@@ -1,5 +1,5 @@
 // What a scan shows beside the round wood of its tree, as lines of a recipe: lumps become burls, deep dents
-// hollows.
+// hollows, and what winds about the trunk the grain's twist.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +16,7 @@ namespace treerec {
 struct GrowthProposal {
     std::string recipe;  // a line each, thickest branch first, to be added to the recipe
     size_t burls = 0, hollows = 0, sections = 0;
+    double twist = 0.0;                // radians a metre, of the grain; 0: none was seen
     std::vector<std::string> remarks;  // sentences for the user
 };
 

@@ -302,6 +302,46 @@ TEST(GrowthLumps, DeepDentsBecomeHollows) {
     EXPECT_EQ(fit.worse, 0U);
 }
 
+namespace {
+
+// Uneven flutes that wind about a trunk.
+PointCloud fluted_scan(double wood, double height, double twist, double depth, double seen, uint64_t seed) {
+    PointCloud cloud = cylinder_scan(wood, height, 0.004, seen, 60000, seed);
+    for (Vec3& p : cloud.positions) {
+        const double angle = std::atan2(-p.z, p.x) - twist * p.y;
+        const double r = 1.0 + depth * (std::cos(5.0 * angle) + 0.6 * std::cos(3.0 * angle + 1.0));
+        p.x *= static_cast<float>(r);
+        p.z *= static_cast<float>(r);
+    }
+    return cloud;
+}
+
+}  // namespace
+
+TEST(GrowthLumps, WhatWindsAboutTheTrunkIsTheGrain) {
+    const Tree tree = test::cylinder(0.2, 4.0);
+    const GrowthRecipe recipe = read_growth_recipe(tree, kEdges);
+    for (const double twist : {-2.5, -0.8, 0.5, 1.5, 3.0})
+        for (const double seen : {1.0, 0.75}) {
+            const GrowthProposal proposal =
+                propose_growth(tree, fluted_scan(0.2, 4.0, twist, 0.06, seen, 7), recipe);
+            EXPECT_NEAR(proposal.twist, twist, 0.05 + 0.03 * std::abs(twist)) << "seen " << seen;
+            EXPECT_NEAR(read_growth_recipe(tree, kEdges + ("\n" + proposal.recipe)).twist, proposal.twist,
+                        1e-9);
+            EXPECT_EQ(proposal.remarks.size(), 1U);
+        }
+    // Straight flutes, lumps and plain bark have none.
+    EXPECT_EQ(propose_growth(tree, fluted_scan(0.2, 4.0, 0.0, 0.06, 1.0, 7), recipe).twist, 0.0);
+    for (uint64_t seed = 1; seed <= 4; seed++) {
+        PointCloud cloud = cylinder_scan(0.2, 4.0, 0.006, seed % 2 == 0 ? 0.7 : 1.0, 40000, seed);
+        EXPECT_EQ(propose_growth(tree, cloud, recipe).twist, 0.0) << "seed " << seed;
+        Random random(seed);
+        std::vector<Bump> bumps = bumps_at_random(random, 6, 0.4, 3.6, 0.2);
+        push(cloud, all_of(cloud), TrunkAxis(tree), bumps);
+        EXPECT_EQ(propose_growth(tree, cloud, recipe).twist, 0.0) << "seed " << seed;
+    }
+}
+
 TEST(GrowthLumps, AreTheSameEachTimeWhateverTheOrder) {
     const Tree tree = test::cylinder(0.15, 2.0);
     PointCloud cloud = cylinder_scan(0.15, 2.0, 0.003, 1.0, 20000, 5);

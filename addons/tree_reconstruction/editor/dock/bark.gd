@@ -417,11 +417,12 @@ func _on_remove_pressed() -> void:
 func _on_proposed(lines: String) -> void:
 	_recipe = _work.get_recipe()
 	var found: Recipe = Recipe.new(lines)
-	# Outlines of an earlier time would count beside the new ones.
-	if found.find("section") != null:
-		_recipe.lines = _recipe.lines.filter(
-			func(line: Recipe.Line) -> bool: return line.command != "section"
-		)
+	# Outlines and a twist of an earlier time would count beside the new ones.
+	for command: String in ["section", "grain"]:
+		if found.find(command) != null:
+			_recipe.lines = _recipe.lines.filter(
+				func(line: Recipe.Line) -> bool: return line.command != command
+			)
 	_recipe.lines.append_array(found.lines)
 	_note_draft(tr("From the Scan"))
 	_show_recipe()

@@ -54,6 +54,7 @@ const PATTERNS: PackedStringArray = [
 		"The scan has too few points on the bark to tell lumps: nothing is proposed. Is it the scan that"
 		+ " this tree was made of?"
 	),
+	"The scan's bark winds about the trunk by %s radians a metre, and so does the grain.",
 	"The saved bark is damaged. Grow it again.",
 	"The seed has corners that are no numbers: give a mesh that has its place.",
 	"The seed has %s triangles, and can have %s: simplify it.",
