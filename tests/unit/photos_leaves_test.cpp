@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "exchange/material_textures.h"
+#include "exchange/quiet_tiny_gltf.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "mesh/linear_light.h"
@@ -17,7 +18,6 @@
 #include "photos/leaf_look.h"
 #include "photos/photo_picture.h"
 #include "pipeline/export.h"
-#include "exchange/quiet_tiny_gltf.h"
 #include "synth/grow.h"
 #include "with_photos.h"
 
