@@ -20,6 +20,7 @@ constexpr size_t kFewest = 6;           // points
 constexpr double kWidest = 0.25;        // radius, of the tree's longest way
 constexpr double kLeastCoverage = 0.3;  // of the circle
 constexpr double kRoughest = 0.25;      // median distance from the surface, of the radius
+constexpr int kSlabs = 3;               // looked at, each square to the axis that the one before told
 constexpr int kSteps = 30;
 constexpr double kTukey = 4.685;
 constexpr double kToDeviation = 1.4826;
@@ -154,7 +155,8 @@ std::optional<TrunkCylinder> fit_trunk_cylinder(const std::vector<Vec3>& points,
     const double longest = skeleton.reach[skeleton.tree.order.front()];
     const double at = std::min(kBreastHeight, kShare * longest);
     std::vector<uint32_t> ring;
-    for (double half = kHalfWindow * at; ring.size() < kFewest && half < at; half *= 1.5)
+    double half = kHalfWindow * at;
+    for (; ring.size() < kFewest && half < at; half *= 1.5)
         ring = ring_of(skeleton, at - half, at + half);
     if (ring.size() < kFewest) return std::nullopt;
     TrunkCylinder trunk;
@@ -172,7 +174,26 @@ std::optional<TrunkCylinder> fit_trunk_cylinder(const std::vector<Vec3>& points,
     };
     Cylinder c{mean(own), DVec3(0, 1, 0), 0.0};
     if (!low.empty() && !high.empty()) c.axis = normalized_or(mean(high) - mean(low), c.axis);
-    // The paths lead up the bark, whose ring is not square to the axis: a first circle tells where that is.
+    // The paths lead up one side of stout bark and around it, and rings of them are aslant. Of a slab across,
+    // the halves' middles lie on the axis however slanting its faces are.
+    const std::vector<uint32_t> near_foot = ring_of(skeleton, 0.0, 2.0 * at);  // no boughs that hang down
+    for (int i = 0; i < kSlabs; i++) {
+        low.clear();
+        high.clear();
+        std::vector<DVec3> slab;
+        for (const uint32_t v : near_foot) {
+            const DVec3 off = DVec3(points[v]) - c.middle;
+            const double up = glm::dot(off, c.axis);
+            if (std::abs(up) > half || glm::length(off - up * c.axis) > kWidest * longest) continue;
+            slab.emplace_back(points[v]);
+            (up < 0.0 ? low : high).emplace_back(points[v]);
+        }
+        if (low.empty() || high.empty() || slab.size() < kFewest) break;
+        own = std::move(slab);
+        c.axis = normalized_or(mean(high) - mean(low), c.axis);
+        c.middle = mean(own);
+    }
+    // A first circle tells where in the slab the axis is.
     const DVec3 u = any_perpendicular(c.axis), v = glm::cross(c.axis, u);
     std::vector<DVec2> flat;
     for (const DVec3& p : own)
