@@ -250,10 +250,10 @@ func test_fusing_and_healing_are_switches_of_the_recipe() -> void:
 	await _grow()
 	check("fuse\n" in of.growth_recipe and "cuts" in of.growth_recipe, of.growth_recipe)
 	_undo.undo()
-	shown.update()
+	_frame()
 	check(not shown.surface.fuse.button_pressed, "after undo")
 	_undo.redo()
-	shown.update()
+	_frame()
 	check(shown.surface.fuse.button_pressed and shown.surface.cuts.button_pressed, "after redo")
 	shown.surface.cuts.button_pressed = false
 	await _grow()
@@ -287,7 +287,7 @@ func test_a_preset_brings_edges_where_there_are_none() -> void:
 		"edges"
 	)
 	shown.take_preset("old_oak")
-	check_near(shown.edge.value, own.values["longest"].to_float(), 1e-6, "the edges")
+	check_near(shown.surface.edge.value, own.values["longest"].to_float(), 1e-6, "the edges")
 	shown.take_preset("spiral_grain")
 	var lines: Array[Recipe.Line] = shown._recipe.lines
 	check_equal(
