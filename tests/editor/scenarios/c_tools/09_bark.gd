@@ -23,7 +23,7 @@ func run() -> void:
 		return
 	await _type("radius", "0.4")
 	await _type("growth", "1")
-	await _type_into(_section().get(&"edge") as SpinBox, "0.09")
+	await _type_into(_surface().get(&"edge") as SpinBox, "0.09")
 	await picture("bark-a-burl-to-grow")
 
 	await step("Grow makes a surface of it, as one step")
@@ -65,7 +65,7 @@ func run() -> void:
 	check(not _of.is_bark_stale(), "It is stale after undo of both.")
 
 	await step("it is cancelled by the button beside its progress")
-	await _type_into(_section().get(&"edge") as SpinBox, "0.01")
+	await _type_into(_surface().get(&"edge") as SpinBox, "0.01")
 	var recipe: String = _of.growth_recipe
 	await press(_section().get(&"grow") as Control)
 	if not await until(
@@ -87,6 +87,11 @@ func run() -> void:
 	)
 	check(saved.has_grown_bark() and not saved.is_bark_stale(), "The file has no bark.")
 	check_equal(saved.growth_recipe, _of.growth_recipe, "the recipe in the file")
+
+
+# The fields of the whole surface.
+func _surface() -> Control:
+	return _section().get(&"surface") as Control
 
 
 func _section() -> Control:
