@@ -132,6 +132,7 @@ func _build_list() -> void:
 	obstacles = Obstacles.new(session, list)
 	body.add_child(buttons([from_scan.button, obstacles.button]))
 	body.add_child(_form)
+	body.add_child(surface.switches)
 
 
 ## Adds a burl to the recipe: on the branch of the selected node, or else on the trunk.

@@ -14,6 +14,8 @@ var twist: SpinBox
 ## Whether surfaces that meet become one, and whether callus grows over cuts.
 var fuse: CheckBox = CheckBox.new()
 var cuts: CheckBox = CheckBox.new()
+## Both, to be put where there is room.
+var switches: HFlowContainer = HFlowContainer.new()
 
 var _recipe: Recipe
 var _default_of: Callable
@@ -50,22 +52,14 @@ func _init(make_number: Callable, default_of: Callable) -> void:
 			twist
 		)
 	)
+	fuse.text = "Fuse"
+	fuse.tooltip_text = "Bark that meets other bark becomes one with it, instead of only looking as one."
 	fuse.toggled.connect(_on_toggled.bind("fuse"))
-	add_child(
-		Widgets.line(
-			"Fuse",
-			"Bark that meets other bark becomes one with it, instead of only looking as one.",
-			fuse
-		)
-	)
+	cuts.text = "Heal Cuts"
+	cuts.tooltip_text = ("Callus grows over stubs and other ends of branches that are as thick as cut ones.")
 	cuts.toggled.connect(_on_toggled.bind("cuts"))
-	add_child(
-		Widgets.line(
-			"Heal Cuts",
-			"Callus grows over stubs and other ends of branches that are as thick as cut ones.",
-			cuts
-		)
-	)
+	switches.add_child(fuse)
+	switches.add_child(cuts)
 
 
 ## Shows what the recipe has.
