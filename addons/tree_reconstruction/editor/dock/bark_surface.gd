@@ -53,10 +53,14 @@ func _init(make_number: Callable, default_of: Callable) -> void:
 		)
 	)
 	fuse.text = "Fuse"
-	fuse.tooltip_text = "Bark that meets other bark becomes one with it, instead of only looking as one."
+	fuse.tooltip_text = (
+		"Bark that meets other bark becomes one with it, instead of only looking" + " as one."
+	)
 	fuse.toggled.connect(_on_toggled.bind("fuse"))
 	cuts.text = "Heal Cuts"
-	cuts.tooltip_text = ("Callus grows over stubs and other ends of branches that are as thick as cut ones.")
+	cuts.tooltip_text = (
+		"Callus grows over stubs and other ends of branches that are as thick" + " as cut ones."
+	)
 	cuts.toggled.connect(_on_toggled.bind("cuts"))
 	switches.add_child(fuse)
 	switches.add_child(cuts)
