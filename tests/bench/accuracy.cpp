@@ -101,7 +101,7 @@ size_t points_for(Habit habit, double leaves, size_t bare_points) {
     return static_cast<size_t>(std::lround((1.0 + 3.0 * foliage) * static_cast<double>(bare_points)));
 }
 
-AccuracyRow measure_accuracy(const AccuracyCase& setting) {
+AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled) {
     AccuracyRow row;
     row.setting = setting;
     const Tree truth = grow_tree({setting.habit, 0.0, setting.seed});
@@ -119,6 +119,11 @@ AccuracyRow measure_accuracy(const AccuracyCase& setting) {
     row.seen = seen_share(truth, scan);
     // Most real scans have none, and grown leaves are greener than real ones.
     scan.cloud.colors.clear();
+    if (labelled && leaf_points > 0) {
+        scan.cloud.labels.leaf_is_one = true;
+        for (uint8_t origin : scan.origin)
+            scan.cloud.labels.values.push_back(origin == kFromLeaf ? 1 : 0);
+    }
 
     const ScratchFolder folder;
     const std::string file = folder.file("scan.ply");

@@ -39,8 +39,9 @@ struct AccuracyRow {
     std::string failure;  // why there is no tree; everything else is then the worst
 };
 
-// Grows, scans (without colours), writes a file, and runs the whole reconstruction from it.
-AccuracyRow measure_accuracy(const AccuracyCase& setting);
+// Grows, scans (without colours), writes a file, and runs the whole reconstruction from it. labelled: the
+// file says which points are leaves, so that the row is the most that telling them can reach.
+AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled = false);
 
 // Every habit: clean, noisy, hidden in part, and leafy.
 std::vector<AccuracyCase> guard_cases();

@@ -12,10 +12,12 @@ struct Settings {
     std::string record;               // the recorded accuracy table (tests/bench/accuracy.tsv)
     std::string beside;               // another program to run beside ours
     std::vector<std::string> args;    // handed to it after scan and folder
+    std::string out, weights;         // folders of bench_leaf_inputs()
     std::string truth;                // the folder of corrected skeletons
     std::string models;               // the folder of another program's tree files
     int repetitions = 0;              // 0: the benchmark's own
     int seeds = 2;                    // of the synthetic table
+    bool labelled = false;            // its scans say which points are leaves
     size_t most_points = 10'000'000;  // of the scaling table
 };
 
@@ -51,6 +53,10 @@ void bench_methods(const std::vector<std::string>& scans, const Settings& settin
 void bench_clicks(const std::vector<std::string>& scans, const Settings& settings);
 // Precision, recall, radius and DBH errors on grown trees.
 void bench_synth(const Settings& settings);
+// Writes to the folder settings.out what the classifier of leaves knows of points of grown trees, and of
+// these scans: labelled ones, or such as have no leaves. With settings.weights what its second network knows,
+// by the first one's weights in even.txt (fitted to scans of odd numbers) and odd.txt of that folder.
+void bench_leaf_inputs(const std::vector<std::string>& scans, const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.
 bool guard_accuracy(const Settings& settings);
 void record_accuracy(const Settings& settings);

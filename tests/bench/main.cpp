@@ -42,8 +42,11 @@ const char* const kUsage =
     "       bench --tracks [FOLDER MODEL]      corners tracked plainly and better: on drawn warps, or "
     "between\n"
     "                                          photos, judged by their COLMAP model\n"
+    "       bench --leaf-inputs FOLDER [--weights FOLDER] [SCAN…]  what fit_leaves.py fits to\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth and --limbs), --most-points N (of --scaling),\n"
+    "options: --repetitions N, --seeds N (of --synth and --limbs), --labelled (of --synth: with the truth "
+    "about\n"
+    "         leaves in the scans), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
     "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
@@ -79,10 +82,11 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
             word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
-            word == "--help") {
+            word == "--help" || word == "--leaf-inputs") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
+            if (word == "--leaf-inputs") line.settings.out = value();
             if (word == "--resize") {
                 line.settings.most_points = whole(value());
                 line.out = value();
@@ -91,6 +95,10 @@ CommandLine parse(const std::vector<std::string>& words) {
             line.settings.repetitions = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
         } else if (word == "--seeds") {
             line.settings.seeds = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
+        } else if (word == "--weights") {
+            line.settings.weights = value();
+        } else if (word == "--labelled") {
+            line.settings.labelled = true;
         } else if (word == "--most-points") {
             line.settings.most_points = whole(value());
         } else if (word == "--program") {
@@ -132,6 +140,10 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
 int run(CommandLine line) {
     if (line.mode == "--help") {
         std::fputs(kUsage, stdout);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--leaf-inputs") {
+        bench_leaf_inputs(line.scans, line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--synth") {
