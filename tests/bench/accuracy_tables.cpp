@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 
 #include "accuracy.h"
@@ -118,9 +117,6 @@ void bench_synth(const Settings& settings) {
         for (double noise : kNoises)
             for (double occlusion : kOcclusions)
                 for (double leaves : kLeaves) {
-                    if (std::getenv("LAB") && !((noise == 0.01 && occlusion == 0.3 && leaves == 0.4) ||
-                                                (noise == 0.0 && occlusion == 0.0 && leaves == 0.8)))
-                        continue;
                     std::vector<AccuracyRow> same;
                     for (int seed = 1; seed <= settings.seeds; seed++)
                         same.push_back(measure_accuracy({habit, static_cast<uint64_t>(seed), noise, occlusion,
@@ -132,10 +128,6 @@ void bench_synth(const Settings& settings) {
                     std::fflush(stdout);
                     rows.insert(rows.end(), same.begin(), same.end());
                 }
-    if (std::getenv("LAB")) {
-        print_row("mean", nullptr, mean_of(rows));
-        return;
-    }
     print_summaries(rows);
 }
 

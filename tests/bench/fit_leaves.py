@@ -20,7 +20,7 @@ import numpy as np
 
 FIRST, SECOND = 32, 16  # units, as in leaf_network.h
 REACH = 3.0  # standard deviations, likewise
-EPOCHS, BATCH, RATE, DECAY = 40, 2048, 3e-3, 1e-5
+EPOCHS, BATCH, RATE, DECAY = 25, 2048, 2e-3, 1e-3
 
 
 class Scan:
@@ -172,7 +172,7 @@ def main():
         write(options.out + "/leaf_context_weights.inc", fit(contexts))
 
 
-POINT_INPUTS, CONTEXT_INPUTS = 77, 23  # as in leaf_classifier.h
+POINT_INPUTS, CONTEXT_INPUTS = 82, 21  # as in leaf_classifier.h
 
 if __name__ == "__main__":
     main()

@@ -100,7 +100,6 @@ void bench_leaf_inputs(const std::vector<std::string>& scans, const Settings& se
     };
     for (int round = 0; round < settings.seeds; round++)
         for (const Habit habit : all_habits()) {
-            if (habit == Habit::kPalm) continue;  // fronds are another matter
             for (const GrownSetting& one : kSettings) {
                 const uint64_t seed = kFirstSeed + number;
                 VirtualScanOptions options = scan_options_for(habit);

@@ -17,7 +17,8 @@ constexpr size_t kMost = 64;
 constexpr std::array<size_t, kNearScales> kNearest{8, 16, 32, kMost};
 // Of how far the nearest reach: so near to a line a point is on it. Few points reach less far, and their
 // noise counts more.
-constexpr std::array<float, kNearScales> kOnLine{0.15F, 0.15F, 0.1F, 0.1F};
+constexpr std::array<float, kNearScales> kOnLine{0.15F, 0.12F, 0.06F, 0.04F};
+constexpr float kNearLine = 0.1F;  // of the widest once more: thin branches are not that straight
 constexpr float kOnContextLine = 0.12F;
 constexpr float kFarEnough = 0.35F;  // of that reach: points that may tell a line's direction
 constexpr int kWayBack = 4;          // steps to the ground that give a cell's direction
@@ -35,38 +36,50 @@ struct Line {
     float score = -1.0F;
     float span = 0.0F;    // of twice the reach
     float weight = 0.0F;  // of the points on it
+    float mean = 0.0F;
     Vec3 along{0.0F, 1.0F, 0.0F};
 };
 
-// The line through the point and one of `count` others with most of them on it, better where they lie to both
-// sides. mean: of that weight, over all lines.
-Line straightest(const Around& around, size_t count, float reach, float on_line, float& mean) {
-    const float widest = (on_line * reach) * (on_line * reach);
-    const float all = static_cast<float>(count);
-    Line best;
-    float sum = 0.0F, lines = 0.0F;
-    std::array<float, kMost> t{};
-    for (size_t j = 0; j < count; j++) {
+// The lines through the point and one of `count` others with most of them on it, better where they lie to
+// both sides; one for each of `widths` (of the reach). mean: of that weight, over all lines looked at. Of
+// many points every second one is a direction enough.
+template <size_t N>
+std::array<Line, N> straightest(const Around& around, size_t count, float reach,
+                                const std::array<float, N>& widths) {
+    std::array<float, N> widest{}, sums{};
+    for (size_t n = 0; n < N; n++)
+        widest[n] = (widths[n] * reach) * (widths[n] * reach);
+    const auto all = static_cast<float>(count);
+    std::array<Line, N> best;
+    float lines = 0.0F;
+    const size_t step = count > 16 ? 2 : 1;
+    std::array<float, kMost> t{}, off{};
+    for (size_t j = count; j-- > 0;) {
+        if (j % step != 0) continue;
         const float length = std::sqrt(around.square[j]);
-        if (length < kFarEnough * reach || !(length > 0.0F)) continue;
+        // The others are nearer still.
+        if (length < kFarEnough * reach || !(length > 0.0F)) break;
         const Vec3 u = around.at(j) / length;
-        float weight = 0.0F, low = 0.0F, high = 0.0F;
         for (size_t i = 0; i < count; i++) {
             t[i] = around.x[i] * u.x + around.y[i] * u.y + around.z[i] * u.z;
-            const bool on = around.square[i] - t[i] * t[i] <= widest;
-            weight += on ? around.weight[i] : 0.0F;
-            t[i] = on ? t[i] : 0.0F;
-        }
-        for (size_t i = 0; i < count; i++) {
-            low = std::min(low, t[i]);
-            high = std::max(high, t[i]);
+            off[i] = around.square[i] - t[i] * t[i];
         }
         lines += 1.0F;
-        sum += weight;
-        const float score = weight / all * (0.5F + std::min(high, -low) / reach);
-        if (score > best.score) best = {score, (high - low) / (2.0F * reach), weight, u};
+        for (size_t n = 0; n < N; n++) {
+            float weight = 0.0F, low = 0.0F, high = 0.0F;
+            for (size_t i = 0; i < count; i++) {
+                const float on = off[i] <= widest[n] ? 1.0F : 0.0F;
+                weight += on * around.weight[i];
+                low = std::min(low, on * t[i]);
+                high = std::max(high, on * t[i]);
+            }
+            sums[n] += weight;
+            const float score = weight / all * (0.5F + std::min(high, -low) / reach);
+            if (score > best[n].score) best[n] = {score, (high - low) / (2.0F * reach), weight, 0.0F, u};
+        }
     }
-    mean = lines > 0.0F ? sum / lines : 0.0F;
+    for (size_t n = 0; n < N; n++)
+        best[n].mean = lines > 0.0F ? sums[n] / lines : 0.0F;
     return best;
 }
 
@@ -80,28 +93,22 @@ Vec3 heading_of(uint32_t cell, const Cells& cells, const CellPaths& paths) {
     return length > 0.0F ? way / length : Vec3(0.0F, 1.0F, 0.0F);
 }
 
-void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs) {
-    size_t at = 0;
-    for (int s = 0; s < kShapeScales; s++) {
-        if (s + 1 < kShapeScales) {
-            inputs[at++] = shapes[s].linearity;
-            inputs[at++] = shapes[s].planarity;
-        }
-        inputs[at++] = shapes[s].scatter;
-        inputs[at++] = shapes[s].occupied / 26.0F;
-        inputs[at++] = shapes[s].crowd;
-    }
-    for (const float value : {path.height, path.mass, path.chain, path.chain_mass, path.straight_short,
-                              path.straight_long, path.gap, path.bush_8, path.bush_16, path.bush_32})
-        inputs[at++] = value;
+// The straightest line's score, span, the mean over all lines and its points as shares of all, how it lies to
+// the path to the ground and to what is upright.
+void line_inputs(const Line& line, size_t count, const Vec3& heading, float* inputs) {
+    const float number = std::max(static_cast<float>(count), 1.0F);
+    inputs[0] = line.score;
+    inputs[1] = line.span;
+    inputs[2] = line.mean / number;
+    inputs[3] = line.weight / number;
+    inputs[4] = std::abs(glm::dot(line.along, heading));
+    inputs[5] = std::abs(line.along.y);
 }
 
 // Linearity, planarity and scatter of the nearest points and the point itself; the share of their variance
 // along the path to the ground; ln of how far they reach, in cells; how far their mean lies from the point,
-// of their reach. Then of the straightest line: its score, span, the mean over all lines and its points as
-// shares of all, how it lies to the path and to what is upright.
-void near_inputs(const Around& around, size_t count, float on_line, float cell, const Vec3& heading,
-                 float* inputs) {
+// of their reach.
+void near_inputs(const Around& around, size_t count, float cell, const Vec3& heading, float* inputs) {
     const float reach = count > 0 ? std::sqrt(around.square[count - 1]) : 0.0F;
     const float share = 1.0F / static_cast<float>(count + 1);
     Vec3 mean(0.0F);
@@ -122,15 +129,6 @@ void near_inputs(const Around& around, size_t count, float on_line, float cell, 
     inputs[3] = along / (c[0] + c[3] + c[5] + 1e-12F);
     inputs[4] = portable::log(reach / cell + 1e-3F);
     inputs[5] = glm::length(mean) / (reach + 1e-9F);
-    float all_lines = 0.0F;
-    const Line line = straightest(around, count, reach, on_line, all_lines);
-    const float number = std::max(static_cast<float>(count), 1.0F);
-    inputs[6] = line.score;
-    inputs[7] = line.span;
-    inputs[8] = all_lines / number;
-    inputs[9] = line.weight / number;
-    inputs[10] = std::abs(glm::dot(line.along, heading));
-    inputs[11] = std::abs(line.along.y);
 }
 
 float chance(float logit) {
@@ -138,6 +136,22 @@ float chance(float logit) {
 }
 
 }  // namespace
+
+void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs) {
+    size_t at = 0;
+    for (int s = 0; s < kShapeScales; s++) {
+        if (s + 1 < kShapeScales) {
+            inputs[at++] = shapes[s].linearity;
+            inputs[at++] = shapes[s].planarity;
+        }
+        inputs[at++] = shapes[s].scatter;
+        inputs[at++] = shapes[s].occupied / 26.0F;
+        inputs[at++] = shapes[s].crowd;
+    }
+    for (const float value : {path.height, path.mass, path.chain, path.chain_mass, path.straight_short,
+                              path.straight_long, path.gap, path.bush_8, path.bush_16, path.bush_32})
+        inputs[at++] = value;
+}
 
 LeafClassifier::LeafClassifier(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
                                const CellPaths& paths, const Progress& progress)
@@ -177,9 +191,17 @@ std::vector<float> LeafClassifier::point_inputs() const {
                 around.z[k] = d.z;
                 around.square[k] = glm::dot(d, d);
             }
-            for (size_t s = 0; s < kNearScales; s++, at += kNearInputs)
-                near_inputs(around, std::min(kNearest[s], others), kOnLine[s], cell, heading, at);
-            *at = portable::log(cell);
+            for (size_t s = 0; s < kNearScales; s++, at += kShapeInputs)
+                near_inputs(around, std::min(kNearest[s], others), cell, heading, at);
+            for (size_t s = 0; s < kNearScales; s++) {
+                const size_t count = std::min(kNearest[s], others);
+                const float reach = count > 0 ? std::sqrt(around.square[count - 1]) : 0.0F;
+                const auto lines = straightest<2>(around, count, reach, {kOnLine[s], kNearLine});
+                line_inputs(lines[0], count, heading, at);
+                at += kLineInputs;
+                if (s + 1 < kNearScales) continue;
+                line_inputs(lines[1], count, heading, at);
+            }
         }
     });
     return inputs;
@@ -188,18 +210,14 @@ std::vector<float> LeafClassifier::point_inputs() const {
 std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logits) const {
     const size_t cells = cells_.count();
     std::vector<float> mean(cells, 0.0F), number(cells, 0.0F);
-    double sum = 0.0, leaves = 0.0;
     std::vector<float> wood(points_.size());
     for (size_t i = 0; i < points_.size(); i++) {
         mean[cells_.of_point[i]] += logits[i];
         number[cells_.of_point[i]] += 1.0F;
         wood[i] = chance(-logits[i]);
-        sum += static_cast<double>(logits[i]);
-        leaves += 1.0 - static_cast<double>(wood[i]);
     }
     for (size_t v = 0; v < cells; v++)
         mean[v] /= std::max(number[v], 1.0F);
-    const auto all = static_cast<double>(points_.size());
 
     // Of what hangs on a cell: the mean, and along the most woody of its paths, what is near counting more.
     constexpr float kFade = 0.8F;
@@ -245,8 +263,7 @@ std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logi
             *at++ = least;
             *at++ = std::sqrt(std::max(0.0F, square / count - near * near / (count * count)));
             const float reach = others > 0 ? std::sqrt(around.square[others - 1]) : 0.0F;
-            float lines = 0.0F;
-            const Line line = straightest(around, others, reach, kOnContextLine, lines);
+            const Line line = straightest<1>(around, others, reach, {kOnContextLine})[0];
             float on = 0.0F, on_logit = 0.0F;
             for (size_t k = 0; k < others; k++) {
                 const float t = glm::dot(around.at(k), line.along);
@@ -258,7 +275,7 @@ std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logi
             *at++ = on_logit / std::max(on, 1.0F);
             *at++ = line.weight / count;
             *at++ = on / count;
-            *at++ = lines / count;
+            *at++ = line.mean / count;
             *at++ = mean[v];
             float path = 0.0F;
             uint32_t u = v;
@@ -269,8 +286,6 @@ std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logi
             }
             *at++ = beyond[v] / mass[v];
             *at++ = woody[v] < kMostLogit ? woody[v] : mean[v];
-            *at++ = static_cast<float>(sum / all);
-            *at++ = static_cast<float>(leaves / all);
         }
     });
     return inputs;

@@ -16,11 +16,14 @@ namespace treerec {
 // first two), then the members of CellPath.
 inline constexpr size_t kCellInputs = 28;
 // And of a point: its cell's; how its 8, 16, 32 and 64 nearest lie, and the straightest line through it among
-// them; ln of the cells' size.
-inline constexpr size_t kNearScales = 4, kNearInputs = 12;
-inline constexpr size_t kPointInputs = kCellInputs + kNearScales * kNearInputs + 1;
-// Of the logits that come of these: its own, its neighbours', those along its line and its path, all's.
-inline constexpr size_t kContextInputs = 23;
+// them. Nothing here is the same for a whole scan: there are too few scans to fit anything to that.
+inline constexpr size_t kNearScales = 4, kShapeInputs = 6, kLineInputs = 6;
+inline constexpr size_t kPointInputs = kCellInputs + kNearScales * (kShapeInputs + kLineInputs) + kLineInputs;
+// Of the logits that come of these: its own, its neighbours', those along its line and its path.
+inline constexpr size_t kContextInputs = 21;
+
+// Fills in kCellInputs. shapes: kShapeScales of them.
+void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs);
 
 // Twigs and leaves differ less in how a point's neighbours lie than in what those are themselves: one network
 // looks at each point, another at what the first said of all around it (auto-context, Tu 2008).
