@@ -11,7 +11,6 @@
 #include "skeleton/cylinders/bark.h"
 #include "skeleton/cylinders/radii.h"
 #include "skeleton/flood/flood_limbs.h"
-#include "skeleton/flood/flood_skeleton.h"
 #include "skeleton/sampling/thin.h"
 #include "skeleton/simplify/assemble.h"
 #include "tree/wood_segments.h"

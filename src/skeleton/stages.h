@@ -1,5 +1,5 @@
-// The geodesic skeleton's stages, in the order that skeletonize() calls them, and what they hand on. Each
-// lies in the folder of its concept. Internal to skeleton/.
+// What all methods work on, how all begin and end, and the stages of the geodesic one, in the order that
+// skeletonize() calls them. Each lies in the folder of its concept. Internal to skeleton/.
 #pragma once
 
 #include <optional>
@@ -57,6 +57,10 @@ struct SkeletonWork {
     PointPlaces places;  // of the thinned points
 
     const std::vector<Vec3>& points() const { return thinned.points; }
+    // Shorter ones are noise, metres; once the extent is known.
+    double least_branch() const {
+        return options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
+    }
     bool floods() const { return options.method == SkeletonMethod::kFlood; }
 };
 
@@ -77,7 +81,10 @@ void fit_cylinders(SkeletonWork& work);
 void find_twigs(SkeletonWork& work);
 // cylinders/: all points of all wood once more, each where it belongs.
 void refine_cylinders(SkeletonWork& work);
-// simplify/: axes become a Tree, in the cloud's frame.
+// simplify/: axes become a Tree.
 void simplify(SkeletonWork& work);
+// simplify/: the trunk is marked, the frame is the cloud's, and the root is at the origin, of the raw tree,
+// too. Where the root lay, metres of the cloud's frame.
+DVec3 finish(SkeletonWork& work);
 
 }  // namespace treerec

@@ -1,5 +1,4 @@
 #include "skeleton/branches/thickness.h"
-#include "skeleton/flood/flood_skeleton.h"
 #include "skeleton/stages.h"
 
 namespace treerec {
@@ -15,8 +14,7 @@ void find_branches(SkeletonWork& work) {
     const std::vector<Vec3>& points = work.points();
     work.progress.update(0.6, "Thickness");
     work.progress.check();
-    work.limb_options.minimum_branch =
-        options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(work.extent);
+    work.limb_options.minimum_branch = work.least_branch();
     work.limb_options.widest_loop = kWidestRing * work.extent;
     work.axis_options.fit_radii = options.fit_radii;
     work.axis_options.seed = options.seed;

@@ -1,6 +1,7 @@
 // The slices' tree as limbs - chains from a fork to a tip - without those that are no branches.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,13 @@ struct LimbOptions {
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
     double widest_loop = 0.25;     // metres: what lies further aside is no bark of its parent
 };
+
+// The shortest branch where the user states none, metres. extent: of the tree, from its root.
+inline double automatic_branch(double extent) {
+    constexpr double kLeast = 0.05;
+    constexpr double kShare = 0.003;
+    return std::max(kLeast, kShare * extent);
+}
 
 // Splits the tree of slices at its forks; the child with the most wood on its way to a tip continues the
 // limb. A side chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out of

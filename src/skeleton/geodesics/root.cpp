@@ -195,4 +195,11 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
     return root;
 }
 
+double extent_from(const std::vector<Vec3>& points, const DVec3& root) {
+    double extent = 0.0;
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root));
+    return extent;
+}
+
 }  // namespace treerec

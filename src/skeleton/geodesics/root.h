@@ -22,4 +22,7 @@ struct RootGuess {
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                     const std::optional<DVec3>& foot, Progress& progress);
 
+// Metres from the root to the farthest of the points.
+double extent_from(const std::vector<Vec3>& points, const DVec3& root);
+
 }  // namespace treerec

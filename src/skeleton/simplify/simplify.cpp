@@ -49,21 +49,6 @@ Tree stump_tree(const std::vector<TrunkRing>& rings, const SkeletonOptions& opti
     return assemble_tree({axis}, {limb}, options.simplify_distance);
 }
 
-// The trunk, the cloud's frame, and the root at the origin.
-void finish(SkeletonWork& work) {
-    SkeletonResult& result = work.result;
-    mark_trunk(result.tree);
-    result.tree.set_frame(work.cloud.frame);
-    const DVec3 base = result.tree.node(result.tree.root()).position;
-    result.tree.rebase(base);
-    if (result.raw.size() > 0) {
-        result.raw.set_frame(work.cloud.frame);
-        result.raw.rebase(base);
-    }
-    work.clock.stop("Simplification", result.tree.size());
-    work.progress.update(1.0, "Skeleton");
-}
-
 }  // namespace
 
 bool take_stump(SkeletonWork& work) {
@@ -82,6 +67,20 @@ void simplify(SkeletonWork& work) {
     work.progress.update(0.95, "Simplification");
     work.result.tree = assemble_tree(work.axes, work.limbs, work.options.simplify_distance);
     finish(work);
+}
+
+DVec3 finish(SkeletonWork& work) {
+    SkeletonResult& result = work.result;
+    mark_trunk(result.tree);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    for (Tree* tree : {&result.tree, &result.raw}) {
+        if (tree->size() == 0) continue;
+        tree->set_frame(work.cloud.frame);
+        tree->rebase(base);
+    }
+    work.clock.stop("Simplification", result.tree.size());
+    work.progress.update(1.0, "Skeleton");
+    return base;
 }
 
 }  // namespace treerec
