@@ -13,11 +13,11 @@ DVec2 twig_at(double f, double sway, double top) {
 }
 
 void draw_twig(std::vector<Sample>& canvas, int size, const Spray& spray, double sway, double top,
-               double wide_foot, double wide_end, int pieces) {
+               double wide_base, double wide_end, int pieces) {
     for (int i = 0; i < pieces; i++) {
         const double f0 = static_cast<double>(i) / pieces, f1 = static_cast<double>(i + 1) / pieces;
-        draw_stalk(canvas, size, twig_at(f0, sway, top), twig_at(f1, sway, top), mix(wide_foot, wide_end, f0),
-                   mix(wide_foot, wide_end, f1), spray.twig);
+        draw_stalk(canvas, size, twig_at(f0, sway, top), twig_at(f1, sway, top), mix(wide_base, wide_end, f0),
+                   mix(wide_base, wide_end, f1), spray.twig);
     }
 }
 

@@ -31,7 +31,7 @@ DVec2 twig_at(double f, double sway, double top);
 
 // The twig itself, thinner towards its end: half its width at the lower edge and at the end.
 void draw_twig(std::vector<Sample>& canvas, int size, const Spray& spray, double sway, double top,
-               double wide_foot, double wide_end, int pieces);
+               double wide_base, double wide_end, int pieces);
 
 // A line of the given half width from a to b, over what is there.
 void draw_stalk(std::vector<Sample>& canvas, int size, DVec2 a, DVec2 b, double wide_a, double wide_b,

@@ -139,22 +139,22 @@ void draw_frond(std::vector<Sample>& canvas, int size, const Spray& spray, uint6
 }
 
 // A blade on its petiole, both within the picture.
-void draw_stalked_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, DVec2 foot, double turn,
-                       double petiole, Leaf leaf, int16_t index, uint64_t seed) {
+void draw_stalked_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, DVec2 stalk_base,
+                       double turn, double petiole, Leaf leaf, int16_t index, uint64_t seed) {
     constexpr double kEdge = 0.475;
     leaf.direction = {portable::sin(turn), portable::cos(turn)};
     const double half = 0.5 * spray.shape.width;
     // As far as the blade's tip and its corners reach.
     const double aside = std::abs(leaf.direction.x) + half * std::abs(leaf.direction.y) * 0.8;
     const double above = std::max(leaf.direction.y, 0.0) + half * std::abs(leaf.direction.x) * 0.8;
-    double room = std::min((kEdge - std::abs(foot.x)) / (petiole * std::abs(leaf.direction.x) + aside),
-                           (0.97 - foot.y) / (petiole * std::max(leaf.direction.y, 0.0) + above));
+    double room = std::min((kEdge - std::abs(stalk_base.x)) / (petiole * std::abs(leaf.direction.x) + aside),
+                           (0.97 - stalk_base.y) / (petiole * std::max(leaf.direction.y, 0.0) + above));
     // Nor below its lower edge, where the shoot comes in.
-    room = std::min(room, (foot.y - 0.03) / (std::max(-leaf.direction.y, 0.0) * (1.0 + petiole) +
-                                             half * std::abs(leaf.direction.x)));
+    room = std::min(room, (stalk_base.y - 0.03) / (std::max(-leaf.direction.y, 0.0) * (1.0 + petiole) +
+                                                   half * std::abs(leaf.direction.x)));
     leaf.length = std::min(leaf.length, room);
-    leaf.base = foot + leaf.direction * (petiole * leaf.length);
-    draw_stalk(canvas, size, foot, leaf.base + leaf.direction * (0.06 * leaf.length), 0.0044, 0.0036,
+    leaf.base = stalk_base + leaf.direction * (petiole * leaf.length);
+    draw_stalk(canvas, size, stalk_base, leaf.base + leaf.direction * (0.06 * leaf.length), 0.0044, 0.0036,
                glm::mix(spray.twig, spray.vein, 0.65));
     draw_leaf(canvas, size, spray, leaf, index, seed);
 }
@@ -219,9 +219,9 @@ void draw_leaves(std::vector<Sample>& canvas, int size, const Spray& spray, uint
                  double top) {
     const std::vector<Leaf> leaves = arrange(spray, seed, sway, top);
     for (const Leaf& leaf : leaves) {
-        const DVec2 foot = leaf.base - leaf.direction * (spray.shape.petiole * leaf.length);
-        draw_stalk(canvas, size, foot, leaf.base + leaf.direction * (0.08 * leaf.length), 0.0042, 0.0032,
-                   glm::mix(spray.twig, spray.vein, 0.6));
+        const DVec2 stalk_base = leaf.base - leaf.direction * (spray.shape.petiole * leaf.length);
+        draw_stalk(canvas, size, stalk_base, leaf.base + leaf.direction * (0.08 * leaf.length), 0.0042,
+                   0.0032, glm::mix(spray.twig, spray.vein, 0.6));
         draw_leaf(canvas, size, spray, leaf, static_cast<int16_t>(&leaf - leaves.data()), seed);
     }
 }

@@ -91,7 +91,7 @@ void Builder::emit(size_t index, Mesh& mesh) const {
     Vec2 codes[kMostSides];
     Vec4 shades[kMostSides];
     for (uint32_t row = 0; row < tube.collar.rows; row++) {
-        const bool foot = row == 0, as_host = foot || row == 2;
+        const bool ground = row == 0, as_host = ground || row == 2;
         // Where the branch's picture meets its parent's: the bark's shader blends them.
         const double sign = row == 1 || row == 2 ? -1.0 : 1.0;
         const CollarVertex* const corners = collar + row * stride;
@@ -99,17 +99,17 @@ void Builder::emit(size_t index, Mesh& mesh) const {
             const CollarVertex& from = corners[j];
             const uint32_t column = j < sides ? j : 0;
             if (row != 2 && j < sides) {
-                if (foot)
+                if (ground)
                     bark_light[j] = light_at(tubes[host], rings_of(host)[0].radius, from.host_centre,
                                              from.host_along, 1.0);
                 const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
                 const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
                 const double light = (bark_light[j] + (own - bark_light[j]) * from.own) * crease;
-                // The foot moves as the bark that it stands on.
-                codes[j] = foot ? wind_at(host, from.host_along, from.position)
-                                : wind_at(index, from.along, from.position);
-                shades[j] = color_at(from.position, foot ? 0.0 : std::max(from.along, 1e-4 * length), light,
-                                     foot ? host_phase : phase);
+                // The base moves as the bark that it stands on.
+                codes[j] = ground ? wind_at(host, from.host_along, from.position)
+                                  : wind_at(index, from.along, from.position);
+                shades[j] = color_at(from.position, ground ? 0.0 : std::max(from.along, 1e-4 * length), light,
+                                     ground ? host_phase : phase);
             }
             code = codes[column];
             put(from.position, from.normal, from.tangent, from.around,
@@ -152,9 +152,9 @@ void Builder::emit(size_t index, Mesh& mesh) const {
             }
             DVec3 position = ring.centre + radial * radius;
             double v = ring.along;
-            if (i == 0 && tube.foot) {
+            if (i == 0 && tube.ground) {
                 // Along the trunk to the level cut.
-                const double down = (position.y - *tube.foot) / ring.normal.y;
+                const double down = (position.y - *tube.ground) / ring.normal.y;
                 position -= ring.normal * down;
                 v -= down;
             }

@@ -67,7 +67,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     sized.minimum_branch *= factor;
     sized.simplify_distance *= factor;
     sized.noise *= factor;
-    if (sized.foot) *sized.foot *= factor;
+    if (sized.stem_base) *sized.stem_base *= factor;
     const PointCloud large = enlarged(cloud, factor);
     SkeletonWork work(large, sized, factor, listener);
     make_skeleton(work);

@@ -7,7 +7,7 @@
 
 #include "progress.h"
 #include "scan/point_cloud.h"
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 #include "skeleton/branches/slices.h"
 #include "skeleton/cylinders/axis.h"
 #include "skeleton/cylinders/known_radii.h"
@@ -46,11 +46,11 @@ struct SkeletonWork {
     double extent = 0.0;  // to the point farthest from the root
     PathTree paths;
     // branches,
-    LimbOptions limb_options;
+    BranchOptions branch_options;
     AxisOptions axis_options;
     LocalScale scale;
     Slices slices;
-    std::vector<Limb> limbs;
+    std::vector<SkeletonBranch> branches;
     // cylinders, and twigs.
     std::vector<std::vector<Station>> axes;
     TwigOptions twig_options;

@@ -408,7 +408,7 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
     if (result.hidden_share > kMuchHidden)
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +
-            " % of the limbs in the crown were guessed from the paths through the leaves.");
+            " % of the branches in the crown were guessed from the paths through the leaves.");
     if (result.fronds)
         result.warnings.emplace_back(
             "The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.");

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "skeleton/cylinders/foot.h"
+#include "skeleton/cylinders/stem_base.h"
 #include "skeleton/delaunay/centralise.h"
 #include "skeleton/delaunay/initial_skeleton.h"
 #include "skeleton/delaunay/simplify.h"
@@ -33,7 +33,7 @@ void delaunay_skeleton(SkeletonWork& work) {
     rooting.update(0.0, "Neighbours");
     work.graph = neighbour_graph(points, rooting);
     work.first_scale = local_scale(work.graph, result.spacing, &rooting);
-    work.root = find_root(points, work.graph, work.first_scale, options.foot, rooting);
+    work.root = find_root(points, work.graph, work.first_scale, options.stem_base, rooting);
     const DVec3& root = work.root.position;
     const double apart = median_of(work.first_scale.spacing);
     work.clock.stop("Neighbours", work.graph.neighbour.size() / 2);
@@ -63,18 +63,18 @@ void delaunay_skeleton(SkeletonWork& work) {
     work.extent = extent_from(points, root);
     const std::vector<DelaunayVertex> vertices =
         simplify_skeleton(moved, second, root, *trunk, apart, work.least_branch(), simplifying);
-    branches_of(vertices, *trunk, kGap * apart, work.limbs, work.axes);
+    branches_of(vertices, *trunk, kGap * apart, work.branches, work.axes);
     if (options.one_stem) {
-        work.limbs.resize(1);
+        work.branches.resize(1);
         work.axes.resize(1);
     }
-    seat_root(work.limbs, work.axes);
+    seat_root(work.branches, work.axes);
     result.tree =
-        assemble_tree(work.axes, work.limbs,
+        assemble_tree(work.axes, work.branches,
                       options.simplify_distance > 0.0 ? options.simplify_distance : kStraight * apart);
     if (options.fit_radii && !trunk->measured)
         result.warnings.emplace_back(
-            "The points around the foot lie on no cylinder, so all radii are guesses by how far the tree "
+            "The points around the base lie on no cylinder, so all radii are guesses by how far the tree "
             "reaches.");
     finish(work);
 }

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "skeleton/cylinders/bark.h"
-#include "skeleton/cylinders/foot.h"
 #include "skeleton/cylinders/radii.h"
+#include "skeleton/cylinders/stem_base.h"
 #include "skeleton/cylinders/tips.h"
-#include "skeleton/flood/flood_limbs.h"
+#include "skeleton/flood/flood_branches.h"
 #include "skeleton/flood/flood_paper.h"
 #include "skeleton/flood/flood_twigs.h"
 #include "skeleton/simplify/assemble.h"
@@ -124,15 +124,15 @@ FloodGrid make_grid(SkeletonWork& work, Progress& progress) {
     return grid;
 }
 
-// Finer branches, better axes and radii, and none of the limbs that are bark or noise.
-void refine_limbs(SkeletonWork& work, const FloodGrid& grid, bool solid, FloodLimbs& made,
-                  Progress& progress) {
+// Finer branches, better axes and radii, and none of the branches that are bark or noise.
+void refine_branches(SkeletonWork& work, const FloodGrid& grid, bool solid, FloodBranches& made,
+                     Progress& progress) {
     const std::vector<Vec3>& points = work.points();
     const SkeletonOptions& options = work.options;
     const double voxel = work.result.voxel;
     const double least_branch = work.least_branch();
     if (solid) trust_radii(made.axes, voxel);
-    infer_radii(made.axes, made.limbs);
+    infer_radii(made.axes, made.branches);
     const double noise = std::max(noise_of(made.axes), options.noise);
     const double escape = std::max({kLeastEscape, kBranchVoxels * voxel, kNoiseEscape * noise});
     double least_escape = escape;
@@ -145,23 +145,23 @@ void refine_limbs(SkeletonWork& work, const FloodGrid& grid, bool solid, FloodLi
         work.twig_options.minimum_branch = least_branch;
         work.twig_options.least_escape = std::max(kLeastEscape, kNoiseEscape * noise);
         add_flood_twigs(points, grid, work.scale, work.root, work.twig_options, made, progress);
-        infer_radii(made.axes, made.limbs);
+        infer_radii(made.axes, made.branches);
         least_escape = 0.5 * work.twig_options.least_escape;
     }
     if (options.fit_radii && !solid) {
         for (int pass = 0; pass < kPasses; pass++) {
-            refine_axes(made.axes, made.limbs, made.places, points, progress, options.noise);
-            infer_radii(made.axes, made.limbs);
+            refine_axes(made.axes, made.branches, made.places, points, progress, options.noise);
+            infer_radii(made.axes, made.branches);
         }
         KnownRadii(work.cloud, work.result.spacing, &progress).tell(made.axes);
-        if (!work.root.lying) limit_foot(made.axes.front());
-        infer_radii(made.axes, made.limbs, true);
+        if (!work.root.lying) limit_stem_base(made.axes.front());
+        infer_radii(made.axes, made.branches, true);
     }
-    drop_strips(made.limbs, made.axes, least_escape);
+    drop_strips(made.branches, made.axes, least_escape);
     // Around wood that is thicker than a voxel, the flood's first lines lie too far from the axis for that.
     drop_beside_stout(made, voxel, escape);
     drop_short(made, least_branch);
-    draw_back_tips(made.axes, made.limbs, least_branch);
+    draw_back_tips(made.axes, made.branches, least_branch);
 }
 
 }  // namespace
@@ -174,7 +174,7 @@ void flood_skeleton(SkeletonWork& work) {
     gridding.update(0.0, "Voxels");
     const FloodGrid grid = make_grid(work, gridding);
     work.scale = local_scale(grid.graph, result.voxel);
-    work.root = find_root(grid.means, grid.graph, work.scale, options.foot, gridding);
+    work.root = find_root(grid.means, grid.graph, work.scale, options.stem_base, gridding);
     work.clock.stop("Voxels", grid.size());
 
     SubProgress flooding(work.listener, 0.4, 0.8);
@@ -191,19 +191,19 @@ void flood_skeleton(SkeletonWork& work) {
 
     SubProgress fitting(work.listener, 0.8, 0.95);
     fitting.update(0.0, "Refinement");
-    FloodLimbs made = limbs_of(flooded, grid, points.size());
+    FloodBranches made = flood_branches(flooded, grid, points.size());
     if (options.one_stem) {
-        made.limbs.resize(1);
+        made.branches.resize(1);
         made.axes.resize(1);
-        for (int32_t& limb : made.places.limb)
-            if (limb > 0) limb = -1;
+        for (int32_t& branch : made.places.branch)
+            if (branch > 0) branch = -1;
     }
     work.extent = extent_from(points, work.root.position);
-    refine_limbs(work, grid, flooded.kind == CloudKind::kSolid, made, fitting);
-    work.clock.stop("Refinement", made.limbs.size());
+    refine_branches(work, grid, flooded.kind == CloudKind::kSolid, made, fitting);
+    work.clock.stop("Refinement", made.branches.size());
 
     fitting.update(1.0, "Simplification");
-    result.tree = assemble_tree(made.axes, made.limbs, options.simplify_distance);
+    result.tree = assemble_tree(made.axes, made.branches, options.simplify_distance);
     if (options.flood == FloodKind::kPaper) {
         result.tree = printed_tree(points, work.root.position, options, result, flooded.steps, fitting);
         if (options.keep_raw) result.raw = result.tree;

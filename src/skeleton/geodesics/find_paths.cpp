@@ -15,7 +15,7 @@ void find_paths(SkeletonWork& work) {
     const std::vector<Vec3>& points = work.points();
     work.progress.update(0.55, "Shortest paths");
     work.progress.check();
-    work.root = find_root(points, work.graph, work.first_scale, work.options.foot, work.progress);
+    work.root = find_root(points, work.graph, work.first_scale, work.options.stem_base, work.progress);
     work.progress.check();
     work.extent = extent_from(points, work.root.position);
     work.paths = shortest_paths(work.graph, work.first_scale, work.root.seeds, work.progress);
