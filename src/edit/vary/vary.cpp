@@ -306,62 +306,98 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
 void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t key, bool again) const {
     const VariedBranch& branch = branches_[slot.branch];
     const VariedBranch& own = branches_[child];
-    const Habit& habit = habits_[own.order];
     const double amount = work.amount;
     Random random(key, 1);
     const auto first = static_cast<NodeId>(work.positions.size()) - (branch.end - branch.begin);
 
     if (!again && is_yet_to_grow(work, own, key)) return;
     const double fate = random.uniform();
-    if (!again && !own.stem && own.wood < kSlender * branches_[0].wood && own.order > 1) {
-        if (fate < kLeftOut * amount && work.more_wood > -kBalance * branches_[0].wood) {
-            work.more_nodes -= own.nodes;
-            work.more_wood -= own.wood;
-            return;
-        }
-        if (fate > 1.0 - kLeftOut * amount && work.more_wood < kBalance * branches_[0].wood &&
-            work.more_nodes < kBalance * branches_[0].nodes) {
-            work.more_nodes += own.nodes;
-            work.more_wood += own.wood;
-            bear(work, slot, child, key + 1, true);
-        }
-    }
+    if (!again && is_left_out(work, slot, child, key, fate)) return;
 
     // Stout branches keep their place beside the leader, further stems all the more.
     const double slim = own.stem ? 0.0 : std::clamp(1.0 - (own.beside - kRival) / kRivalRange, 0.0, 1.0);
+    const int32_t joint =
+        own.attach < 0 ? own.attach : find_joint(branch, own, (again ? 3.0 : 1.0) * slim, amount, random);
+    Slot next;
+    next.parent = joint < 0 ? slot.parent : first + joint;
+    next.base = joint < 0 ? slot.base : work.positions[next.parent];
+    DVec3 way(0.0);
+    next.turn = turn_at(work, slot, own, joint, next.parent, slim, again, random, way);
 
-    // Where: not below the lowest of its siblings, nor at the tip.
-    int32_t joint = own.attach;
-    if (joint >= 0) {
-        // What is low on its parent moves less.
-        const double own_along = along_[branch.begin + joint];
-        const double reach =
-            (again ? 3.0 : 1.0) * slim * kShift * amount * std::min(branch.length, 3.0 * own_along);
-        const double wanted = own_along + reach * std::clamp(bell(random), -2.0, 2.0);
-        const int32_t lowest = std::max(branches_[branch.first_child].attach, 0);
-        const int32_t highest = std::max(branch.end - branch.begin - 2, joint);
-        while (joint < highest && along_[branch.begin + joint + 1] <= wanted)
-            joint++;
-        while (joint > lowest && along_[branch.begin + joint] > wanted)
-            joint--;
+    // Whose shape.
+    next.branch = !own.stem && random.uniform() < kReshaped * std::min(1.0, 1.5 * amount)
+                      ? choose_shape(work, child, next.turn, way, key)
+                      : child;
+    const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
+    const DMat3 axes = next.branch != child || mirrored ? standing_axes(way) : DMat3(1.0);
+    if (next.branch != child) next.turn = axes * glm::transpose(branches_[next.branch].axes);
+    if (mirrored) {
+        const DVec3& right = axes[0];
+        const DMat3 turn = next.turn;
+        next.turn =
+            turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
+                         2.0 * right * glm::dot(right, turn[2]));
     }
-    const NodeId parent = joint < 0 ? slot.parent : first + joint;
-    const DVec3 base = joint < 0 ? slot.base : work.positions[parent];
-    const double share =
-        joint < 0 || !(branch.length > 0.0) ? 0.0 : along_[branch.begin + joint] / branch.length;
+    set_size(work, slot, own, random, next);
+    next.key = hash_seed(key, 1);
+    work.slots.push_back(next);
+}
 
-    // Which way: with the branch, about it, and at another angle.
+// Whether a slender child is not there in this variant, or, elsewhere, twice: what the one takes of the wood
+// the other gives. fate: 0..1, by chance.
+bool VariantMaker::is_left_out(Work& work, const Slot& slot, int32_t child, uint64_t key, double fate) const {
+    const VariedBranch& own = branches_[child];
+    if (own.stem || own.wood >= kSlender * branches_[0].wood || own.order <= 1) return false;
+    if (fate < kLeftOut * work.amount && work.more_wood > -kBalance * branches_[0].wood) {
+        work.more_nodes -= own.nodes;
+        work.more_wood -= own.wood;
+        return true;
+    }
+    if (fate > 1.0 - kLeftOut * work.amount && work.more_wood < kBalance * branches_[0].wood &&
+        work.more_nodes < kBalance * branches_[0].nodes) {
+        work.more_nodes += own.nodes;
+        work.more_wood += own.wood;
+        bear(work, slot, child, key + 1, true);
+    }
+    return false;
+}
+
+// By the parent's nodes, where a child that is attached to one stands: not below the lowest of its siblings,
+// nor at the tip. share, amount: how far it may move.
+int32_t VariantMaker::find_joint(const VariedBranch& parent, const VariedBranch& own, double share,
+                                 double amount, Random& random) const {
+    int32_t joint = own.attach;
+    // What is low on its parent moves less.
+    const double own_along = along_[parent.begin + joint];
+    const double reach = share * kShift * amount * std::min(parent.length, 3.0 * own_along);
+    const double wanted = own_along + reach * std::clamp(bell(random), -2.0, 2.0);
+    const int32_t lowest = std::max(branches_[parent.first_child].attach, 0);
+    const int32_t highest = std::max(parent.end - parent.begin - 2, joint);
+    while (joint < highest && along_[parent.begin + joint + 1] <= wanted)
+        joint++;
+    while (joint > lowest && along_[parent.begin + joint] > wanted)
+        joint--;
+    return joint;
+}
+
+// Which way a child goes, `way`, and the turn that takes its own way there: with its parent, about it, and at
+// another angle. joint: by the parent's nodes, which is `node` of the variant.
+DMat3 VariantMaker::turn_at(const Work& work, const Slot& slot, const VariedBranch& own, int32_t joint,
+                            NodeId node, double slim, bool again, Random& random, DVec3& way) const {
+    const VariedBranch& branch = branches_[slot.branch];
+    const double amount = work.amount;
     DMat3 turn = slot.turn;
     if (joint >= 0) turn = turn * turn_onto(own.axis, normalized_or(own.axis + work.tilts[joint], own.axis));
     DVec3 axis = turn * own.axis;
     if (joint >= 0) {
-        axis = work.positions[parent] - work.positions[joint > 0 ? parent - 1 : slot.parent];
-        if (joint + 1 < branch.end - branch.begin)
-            axis += work.positions[parent + 1] - work.positions[parent];
+        axis = work.positions[node] - work.positions[joint > 0 ? node - 1 : slot.parent];
+        if (joint + 1 < branch.end - branch.begin) axis += work.positions[node + 1] - work.positions[node];
     }
     axis = normalized_or(axis, normalized_or(turn * own.axis, DVec3(0, 1, 0)));
     const double jitter = amount * bell(random);
     if (slot.branch == 0 && axis.y > kUpright) {
+        const double share =
+            joint < 0 || !(branch.length > 0.0) ? 0.0 : along_[branch.begin + joint] / branch.length;
         const double swing = 10.0 * share * (1.0 - share) * (1.0 - 2.0 * share);
         const double twist = work.twist_start + work.twist_even * share + work.twist_swing * swing;
         const double around =
@@ -372,52 +408,42 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
             (0.2 + 0.8 * slim) * kAside * jitter + (again && random.uniform() < 0.5 ? kPi : 0.0);
         turn = rotation(axis, around) * turn;
     }
-    DVec3 way = normalized_or(turn * own.way, axis);
+    way = normalized_or(turn * own.way, axis);
     // At another angle, as far as this order of branches goes. A tilt again, for a turn.
     const double cosine = glm::dot(axis, way);
     const DVec3 across = way - axis * cosine;
-    if (glm::dot(across, across) > 1e-6) {
-        const DVec3 aside = glm::normalize(across);
-        const double fork = kFork * amount * bell(random);
-        const DVec3 tilted = way + (aside * cosine - axis * glm::dot(aside, way)) * fork;
-        const double wanted =
-            std::clamp(glm::dot(axis, glm::normalize(tilted)), habit.cosine.least, habit.cosine.most);
-        const double bounded = std::clamp(wanted, -1.0, 1.0);
-        const DVec3 forked =
-            glm::normalize(axis * bounded + aside * std::sqrt(std::max(0.0, 1.0 - bounded * bounded)));
-        turn = turn_onto(way, forked) * turn;
-        way = forked;
-    }
+    if (glm::dot(across, across) <= 1e-6) return turn;
+    const Range& usual = habits_[own.order].cosine;
+    const DVec3 aside = glm::normalize(across);
+    const double fork = kFork * amount * bell(random);
+    const DVec3 tilted = way + (aside * cosine - axis * glm::dot(aside, way)) * fork;
+    const double wanted = std::clamp(glm::dot(axis, glm::normalize(tilted)), usual.least, usual.most);
+    const double bounded = std::clamp(wanted, -1.0, 1.0);
+    const DVec3 forked =
+        glm::normalize(axis * bounded + aside * std::sqrt(std::max(0.0, 1.0 - bounded * bounded)));
+    turn = turn_onto(way, forked) * turn;
+    way = forked;
+    return turn;
+}
 
-    // Whose shape.
-    Slot next;
-    next.branch = !own.stem && random.uniform() < kReshaped * std::min(1.0, 1.5 * amount)
-                      ? choose_shape(work, child, turn, way, key)
-                      : child;
+// How long and how thick the child is in the shape that `next` takes: as the one whose place it takes, but
+// for its own growth; and no thicker than its parent there.
+void VariantMaker::set_size(const Work& work, const Slot& slot, const VariedBranch& own, Random& random,
+                            Slot& next) const {
     const VariedBranch& shape = branches_[next.branch];
-    const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
-    const DMat3 axes = next.branch != child || mirrored ? standing_axes(way) : DMat3(1.0);
-    if (next.branch != child) turn = axes * glm::transpose(shape.axes);
-    if (mirrored) {
-        const DVec3& right = axes[0];
-        turn = turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
-                            2.0 * right * glm::dot(right, turn[2]));
-    }
-    next.turn = turn;
-
-    // How long: as the one whose place it takes, but for its own growth.
+    const Habit& habit = habits_[own.order];
+    const double amount = work.amount;
     next.drift = std::clamp(slot.drift * (1.0 + kGrowth * amount * std::clamp(bell(random), -2.0, 2.0)),
                             kLeastDrift, kMostDrift);
     const double growth = next.drift / slot.drift;
     double length = own.length * slot.scale * growth;
-    const double parent_length = branch.length * slot.scale;
+    const double parent_length = branches_[slot.branch].length * slot.scale;
     if (parent_length > 0.0 && habit.length.most > 0.0)
         length = std::clamp(length, parent_length * habit.length.least * (1.0 - kAllowance),
                             parent_length * habit.length.most * (1.0 + kAllowance));
     next.scale = shape.length > 0.0 ? length / shape.length : slot.scale;
 
-    // How thick: likewise, and no more than its parent there.
-    const double thick = work.radii[parent];
+    const double thick = work.radii[next.parent];
     const double own_share = own.radius / parent_radius(own);
     double radius =
         own.radius * slot.gauge * growth * (1.0 + kGauge * amount * std::clamp(bell(random), -2.0, 2.0));
@@ -425,11 +451,6 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
     const double least = habit.radius.least * (1.0 - kAllowance) * thick;
     radius = std::min(std::max(radius, std::min(least, most)), most);
     next.gauge = radius / shape.radius;
-
-    next.parent = parent;
-    next.base = base;
-    next.key = hash_seed(key, 1);
-    work.slots.push_back(next);
 }
 
 // Another branch of the child's order and about its length, or the child itself.

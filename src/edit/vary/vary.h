@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "foliage/foliage.h"
+#include "geometry/random.h"
 #include "geometry/vec.h"
 #include "tree/tree.h"
 
@@ -93,6 +94,13 @@ class VariantMaker {
     double parent_radius(const VariedBranch& branch) const;
     void grow(Work& work, const Slot& slot) const;
     void bear(Work& work, const Slot& slot, int32_t child, uint64_t key, bool again) const;
+    bool is_left_out(Work& work, const Slot& slot, int32_t child, uint64_t key, double fate) const;
+    int32_t find_joint(const VariedBranch& parent, const VariedBranch& own, double share, double amount,
+                       Random& random) const;
+    DMat3 turn_at(const Work& work, const Slot& slot, const VariedBranch& own, int32_t joint, NodeId node,
+                  double slim, bool again, Random& random, DVec3& way) const;
+    void set_size(const Work& work, const Slot& slot, const VariedBranch& own, Random& random,
+                  Slot& next) const;
     int32_t choose_shape(Work& work, int32_t child, const DMat3& turn, const DVec3& way, uint64_t key) const;
     Foliage settle(const std::vector<uint32_t>& cells, const std::vector<DVec3>& places) const;
 
