@@ -25,7 +25,7 @@ std::vector<Station> stem_on_spur(Random& random, const DVec3& base, const DVec3
     return stem;
 }
 
-TEST(Base, TheRootLiesWhereTheStemComesFrom) {
+TEST(StemBase, TheRootLiesWhereTheStemComesFrom) {
     Random random(3);
     for (int i = 0; i < 500; i++) {
         const DVec3 base(random.uniform(-9, 9), random.uniform(-1, 1), random.uniform(-9, 9));
@@ -40,7 +40,7 @@ TEST(Base, TheRootLiesWhereTheStemComesFrom) {
 }
 
 // The axis must not go down before it goes up.
-TEST(Base, StationsBelowTheRootGoWithIt) {
+TEST(StemBase, StationsBelowTheRootGoWithIt) {
     Random random(4);
     std::vector<std::vector<Station>> axes{stem_on_spur(random, DVec3(0.0), DVec3(0, 1, 0), 2)};
     axes[0][1].position.y = -0.04;
@@ -50,7 +50,7 @@ TEST(Base, StationsBelowTheRootGoWithIt) {
 }
 
 // A palm of 6 m, whose base is twice as thick as its stem up to a height of 0.7 m.
-TEST(Base, AFlareDoesNotUnmakeWhatIsMeasuredAboveIt) {
+TEST(StemBase, AFlareDoesNotUnmakeWhatIsMeasuredAboveIt) {
     std::vector<Station> stem(60);
     for (size_t i = 0; i < stem.size(); i++) {
         const double height = 0.1 * static_cast<double>(i);
@@ -66,7 +66,7 @@ TEST(Base, AFlareDoesNotUnmakeWhatIsMeasuredAboveIt) {
     }
 }
 
-TEST(Base, ASpurBelowTheStemTellsNothingOfIt) {
+TEST(StemBase, ASpurBelowTheStemTellsNothingOfIt) {
     std::vector<Station> stem(60);
     for (size_t i = 0; i < stem.size(); i++) {
         stem[i].position = {0.0, 0.1 * static_cast<double>(i), 0.0};
@@ -78,7 +78,7 @@ TEST(Base, ASpurBelowTheStemTellsNothingOfIt) {
         EXPECT_EQ(stem[i].measured, i >= 3) << "at " << stem[i].position.y;
 }
 
-TEST(Base, OfALyingBranchKeepsItsLength) {
+TEST(StemBase, OfALyingBranchKeepsItsLength) {
     Random random(5);
     std::vector<std::vector<Station>> axes{stem_on_spur(random, DVec3(0.0), DVec3(1, 0, 0), 1)};
     axes[0][0].position = {0.02, -0.1, 0.05};
@@ -86,7 +86,7 @@ TEST(Base, OfALyingBranchKeepsItsLength) {
     EXPECT_LT(glm::distance(axes[0][0].position, DVec3(0.02, 0.0, 0.0)), 1e-9);
 }
 
-TEST(Base, ATwigAtTheRootIsNoStemButASecondStemIs) {
+TEST(StemBase, ATwigAtTheRootIsNoStemButASecondStemIs) {
     for (const double share : {0.1, 0.6}) {
         Random random(6);
         std::vector<std::vector<Station>> axes{stem_on_spur(random, DVec3(0.0), DVec3(0, 1, 0), 1)};
@@ -101,7 +101,7 @@ TEST(Base, ATwigAtTheRootIsNoStemButASecondStemIs) {
     }
 }
 
-TEST(Base, WhatIsTooFarOrTooShortToTellStays) {
+TEST(StemBase, WhatIsTooFarOrTooShortToTellStays) {
     Random random(7);
     std::vector<std::vector<Station>> axes{stem_on_spur(random, DVec3(0.0), DVec3(0, 1, 0), 1)};
     axes[0][0].position = {3.0 * kRadius, 0.0, 0.0};

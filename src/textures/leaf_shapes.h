@@ -1,4 +1,4 @@
-// The outlines and colours of leaves, for the pictures. Internal to mesh/.
+// The outlines and colours of leaves, for the pictures. Internal to textures/.
 #pragma once
 
 #include <string>

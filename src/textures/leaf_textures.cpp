@@ -3,11 +3,11 @@
 
 #include "error.h"
 #include "foliage/leaves.h"
-#include "mesh/leaf_canvas.h"
 #include "mesh/leaf_cards.h"
-#include "mesh/leaf_shapes.h"
-#include "mesh/texture_noise.h"
-#include "mesh/textures.h"
+#include "textures/leaf_canvas.h"
+#include "textures/leaf_shapes.h"
+#include "textures/texture_noise.h"
+#include "textures/textures.h"
 
 namespace treerec {
 

@@ -4,8 +4,8 @@
 #include "error.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"
-#include "mesh/texture_noise.h"
-#include "mesh/textures.h"
+#include "textures/texture_noise.h"
+#include "textures/textures.h"
 
 namespace treerec {
 

@@ -1,10 +1,10 @@
-#include "mesh/leaf_shapes.h"
+#include "textures/leaf_shapes.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/portable_math.h"
-#include "mesh/texture_noise.h"
+#include "textures/texture_noise.h"
 
 namespace treerec::texture {
 

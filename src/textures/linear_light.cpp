@@ -1,4 +1,4 @@
-#include "mesh/linear_light.h"
+#include "textures/linear_light.h"
 
 #include <array>
 

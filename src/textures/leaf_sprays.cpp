@@ -4,8 +4,8 @@
 
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
-#include "mesh/leaf_canvas.h"
-#include "mesh/texture_noise.h"
+#include "textures/leaf_canvas.h"
+#include "textures/texture_noise.h"
 
 namespace treerec::texture {
 

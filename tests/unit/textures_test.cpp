@@ -1,4 +1,4 @@
-#include "mesh/textures.h"
+#include "textures/textures.h"
 
 #include <gtest/gtest.h>
 

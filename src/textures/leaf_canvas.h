@@ -1,11 +1,11 @@
-// What pictures of leaves are drawn on, and with. Internal to mesh/.
+// What pictures of leaves are drawn on, and with. Internal to textures/.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "geometry/vec.h"
-#include "mesh/leaf_shapes.h"
+#include "textures/leaf_shapes.h"
 
 namespace treerec::texture {
 
