@@ -37,6 +37,10 @@ func test_a_branch_is_drawn_where_it_was() -> void:
 		branch["host"] == given.joint or given.tree.has_node(branch["host"]),
 		"It grows from nothing."
 	)
+	var as_ever: Dictionary = maker.draw_limb(
+		given.tree, camera, given.stroke(camera), given.points
+	)
+	check_equal(as_ever, branch, "what the method of the old name makes")
 	# One ordinary edit.
 	var edit: TreeEdit = given.tree.edit(branch["command"])
 	check(edit != null and not edit.is_empty(), "The command does nothing.")

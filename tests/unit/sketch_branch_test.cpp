@@ -359,6 +359,9 @@ TEST(SketchBranchFile, ReadsWhatItWritesInBothSpaces) {
     const std::vector<BranchStroke> read = parse_branch_json(text, frame);
     ASSERT_EQ(read.size(), 2u);
     EXPECT_EQ(read[1].points, stem.stroke.points);
+    std::string old = text;
+    old.replace(old.find("treerec branch"), 14, "treerec limb");
+    EXPECT_EQ(parse_branch_json(old, frame).size(), 2u);
     EXPECT_LT(glm::distance(read[0].view.centre, stem.stroke.view.centre), 1e-9);
     const DVec3 place = frame.to_scan(stem.stroke.view.centre);
     const DVec3 right = frame.turn_to_scan(stem.stroke.view.turn[0]);

@@ -263,6 +263,11 @@ TEST(OwnTwigs, AreSavedWithTheSketch) {
         ASSERT_TRUE(read.twigs);
         EXPECT_EQ(twig_stock_json(*read.twigs), twig_stock_json(*sketch.twigs));
         EXPECT_EQ(sketch_json(read, told), text);
+        // The trunk's radius at its base had another name.
+        std::string old = text;
+        if (const size_t at = old.find("\"base\""); at != std::string::npos) old.replace(at, 6, "\"foot\"");
+        EXPECT_EQ(old != text, of_tree);
+        EXPECT_EQ(twig_stock_json(*parse_sketch_json(old, "It", &told).twigs), twig_stock_json(*read.twigs));
         const SketchedTree a = sketch_tree(sketch, {}), b = sketch_tree(read, {});
         ASSERT_EQ(a.tree.size(), b.tree.size());
         for (const NodeId id : a.tree.depth_first())
