@@ -18,6 +18,7 @@ struct Stem {
     DVec2 lean{0.0};             // run over rise, along x and z
     double radius = 0.0;         // metres, root mean square over its slices
     bool in_branches = false;    // seen only as the densest spot among low branches
+    bool bark = false;           // its round sections are seen
     std::vector<uint32_t> seed;  // points of its slices
     std::vector<DVec2> feet;     // x, z: of all stems that were taken for its tree's, its own first
 };
