@@ -18,7 +18,6 @@ namespace {
 constexpr double kVoxel = 0.006;       // of the height
 constexpr size_t kNeighbours = 8;      // of a voxel
 constexpr double kTurn = 8.0;          // what a step costs more by one less the cosine that it turns by
-constexpr double kWithoutBark = 8.0;   // what all steps cost more: twice the length
 constexpr double kMemory = 0.02;       // of the height: so long a path remembers the way that it came
 constexpr double kWidestCrown = 0.45;  // of the height: further from its foot nothing belongs to a tree
 constexpr double kLowTop = 0.4;        // of the height: what stands on the ground and ends below is clutter
@@ -98,11 +97,6 @@ std::vector<uint32_t> grow(const Voxels& voxels, const std::vector<Vec3>& points
             open.emplace(0.0F, static_cast<uint32_t>(c));
         }
     }
-    // Where bark is seen, what shows none may be a bush.
-    const bool barked = std::any_of(stems.begin(), stems.end(), [](const Stem& stem) { return stem.bark; });
-    std::vector<float> slowness;
-    for (const Stem& stem : stems)
-        slowness.push_back(barked && !stem.bark ? static_cast<float>(kWithoutBark) : 1.0F);
     const double widest = kWidestCrown * height;
     const auto memory = static_cast<float>(kMemory * height);
     size_t steps = 0;
@@ -118,8 +112,7 @@ std::vector<uint32_t> grow(const Voxels& voxels, const std::vector<Vec3>& points
             const Vec3 step = voxels.centre[other] - voxels.centre[c];
             const float length = glm::length(step);
             const float turn = length - glm::dot(step, way[c]);
-            const float total =
-                reached + slowness[tree[c]] * length * length * (length + static_cast<float>(kTurn) * turn);
+            const float total = reached + length * length * (length + static_cast<float>(kTurn) * turn);
             if (total >= cost[other]) continue;
             const DVec3 at = DVec3(voxels.centre[other]) - stem.foot;
             if (glm::length(DVec2(at.x, at.z) - at.y * stem.lean) > widest) continue;
