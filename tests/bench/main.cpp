@@ -35,6 +35,7 @@ const char* const kUsage =
     "step\n"
     "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
     "scans\n"
+    "       bench --plots                      stems and points of plots of 2 to 12 grown trees\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --variants [SCAN…|SKELETON…] new individuals of a tree, with bark, in a second\n"
     "       bench --photos FOLDER… [-- ARG…]   photos matched by sift, pyrlk and both; ARG: of 'treerec "
@@ -43,7 +44,7 @@ const char* const kUsage =
     "between\n"
     "                                          photos, judged by their COLMAP model\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth and --limbs), --most-points N (of --scaling),\n"
+    "options: --repetitions N, --seeds N (of --synth, --limbs and --plots), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
     "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
@@ -79,7 +80,7 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
             word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
-            word == "--help") {
+            word == "--plots" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -148,6 +149,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--limbs") {
         bench_limbs(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--plots") {
+        bench_plots(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--strings") {
