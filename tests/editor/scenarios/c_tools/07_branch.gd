@@ -277,3 +277,9 @@ func _draw_over_photo() -> void:
 	await user.key("ctrl+z")
 	await until(func() -> bool: return bytes(_of) == _pruned, "the branch is undone")
 	await user.key("p")
+	# The next scenario drags over a photo, too, and draws nothing.
+	await user.key("Escape")
+	await until(
+		func() -> bool: return session().get(&"tool") == session().get(&"tools")[&"select"],
+		"the Select tool is back"
+	)
