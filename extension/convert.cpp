@@ -128,7 +128,7 @@ Array to_surface_arrays(const treerec::JoinedLeaves& p_leaves) {
     if (!arrays.is_empty()) {
         arrays[Mesh::ARRAY_CUSTOM1] = copy_values<PackedFloat32Array>(p_leaves.lengthwise);
         arrays[Mesh::ARRAY_CUSTOM2] = copy_values<PackedFloat32Array>(p_leaves.across);
-        arrays[Mesh::ARRAY_CUSTOM3] = copy_values<PackedFloat32Array>(p_leaves.bough);
+        arrays[Mesh::ARRAY_CUSTOM3] = copy_values<PackedFloat32Array>(p_leaves.secondary);
     }
     return arrays;
 }

@@ -281,13 +281,7 @@ void LeafRule::_validate_property(PropertyInfo& p_property) const {
     hide_unless("sprig_dialect", form == treerec::LeafForm::kSprig);
 }
 
-void LeafRule::_bind_methods() {
-    ClassDB::bind_static_method("LeafRule", D_METHOD("from_preset", "name"), &LeafRule::from_preset);
-    ClassDB::bind_method(D_METHOD("get_season_tints"), &LeafRule::get_season_tints);
-    ClassDB::bind_method(D_METHOD("get_standing_share"), &LeafRule::get_standing_share);
-    ClassDB::bind_method(D_METHOD("get_unfolded_share"), &LeafRule::get_unfolded_share);
-    ClassDB::bind_method(D_METHOD("_take_resources"), &LeafRule::take_resources);
-
+void LeafRule::_bind_accessors() {
     ClassDB::bind_method(D_METHOD("set_enabled", "enabled"), &LeafRule::set_enabled);
     ClassDB::bind_method(D_METHOD("is_enabled"), &LeafRule::is_enabled);
     ClassDB::bind_method(D_METHOD("set_look", "look"), &LeafRule::set_look);
@@ -318,7 +312,9 @@ void LeafRule::_bind_methods() {
     ClassDB::bind_method(D_METHOD("is_evergreen"), &LeafRule::is_evergreen);
     ClassDB::bind_method(D_METHOD("set_season_colors", "colors"), &LeafRule::set_season_colors);
     ClassDB::bind_method(D_METHOD("get_season_colors"), &LeafRule::get_season_colors);
+}
 
+void LeafRule::_bind_properties() {
     const auto add_value = [](const char* p_first, const char* p_last) {
         bool within = false;
         for (int i = 0; i < int(std::size(kValues)); i++) {
@@ -375,6 +371,16 @@ void LeafRule::_bind_methods() {
                  "set_season_colors", "get_season_colors");
     ADD_GROUP("Scan", "");
     add_value("follow_density", "follow_color");
+}
+
+void LeafRule::_bind_methods() {
+    ClassDB::bind_static_method("LeafRule", D_METHOD("from_preset", "name"), &LeafRule::from_preset);
+    ClassDB::bind_method(D_METHOD("get_season_tints"), &LeafRule::get_season_tints);
+    ClassDB::bind_method(D_METHOD("get_standing_share"), &LeafRule::get_standing_share);
+    ClassDB::bind_method(D_METHOD("get_unfolded_share"), &LeafRule::get_unfolded_share);
+    ClassDB::bind_method(D_METHOD("_take_resources"), &LeafRule::take_resources);
+    _bind_accessors();
+    _bind_properties();
 
     BIND_ENUM_CONSTANT(ARRANGEMENT_ALTERNATE);
     BIND_ENUM_CONSTANT(ARRANGEMENT_OPPOSITE);

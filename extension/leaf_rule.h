@@ -92,6 +92,8 @@ class LeafRule : public godot::Resource {
 
   protected:
     static void _bind_methods();
+    static void _bind_accessors();
+    static void _bind_properties();
     void _validate_property(godot::PropertyInfo& p_property) const;
 
   private:

@@ -22,7 +22,7 @@ class TreeEdit : public godot::RefCounted {
                   std::vector<treerec::EditLog::Entry> p_entries);
     const treerec::TreeDelta& get_delta() const { return delta_; }
     // Those of the tree, which the wood that it loses keeps.
-    void set_leaf_setting(const TreeReconstruction::LeafSetting& p_setting) { leaves_ = p_setting; }
+    void set_leaf_setting(const LeafSetting& p_setting) { leaves_ = p_setting; }
     std::vector<treerec::EditLog::Entry> get_log_entries() const;
 
     godot::String get_command() const;
@@ -41,7 +41,7 @@ class TreeEdit : public godot::RefCounted {
 
   private:
     treerec::TreeDelta delta_;
-    TreeReconstruction::LeafSetting leaves_;
+    LeafSetting leaves_;
     treerec::EditOutcome outcome_;
     std::vector<treerec::EditLog::Entry> entries_;
 };

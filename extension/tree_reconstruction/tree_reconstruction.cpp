@@ -13,6 +13,7 @@
 #include "mesh/leaf_cards.h"
 #include "mesh/levels.h"
 #include "tree/measure.h"
+#include "tree_reconstruction/node_arrays.h"
 #include "wind_globals.h"
 
 using namespace godot;
@@ -20,39 +21,26 @@ using treerec::NodeId;
 using treerec::Tree;
 
 void TreeReconstruction::set_tree(Tree p_tree) {
-    {
-        const std::lock_guard lock(mutex_);
-        tree_ = std::make_shared<const Tree>(std::move(p_tree));
-    }
+    const auto tree = std::make_shared<const Tree>(std::move(p_tree));
+    parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.tree = tree; });
     newer_skeleton_ = Dictionary();
     emit_changed();
 }
 
 std::shared_ptr<const Tree> TreeReconstruction::get_tree() const {
-    const std::lock_guard lock(mutex_);
-    return tree_;
+    return parts_.get().tree;
 }
 
 int64_t TreeReconstruction::get_bark_revision() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
+    const SharedParts::Parts parts = parts_.get();
     std::vector<bool> followed = guarded(std::vector<bool>(), [&] {
         std::vector<bool> kinds;
-        for (const treerec::LeafKind& kind : make_leaf_kinds(*tree)) {
-            kinds.push_back(treerec::follows(kind.rules, *foliage));
+        for (const treerec::LeafKind& kind : make_leaf_kinds(*parts.tree)) {
+            kinds.push_back(treerec::follows(kind.rules, *parts.foliage));
         }
         return kinds;
     });
-    const std::lock_guard lock(mutex_);
-    if (revision_ == 0 || revised_tree_.lock() != tree_ || revised_foliage_.lock() != foliage_ ||
-        revised_bark_.lock() != bark_ || revised_followed_ != followed) {
-        revised_tree_ = tree_;
-        revised_foliage_ = foliage_;
-        revised_bark_ = bark_;
-        revised_followed_ = std::move(followed);
-        revision_++;
-    }
-    return revision_;
+    return bark_revision_.count(parts, std::move(followed));
 }
 
 void TreeReconstruction::set_skeleton(const Dictionary& p_skeleton) {
@@ -201,12 +189,8 @@ bool TreeReconstruction::is_guess(int64_t p_id) const {
     return node && node->is_guess();
 }
 
-static std::vector<NodeId> list_nodes(const Tree& p_tree) {
-    return p_tree.empty() ? std::vector<NodeId>() : p_tree.depth_first();
-}
-
 PackedInt32Array TreeReconstruction::get_node_ids() const {
-    return to_godot(list_nodes(*get_tree()));
+    return to_godot(node_arrays::list_nodes(*get_tree()));
 }
 
 PackedInt32Array TreeReconstruction::_nodes_of_kind(treerec::NodeKind p_kind) const {
@@ -222,50 +206,23 @@ PackedInt32Array TreeReconstruction::get_branch_nodes() const {
 }
 
 PackedInt32Array TreeReconstruction::get_trunk_nodes() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    std::vector<NodeId> ids = list_nodes(*tree);
-    std::erase_if(ids, [&](NodeId id) { return !tree->node(id).is_trunk(); });
-    return to_godot(ids);
+    return node_arrays::trunk(*get_tree());
 }
 
 PackedVector3Array TreeReconstruction::get_positions() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    PackedVector3Array positions;
-    positions.resize(int64_t(tree->size()));
-    Vector3* write = positions.ptrw();
-    for (const NodeId id : list_nodes(*tree)) {
-        *write++ = to_godot(tree->node(id).position);
-    }
-    return positions;
+    return node_arrays::positions(*get_tree());
 }
 
 PackedFloat32Array TreeReconstruction::get_radii() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    PackedFloat32Array radii;
-    radii.resize(int64_t(tree->size()));
-    float* write = radii.ptrw();
-    for (const NodeId id : list_nodes(*tree)) {
-        *write++ = float(tree->node(id).radius);
-    }
-    return radii;
+    return node_arrays::radii(*get_tree());
 }
 
 PackedInt32Array TreeReconstruction::get_parents() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    std::vector<NodeId> ids = list_nodes(*tree);
-    for (NodeId& id : ids) {
-        id = tree->node(id).parent;
-    }
-    return to_godot(ids);
+    return node_arrays::parents(*get_tree());
 }
 
 AABB TreeReconstruction::get_aabb() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    treerec::Bounds bounds;
-    for (const NodeId id : list_nodes(*tree)) {
-        bounds.add(tree->node(id).position, tree->node(id).radius);
-    }
-    return bounds.empty() ? AABB() : AABB(to_godot(bounds.min), to_godot(bounds.size()));
+    return node_arrays::box(*get_tree());
 }
 
 Dictionary TreeReconstruction::measure() const {
@@ -364,40 +321,6 @@ PackedStringArray TreeReconstruction::get_leaf_preset_names() {
     return names;
 }
 
-// The colours of figure 3.7 of the paper: leaf, branch, common, trunk.
-static const Color kKindColors[] = {Color(0.30f, 0.80f, 0.25f), Color(1.0f, 0.60f, 0.10f),
-                                    Color(0.70f, 0.70f, 0.70f), Color(0.90f, 0.15f, 0.12f)};
-
 Array TreeReconstruction::build_skeleton_lines() const {
-    const std::shared_ptr<const Tree> tree = get_tree();
-    Array arrays;
-    if (tree->size() < 2) {
-        return arrays;
-    }
-    PackedVector3Array points;
-    PackedColorArray colors;
-    PackedVector2Array radii;
-    points.resize(int64_t(2 * (tree->size() - 1)));
-    colors.resize(points.size());
-    radii.resize(points.size());
-    Vector3* write_point = points.ptrw();
-    Color* write_color = colors.ptrw();
-    Vector2* write_radius = radii.ptrw();
-    for (const NodeId id : list_nodes(*tree)) {
-        const NodeId parent = tree->node(id).parent;
-        if (parent == treerec::kNoNode) {
-            continue;
-        }
-        for (const NodeId end : {parent, id}) {
-            const treerec::Node& node = tree->node(end);
-            *write_point++ = to_godot(node.position);
-            *write_color++ = kKindColors[int(node.kind())];
-            *write_radius++ = Vector2(float(node.radius), 0.0f);
-        }
-    }
-    arrays.resize(Mesh::ARRAY_MAX);
-    arrays[Mesh::ARRAY_VERTEX] = points;
-    arrays[Mesh::ARRAY_COLOR] = colors;
-    arrays[Mesh::ARRAY_TEX_UV] = radii;
-    return arrays;
+    return node_arrays::lines(*get_tree());
 }

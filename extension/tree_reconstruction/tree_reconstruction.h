@@ -8,28 +8,24 @@
 #include <godot_cpp/variant/packed_vector3_array.hpp>
 #include <godot_cpp/variant/typed_array.hpp>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <vector>
 
-#include "edit/commands/script.h"
 #include "foliage/foliage.h"
 #include "foliage/leaves.h"
-#include "leaf_rule.h"
-#include "mesh/grown_bark.h"
 #include "mesh/mesh.h"
 #include "tree/tree.h"
+#include "tree_reconstruction/edit_history.h"
+#include "tree_reconstruction/leaf_settings.h"
+#include "tree_reconstruction/part_caches.h"
+#include "tree_reconstruction/shared_parts.h"
 
 class TreeEdit;
 
-namespace treerec {
-class VariantMaker;
-struct JoinedLeaves;
-}  // namespace treerec
-
 // A reconstructed tree: its skeleton, where it comes from, and the rules by which it gets bark and leaves.
 // The builders may run on any thread, also while another thread changes the tree: they see it as it was when
-// they began.
+// they began. What it keeps lies in classes of its own, one for each concern; this is what Godot sees of
+// them.
 class TreeReconstruction : public godot::Resource {
     GDCLASS(TreeReconstruction, godot::Resource)
 
@@ -42,14 +38,6 @@ class TreeReconstruction : public godot::Resource {
     void set_tree(treerec::Tree p_tree);
     std::shared_ptr<const treerec::Tree> get_tree() const;
     treerec::LeafRules get_leaf_rules() const;
-    // What the leaves of wood without a rule of its own are like, as a value.
-    struct LeafSetting {
-        treerec::LeafRules rules;  // where there is no rule
-        godot::Ref<LeafRule> rule;
-        godot::String preset = "generic";
-        bool foliage_followed = true;
-        int64_t seed = 1;
-    };
     LeafSetting get_leaf_setting() const;
     void set_leaf_setting(const LeafSetting& p_setting);
     // With the season in them. Throws treerec::Error.
@@ -218,9 +206,6 @@ class TreeReconstruction : public godot::Resource {
                                                          const godot::Variant& p_value) const;
 
   private:
-    struct LeafValue;
-    static const LeafValue kLeafValues[];
-
     // A node's data, or nothing and an error that names the id.
     std::optional<treerec::Node> _find_node(int64_t p_id) const;
     godot::PackedInt32Array _nodes_of_kind(treerec::NodeKind p_kind) const;
@@ -241,48 +226,25 @@ class TreeReconstruction : public godot::Resource {
     static void _bind_levels();
     static void _bind_bark();
     static void _bind_leaf_kinds();
-    std::shared_ptr<const treerec::VariantMaker> _get_variant_maker() const;
     std::shared_ptr<const treerec::Tree> _editable_tree() const;
     godot::Ref<TreeEdit> _edit(const godot::String& p_command);
-    void _log(const godot::Ref<TreeEdit>& p_edit);
     godot::Ref<TreeEdit> _edit_with(const char* p_command, const godot::Variant& p_where,
                                     const godot::Dictionary& p_options);
 
-    // Guards what the builders read, so that they may run while the main thread edits.
-    mutable std::mutex mutex_;
-    std::shared_ptr<const treerec::Tree> tree_ = std::make_shared<treerec::Tree>();
-    std::shared_ptr<const treerec::Foliage> foliage_ = std::make_shared<treerec::Foliage>();
-    std::shared_ptr<const treerec::GrownBark> bark_ = std::make_shared<treerec::GrownBark>();
-    // Whether the bark fits the tree that was asked about last.
-    mutable std::weak_ptr<const treerec::GrownBark> judged_bark_;
-    mutable std::weak_ptr<const treerec::Tree> judged_tree_;
-    mutable bool bark_fits_ = false;
-    treerec::LeafRules leaf_rules_;  // where there is no leaf_rule_
-    bool foliage_followed_ = true;
-    godot::Ref<LeafRule> leaf_rule_;
-    int64_t seed_ = 1;
-    // What the bark of revision_ is built of.
-    mutable std::weak_ptr<const treerec::Tree> revised_tree_;
-    mutable std::weak_ptr<const treerec::Foliage> revised_foliage_;
-    mutable std::weak_ptr<const treerec::GrownBark> revised_bark_;
-    mutable std::vector<bool> revised_followed_;  // by kind of leaves
-    mutable int64_t revision_ = 0;
-
-    // What its variants are made with, and of.
-    mutable std::shared_ptr<const treerec::VariantMaker> variant_maker_;
-    mutable std::weak_ptr<const treerec::Tree> varied_tree_;
-    mutable std::weak_ptr<const treerec::Foliage> varied_foliage_;
-
-    treerec::EditLog edit_log_;
-    godot::String leaf_preset_ = "generic";
+    SharedParts parts_;
+    mutable BarkFit bark_fit_;
+    mutable BarkRevision bark_revision_;
+    mutable VariantSource variant_source_;
+    LeafSettings leaf_settings_;
+    EditHistory edit_history_;
     godot::Dictionary provenance_;
     godot::String growth_recipe_;
     godot::Dictionary growth_meshes_;  // never changed, only replaced
     bool growth_pending_ = false;
     godot::PackedByteArray packed_bark_;  // as it was given, also where this version can't read it
     godot::Dictionary newer_foliage_;     // likewise
-    godot::Dictionary
-        newer_skeleton_;  // of a version that this one can't read; kept so that saving loses nothing
+    // Of a version that this one can't read; kept so that saving loses nothing.
+    godot::Dictionary newer_skeleton_;
 };
 
 VARIANT_ENUM_CAST(TreeReconstruction::NodeKind);

@@ -49,38 +49,17 @@ void TreeReconstruction::set_grown_bark(const PackedByteArray& p_bark) {
         }
     }
     packed_bark_ = kept;
-    {
-        const std::lock_guard lock(mutex_);
-        bark_ = std::move(bark);
-    }
+    parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.bark = bark; });
     emit_changed();
 }
 
 std::shared_ptr<const GrownBark> TreeReconstruction::get_bark_on(
     const std::shared_ptr<const treerec::Tree>& p_tree) const {
-    std::shared_ptr<const GrownBark> bark;
-    {
-        const std::lock_guard lock(mutex_);
-        if (bark_->empty()) {
-            return nullptr;
-        }
-        if (judged_bark_.lock() == bark_ && judged_tree_.lock() == p_tree) {
-            return bark_fits_ ? bark_ : nullptr;
-        }
-        bark = bark_;
-    }
-    // Without the lock: it looks at the whole tree.
-    const bool fits = treerec::fits(*bark, *p_tree);
-    const std::lock_guard lock(mutex_);
-    judged_bark_ = bark;
-    judged_tree_ = p_tree;
-    bark_fits_ = fits;
-    return fits ? bark : nullptr;
+    return bark_fit_.take(parts_.get().bark, p_tree);
 }
 
 bool TreeReconstruction::has_grown_bark() const {
-    const std::lock_guard lock(mutex_);
-    return !bark_->empty();
+    return !parts_.get().bark->empty();
 }
 
 bool TreeReconstruction::is_bark_stale() const {
@@ -103,20 +82,12 @@ void TreeReconstruction::take_bark_of(const Ref<TreeReconstruction>& p_other) {
     if (p_other.ptr() == this) {
         return;
     }
-    std::shared_ptr<const GrownBark> bark;
-    {
-        const std::lock_guard lock(p_other->mutex_);
-        bark = p_other->bark_;
-    }
+    const std::shared_ptr<const GrownBark> bark = p_other->parts_.get().bark;
     growth_recipe_ = p_other->growth_recipe_;
     growth_meshes_ = p_other->growth_meshes_;
     growth_pending_ = p_other->growth_pending_;
     packed_bark_ = p_other->packed_bark_;
-    {
-        const std::lock_guard lock(mutex_);
-        // Never changed, only replaced: both may hold the same.
-        bark_ = std::move(bark);
-    }
+    parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.bark = bark; });
     emit_changed();
 }
 

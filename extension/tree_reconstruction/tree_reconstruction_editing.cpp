@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "convert.h"
-#include "edit/commands/address.h"
 #include "edit/commands/script.h"
 #include "edit/select.h"
 #include "error.h"
@@ -12,7 +11,6 @@
 #include "tree_reconstruction/tree_reconstruction.h"
 
 using namespace godot;
-using treerec::EditLog;
 
 // Throws where there is nothing that could be edited.
 std::shared_ptr<const treerec::Tree> TreeReconstruction::_editable_tree() const {
@@ -28,12 +26,6 @@ std::shared_ptr<const treerec::Tree> TreeReconstruction::_editable_tree() const 
     return tree;
 }
 
-void TreeReconstruction::_log(const Ref<TreeEdit>& p_edit) {
-    for (const EditLog::Entry& entry : p_edit->get_log_entries()) {
-        edit_log_.add(entry);
-    }
-}
-
 Ref<TreeEdit> TreeReconstruction::_edit(const String& p_command) {
     const std::shared_ptr<const treerec::Tree> tree = _editable_tree();
     treerec::Tree result;
@@ -42,7 +34,7 @@ Ref<TreeEdit> TreeReconstruction::_edit(const String& p_command) {
     edit.instantiate();
     edit->set_edit(std::move(done.delta), std::move(done.outcome), {{done.command, done.frame, ""}});
     edit->set_leaf_setting(get_leaf_setting());
-    _log(edit);
+    edit_history_.add(edit->get_log_entries());
     set_tree(std::move(result));
     return edit;
 }
@@ -56,17 +48,14 @@ void TreeReconstruction::take_tree_of(const Ref<TreeReconstruction>& p_other) {
     if (p_other.ptr() == this) {
         return;
     }
-    // Trees and foliages are never changed, only replaced: so both may hold the same ones.
-    const std::shared_ptr<const treerec::Tree> tree = p_other->get_tree();
-    const std::shared_ptr<const treerec::Foliage> foliage = p_other->get_leaf_density();
-    {
-        const std::lock_guard lock(mutex_);
-        tree_ = tree;
-        foliage_ = foliage;
-    }
+    const SharedParts::Parts theirs = p_other->parts_.get();
+    parts_.replace([&](SharedParts::Parts& r_parts) {
+        r_parts.tree = theirs.tree;
+        r_parts.foliage = theirs.foliage;
+    });
     newer_skeleton_ = p_other->newer_skeleton_;
     newer_foliage_ = p_other->newer_foliage_;
-    edit_log_ = p_other->edit_log_;
+    edit_history_ = p_other->edit_history_;
     provenance_ = p_other->provenance_;
     emit_changed();
 }
@@ -94,7 +83,7 @@ Error TreeReconstruction::apply_edit(const Ref<TreeEdit>& p_edit) {
     return guarded(ERR_INVALID_DATA, [&] {
         treerec::Tree tree = *get_tree();
         p_edit->get_delta().apply(tree);
-        _log(p_edit);
+        edit_history_.add(p_edit->get_log_entries());
         set_tree(std::move(tree));
         return OK;
     });
@@ -105,7 +94,7 @@ Error TreeReconstruction::revert_edit(const Ref<TreeEdit>& p_edit) {
     return guarded(ERR_INVALID_DATA, [&] {
         treerec::Tree tree = *get_tree();
         p_edit->get_delta().revert(tree);
-        edit_log_.remove_last(p_edit->get_log_entries().size());
+        edit_history_.remove_last(p_edit->get_log_entries().size());
         set_tree(std::move(tree));
         return OK;
     });
@@ -139,7 +128,7 @@ Dictionary TreeReconstruction::replay(const String& p_log, double p_tolerance) {
         edit.instantiate();
         edit->set_edit(std::move(replayed.delta), {}, replayed.log.entries());
         edit->set_leaf_setting(get_leaf_setting());
-        _log(edit);
+        edit_history_.add(edit->get_log_entries());
         set_tree(std::move(tree));
         result["edit"] = edit;
         result["done"] = int64_t(replayed.done);
@@ -161,56 +150,27 @@ Ref<TreeEdit> TreeReconstruction::run_script(const String& p_script) {
         edit.instantiate();
         edit->set_edit(std::move(done.delta), std::move(outcome), done.log.entries());
         edit->set_leaf_setting(get_leaf_setting());
-        _log(edit);
+        edit_history_.add(edit->get_log_entries());
         set_tree(std::move(tree));
         return edit;
     });
 }
 
 void TreeReconstruction::set_edit_log(const String& p_log) {
-    const EditLog none;
-    edit_log_ = guarded(none, [&] { return EditLog::parse(to_std(p_log)); });
+    edit_history_.set_text(p_log);
     emit_changed();
 }
 
 String TreeReconstruction::get_edit_log() const {
-    return edit_log_.empty() ? String() : to_godot(edit_log_.text());
+    return edit_history_.get_text();
 }
 
 TypedArray<Dictionary> TreeReconstruction::get_unfit_edits() const {
-    const std::shared_ptr<const treerec::Tree> tree = get_tree();
-    TypedArray<Dictionary> list;
-    const std::vector<EditLog::Entry>& entries = edit_log_.entries();
-    for (size_t i = 0; i < entries.size(); i++) {
-        if (entries[i].fits()) {
-            continue;
-        }
-        PackedVector3Array places;
-        PackedVector3Array directions;
-        PackedFloat32Array radii;
-        for (const treerec::NamedPlace& named : treerec::places_named(tree->frame(), entries[i].command)) {
-            places.push_back(to_godot(named.place));
-            directions.push_back(to_godot(named.direction));
-            radii.push_back(float(named.radius));
-        }
-        Dictionary entry;
-        entry["index"] = int64_t(i);
-        entry["command"] = to_godot(entries[i].command);
-        entry["reason"] = to_godot(entries[i].reason);
-        entry["places"] = places;
-        entry["directions"] = directions;
-        entry["radii"] = radii;
-        list.push_back(entry);
-    }
-    return list;
+    return edit_history_.describe_unfit(get_tree()->frame());
 }
 
 String TreeReconstruction::get_edit_log_without(int64_t p_index) const {
-    ERR_FAIL_INDEX_V_MSG(p_index, int64_t(edit_log_.entries().size()), get_edit_log(),
-                         "The log has no edit of that number.");
-    EditLog log = edit_log_;
-    log.remove(size_t(p_index));
-    return log.empty() ? String() : to_godot(log.text());
+    return edit_history_.get_text_without(p_index);
 }
 
 PackedInt32Array TreeReconstruction::select_nodes(const String& p_selection) const {

@@ -13,17 +13,14 @@
 using namespace godot;
 
 void TreeReconstruction::set_leaf_density(treerec::Foliage p_foliage) {
-    {
-        const std::lock_guard lock(mutex_);
-        foliage_ = std::make_shared<const treerec::Foliage>(std::move(p_foliage));
-    }
+    const auto foliage = std::make_shared<const treerec::Foliage>(std::move(p_foliage));
+    parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.foliage = foliage; });
     newer_foliage_ = Dictionary();
     emit_changed();
 }
 
 std::shared_ptr<const treerec::Foliage> TreeReconstruction::get_leaf_density() const {
-    const std::lock_guard lock(mutex_);
-    return foliage_;
+    return parts_.get().foliage;
 }
 
 PackedInt32Array TreeReconstruction::find_wood_points(const PackedVector3Array& p_points) const {
@@ -67,16 +64,12 @@ Dictionary TreeReconstruction::get_foliage() const {
 }
 
 void TreeReconstruction::set_foliage_followed(bool p_followed) {
-    {
-        const std::lock_guard lock(mutex_);
-        foliage_followed_ = p_followed;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) { r_setting.foliage_followed = p_followed; });
     emit_changed();
 }
 
 bool TreeReconstruction::is_foliage_followed() const {
-    const std::lock_guard lock(mutex_);
-    return foliage_followed_;
+    return leaf_settings_.get().foliage_followed;
 }
 
 bool TreeReconstruction::has_foliage() const {
@@ -110,18 +103,7 @@ PackedColorArray TreeReconstruction::get_foliage_colors() const {
 }
 
 treerec::LeafRules TreeReconstruction::get_leaf_rules() const {
-    Ref<LeafRule> rule;
-    treerec::LeafRules rules;
-    {
-        const std::lock_guard lock(mutex_);
-        rule = leaf_rule_;
-        rules = leaf_rules_;
-        if (!foliage_followed_) {
-            rules.follow_density = 0.0;
-            rules.follow_color = 0.0;
-        }
-    }
-    return rule.is_valid() ? rule->get_rules() : rules;
+    return leaf_settings_.get_rules();
 }
 
 void TreeReconstruction::set_leaf_rule(const Ref<LeafRule>& p_rule) {
@@ -133,10 +115,7 @@ void TreeReconstruction::set_leaf_rule(const Ref<LeafRule>& p_rule) {
     if (before.is_valid()) {
         before->disconnect("changed", heard);
     }
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rule_ = p_rule;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) { r_setting.rule = p_rule; });
     if (p_rule.is_valid()) {
         p_rule->connect("changed", heard);
     }
@@ -145,16 +124,11 @@ void TreeReconstruction::set_leaf_rule(const Ref<LeafRule>& p_rule) {
 }
 
 Ref<LeafRule> TreeReconstruction::get_leaf_rule() const {
-    const std::lock_guard lock(mutex_);
-    return leaf_rule_;
+    return leaf_settings_.get().rule;
 }
 
 String TreeReconstruction::get_leaf_look() const {
-    const Ref<LeafRule> rule = get_leaf_rule();
-    if (rule.is_valid()) {
-        return rule->get_look();
-    }
-    return leaf_preset_ == String("none") ? String("generic") : leaf_preset_;
+    return leaf_settings_.get_look();
 }
 
 bool TreeReconstruction::are_leaves_single() const {

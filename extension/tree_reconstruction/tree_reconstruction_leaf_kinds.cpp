@@ -12,19 +12,17 @@
 
 using namespace godot;
 
-TreeReconstruction::LeafSetting TreeReconstruction::get_leaf_setting() const {
-    const std::lock_guard lock(mutex_);
-    return {leaf_rules_, leaf_rule_, leaf_preset_, foliage_followed_, seed_};
+LeafSetting TreeReconstruction::get_leaf_setting() const {
+    return leaf_settings_.get();
 }
 
 void TreeReconstruction::set_leaf_setting(const LeafSetting& p_setting) {
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_ = p_setting.rules;
-        leaf_preset_ = p_setting.preset;
-        foliage_followed_ = p_setting.foliage_followed;
-        seed_ = p_setting.seed;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) {
+        // The rule is taken below, which has to be heard from then on.
+        const Ref<LeafRule> rule = r_setting.rule;
+        r_setting = p_setting;
+        r_setting.rule = rule;
+    });
     set_leaf_rule(p_setting.rule);
 }
 

@@ -11,39 +11,15 @@
 
 using namespace godot;
 
-struct TreeReconstruction::LeafValue {
-    const char* property;
-    double treerec::LeafRules::*member;
-    double minimum;
-    double maximum;
-    const char* hint;  // range, step and unit for the inspector
-};
-
-const TreeReconstruction::LeafValue TreeReconstruction::kLeafValues[] = {
-    {"leaf_internode", &treerec::LeafRules::internode, 0.005, 5.0, "0.005,1,0.005,or_greater,suffix:m"},
-    {"leaf_twig_length", &treerec::LeafRules::twig_length, 0.0, 100.0, "0,5,0.01,or_greater,suffix:m"},
-    {"leaf_maximum_radius", &treerec::LeafRules::maximum_radius, 0.0, 10.0,
-     "0,0.2,0.001,or_greater,suffix:m"},
-    {"leaf_size", &treerec::LeafRules::leaf_size, 0.005, 10.0, "0.01,1,0.005,or_greater,suffix:m"},
-    {"leaf_size_variation", &treerec::LeafRules::size_variation, 0.0, 1.0, "0,1,0.01"},
-    {"leaf_angle", &treerec::LeafRules::angle, 0.0, 180.0, "0,180,1,suffix:°"},
-    {"leaf_droop", &treerec::LeafRules::droop, -180.0, 180.0, "-90,90,1,suffix:°"},
-    {"leaf_angle_variation", &treerec::LeafRules::angle_variation, 0.0, 180.0, "0,90,1,suffix:°"},
-};
-
 constexpr int kMostLeaves = 2000000;
 
 void TreeReconstruction::set_seed(int64_t p_seed) {
-    {
-        const std::lock_guard lock(mutex_);
-        seed_ = p_seed;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) { r_setting.seed = p_seed; });
     emit_changed();
 }
 
 int64_t TreeReconstruction::get_seed() const {
-    const std::lock_guard lock(mutex_);
-    return seed_;
+    return leaf_settings_.get().seed;
 }
 
 void TreeReconstruction::set_leaf_preset(const String& p_name) {
@@ -57,79 +33,69 @@ void TreeReconstruction::set_leaf_preset(const String& p_name) {
     if (!known) {
         return;
     }
-    leaf_preset_ = p_name;
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_ = rules;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) {
+        r_setting.preset = p_name;
+        r_setting.rules = rules;
+    });
     notify_property_list_changed();
     emit_changed();
 }
 
 String TreeReconstruction::get_leaf_preset() const {
-    return leaf_preset_;
+    return leaf_settings_.get().preset;
 }
 
 void TreeReconstruction::set_leaves_enabled(bool p_enabled) {
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_.enabled = p_enabled;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) { r_setting.rules.enabled = p_enabled; });
     emit_changed();
 }
 
 bool TreeReconstruction::are_leaves_enabled() const {
-    const std::lock_guard lock(mutex_);
-    return leaf_rules_.enabled;
+    return leaf_settings_.get().rules.enabled;
 }
 
 void TreeReconstruction::set_leaf_arrangement(LeafArrangement p_arrangement) {
     ERR_FAIL_INDEX_MSG(int(p_arrangement), 2, "Leaves stand alternate (0) or opposite (1).");
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_.arrangement = p_arrangement == LEAF_ARRANGEMENT_OPPOSITE
-                                      ? treerec::LeafArrangement::kDecussate
-                                      : treerec::LeafArrangement::kSpiral;
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) {
+        r_setting.rules.arrangement = p_arrangement == LEAF_ARRANGEMENT_OPPOSITE
+                                          ? treerec::LeafArrangement::kDecussate
+                                          : treerec::LeafArrangement::kSpiral;
+    });
     emit_changed();
 }
 
 TreeReconstruction::LeafArrangement TreeReconstruction::get_leaf_arrangement() const {
-    const std::lock_guard lock(mutex_);
+    const treerec::LeafRules rules = leaf_settings_.get().rules;
     // Bunches follow one another as single leaves do.
-    const bool bunches = leaf_rules_.arrangement == treerec::LeafArrangement::kFascicled;
-    return treerec::leaves_per_node(leaf_rules_) > 1 && !bunches ? LEAF_ARRANGEMENT_OPPOSITE
-                                                                 : LEAF_ARRANGEMENT_ALTERNATE;
+    const bool bunches = rules.arrangement == treerec::LeafArrangement::kFascicled;
+    return treerec::leaves_per_node(rules) > 1 && !bunches ? LEAF_ARRANGEMENT_OPPOSITE
+                                                           : LEAF_ARRANGEMENT_ALTERNATE;
 }
 
 void TreeReconstruction::set_leaf_value(int p_index, double p_value) {
-    ERR_FAIL_INDEX(p_index, int(std::size(kLeafValues)));
-    const LeafValue& value = kLeafValues[p_index];
+    ERR_FAIL_INDEX(p_index, int(std::size(LeafSettings::kValues)));
+    const LeafSettings::Value& value = LeafSettings::kValues[p_index];
     ERR_FAIL_COND_MSG(!std::isfinite(p_value), vformat("%s must be a finite number.", value.property));
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_.*value.member = std::min(std::max(p_value, value.minimum), value.maximum);
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) {
+        r_setting.rules.*value.member = std::min(std::max(p_value, value.minimum), value.maximum);
+    });
     emit_changed();
 }
 
 double TreeReconstruction::get_leaf_value(int p_index) const {
-    ERR_FAIL_INDEX_V(p_index, int(std::size(kLeafValues)), 0.0);
-    const std::lock_guard lock(mutex_);
-    return leaf_rules_.*kLeafValues[p_index].member;
+    ERR_FAIL_INDEX_V(p_index, int(std::size(LeafSettings::kValues)), 0.0);
+    return leaf_settings_.get().rules.*LeafSettings::kValues[p_index].member;
 }
 
 void TreeReconstruction::set_maximum_leaves(int p_count) {
-    {
-        const std::lock_guard lock(mutex_);
-        leaf_rules_.maximum_leaves = std::min(std::max(p_count, 0), kMostLeaves);
-    }
+    leaf_settings_.change([&](LeafSetting& r_setting) {
+        r_setting.rules.maximum_leaves = std::min(std::max(p_count, 0), kMostLeaves);
+    });
     emit_changed();
 }
 
 int TreeReconstruction::get_maximum_leaves() const {
-    const std::lock_guard lock(mutex_);
-    return leaf_rules_.maximum_leaves;
+    return leaf_settings_.get().rules.maximum_leaves;
 }
 
 void TreeReconstruction::_validate_property(PropertyInfo& p_property) const {
@@ -153,7 +119,7 @@ PackedStringArray TreeReconstruction::_get_linked_undo_properties(const StringNa
         for (const char* property : {"leaves_enabled", "leaf_arrangement", "maximum_leaves"}) {
             linked.push_back(property);
         }
-        for (const LeafValue& value : kLeafValues) {
+        for (const LeafSettings::Value& value : LeafSettings::kValues) {
             linked.push_back(value.property);
         }
     }
@@ -206,10 +172,11 @@ void TreeReconstruction::_bind_properties() {
     ADD_PROPERTY(PropertyInfo(Variant::BOOL, "leaves_enabled"), "set_leaves_enabled", "are_leaves_enabled");
     ADD_PROPERTY(PropertyInfo(Variant::INT, "leaf_arrangement", PROPERTY_HINT_ENUM, "Alternate,Opposite"),
                  "set_leaf_arrangement", "get_leaf_arrangement");
-    for (int i = 0; i < int(std::size(kLeafValues)); i++) {
-        ADD_PROPERTYI(PropertyInfo(Variant::FLOAT, kLeafValues[i].property, PROPERTY_HINT_RANGE,
-                                   String::utf8(kLeafValues[i].hint)),
-                      "set_leaf_value", "get_leaf_value", i);
+    for (int i = 0; i < int(std::size(LeafSettings::kValues)); i++) {
+        const LeafSettings::Value& value = LeafSettings::kValues[i];
+        ADD_PROPERTYI(
+            PropertyInfo(Variant::FLOAT, value.property, PROPERTY_HINT_RANGE, String::utf8(value.hint)),
+            "set_leaf_value", "get_leaf_value", i);
     }
     ADD_PROPERTY(PropertyInfo(Variant::BOOL, "foliage_followed"), "set_foliage_followed",
                  "is_foliage_followed");

@@ -10,29 +10,6 @@
 
 using namespace godot;
 
-// What is known of the tree for all its variants, made anew where the tree or its foliage is another one.
-std::shared_ptr<const treerec::VariantMaker> TreeReconstruction::_get_variant_maker() const {
-    std::shared_ptr<const treerec::Tree> tree;
-    std::shared_ptr<const treerec::Foliage> foliage;
-    {
-        const std::lock_guard lock(mutex_);
-        if (variant_maker_ && varied_tree_.lock() == tree_ && varied_foliage_.lock() == foliage_) {
-            return variant_maker_;
-        }
-        tree = tree_;
-        foliage = foliage_;
-    }
-    // Without the lock: two threads that come at once both do it, and get the same.
-    const auto maker = std::make_shared<const treerec::VariantMaker>(*tree, *foliage);
-    const std::lock_guard lock(mutex_);
-    if (tree_ == tree && foliage_ == foliage) {
-        variant_maker_ = maker;
-        varied_tree_ = tree;
-        varied_foliage_ = foliage;
-    }
-    return maker;
-}
-
 // What passes a limit by a rounding, as 1.2000000000000002 does, is the limit. What is no number stays one.
 static double within(double p_value, double p_least, double p_most) {
     constexpr double kRounding = 1e-6;
@@ -53,18 +30,22 @@ Ref<TreeReconstruction> TreeReconstruction::make_variant(int64_t p_seed, double 
         }
         const double amount = within(p_amount, 0.0, 1.0);
         const double age = within(p_age, treerec::VariantMaker::kLeastAge, treerec::VariantMaker::kMostAge);
-        treerec::TreeVariant variant = _get_variant_maker()->make(uint64_t(p_seed), amount, age);
+        treerec::TreeVariant variant =
+            variant_source_.take(parts_.get())->make(uint64_t(p_seed), amount, age);
         Ref<TreeReconstruction> made;
         made.instantiate();
-        made->set_leaf_setting(get_leaf_setting());
+        LeafSetting leaves = get_leaf_setting();
         if (amount > 0.0) {
             treerec::Random random(uint64_t(p_seed), 11);
-            made->leaf_rules_.leaf_size *= 1.0 + kLeafSize * amount * random.uniform(-1.0, 1.0);
+            leaves.rules.leaf_size *= 1.0 + kLeafSize * amount * random.uniform(-1.0, 1.0);
             // A number that the inspector and a file hold whole.
-            made->seed_ = int64_t(treerec::hash_seed(uint64_t(made->seed_), uint64_t(p_seed)) >> 33);
+            leaves.seed = int64_t(treerec::hash_seed(uint64_t(leaves.seed), uint64_t(p_seed)) >> 33);
         }
-        made->tree_ = std::make_shared<const treerec::Tree>(std::move(variant.tree));
-        made->foliage_ = std::make_shared<const treerec::Foliage>(std::move(variant.foliage));
+        made->set_leaf_setting(leaves);
+        made->parts_.replace([&](SharedParts::Parts& r_parts) {
+            r_parts.tree = std::make_shared<const treerec::Tree>(std::move(variant.tree));
+            r_parts.foliage = std::make_shared<const treerec::Foliage>(std::move(variant.foliage));
+        });
         Dictionary how;
         how["seed"] = p_seed;
         how["amount"] = amount;

@@ -12,6 +12,7 @@
 #include "foliage/leaves.h"
 #include "mesh/tree_picture.h"
 #include "tree/branches.h"
+#include "tree_reconstruction/node_arrays.h"
 #include "tree_reconstruction/tree_reconstruction.h"
 
 using namespace godot;
@@ -49,27 +50,7 @@ int TreeReconstruction::get_node_order(int64_t p_id) const {
 }
 
 Array TreeReconstruction::build_selection_lines(const PackedInt32Array& p_ids) const {
-    const std::shared_ptr<const treerec::Tree> tree = get_tree();
-    PackedVector3Array points;
-    points.resize(2 * p_ids.size());
-    Vector3* write = points.ptrw();
-    int64_t count = 0;
-    for (int64_t i = 0; i < p_ids.size(); i++) {
-        const NodeId id = p_ids[i];
-        if (!tree->contains(id) || tree->node(id).parent == treerec::kNoNode) {
-            continue;
-        }
-        write[count++] = to_godot(tree->node(tree->node(id).parent).position);
-        write[count++] = to_godot(tree->node(id).position);
-    }
-    Array arrays;
-    if (count == 0) {
-        return arrays;
-    }
-    points.resize(count);
-    arrays.resize(Mesh::ARRAY_MAX);
-    arrays[Mesh::ARRAY_VERTEX] = points;
-    return arrays;
+    return node_arrays::lines_of(*get_tree(), p_ids);
 }
 
 static PackedVector3Array to_lines(const std::vector<treerec::DVec3>& p_ends) {

@@ -113,7 +113,7 @@ Ref<TreeEdit> TreeReconstruction::complete_branch(const PackedVector3Array& p_po
         edit.instantiate();
         edit->set_edit(std::move(done.delta), std::move(outcome), done.log.entries());
         edit->set_leaf_setting(get_leaf_setting());
-        _log(edit);
+        edit_history_.add(edit->get_log_entries());
         set_tree(std::move(result));
         return edit;
     });

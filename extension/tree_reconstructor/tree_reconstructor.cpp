@@ -344,8 +344,11 @@ void TreeReconstructor::_bind_methods() {
                          &TreeReconstructor::sketch_with_twigs, DEFVAL(""));
     ClassDB::bind_method(D_METHOD("load_sketch", "path"), &TreeReconstructor::load_sketch);
     ClassDB::bind_method(D_METHOD("save_sketch", "sketch", "path"), &TreeReconstructor::save_sketch);
-    ClassDB::bind_method(D_METHOD("draw_limb", "tree", "camera", "stroke", "points", "options"),
-                         &TreeReconstructor::draw_limb, DEFVAL(PackedVector3Array()), DEFVAL(Dictionary()));
+    for (const char* name : {"sketch_branch", "draw_limb"}) {  // the old word
+        ClassDB::bind_method(D_METHOD(name, "tree", "camera", "stroke", "points", "options"),
+                             &TreeReconstructor::sketch_branch, DEFVAL(PackedVector3Array()),
+                             DEFVAL(Dictionary()));
+    }
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_sketch_species"),
                                 &TreeReconstructor::get_sketch_species);
     ClassDB::bind_static_method("TreeReconstructor", D_METHOD("get_option_list"),

@@ -25,7 +25,7 @@
 // Turns scans and photos into trees, in the editor. reconstruct_file(), reconstruct_photos(), load_cloud(),
 // save_cloud(), load_photo_views(), load_photo(), load_outlines(), measure_outline(), import_skeleton(),
 // export_file(), save_html_report(), save_marker(), sketch_tree(), sketch_with_twigs(), load_sketch(),
-// save_sketch(), draw_limb(), grow_bark() and propose_growth() may run on any thread, one at a time; the
+// save_sketch(), sketch_branch(), grow_bark() and propose_growth() may run on any thread, one at a time; the
 // other methods may be called from any other thread meanwhile.
 class TreeReconstructor : public godot::RefCounted {
     GDCLASS(TreeReconstructor, godot::RefCounted)
@@ -72,10 +72,11 @@ class TreeReconstructor : public godot::RefCounted {
     godot::Ref<TreeSketch> load_sketch(const godot::String& p_path);
     godot::Error save_sketch(const godot::Ref<TreeSketch>& p_sketch, const godot::String& p_path);
     static godot::TypedArray<godot::Dictionary> get_sketch_species();
-    godot::Dictionary draw_limb(const godot::Ref<TreeReconstruction>& p_tree,
-                                const godot::Dictionary& p_camera, const godot::PackedVector2Array& p_stroke,
-                                const godot::PackedVector3Array& p_points = godot::PackedVector3Array(),
-                                const godot::Dictionary& p_options = godot::Dictionary());
+    godot::Dictionary sketch_branch(const godot::Ref<TreeReconstruction>& p_tree,
+                                    const godot::Dictionary& p_camera,
+                                    const godot::PackedVector2Array& p_stroke,
+                                    const godot::PackedVector3Array& p_points = godot::PackedVector3Array(),
+                                    const godot::Dictionary& p_options = godot::Dictionary());
     godot::Error save_html_report(const godot::String& p_path,
                                   const godot::Dictionary& p_folders = godot::Dictionary());
     godot::Error save_marker(const godot::String& p_path, int64_t p_id, double p_side);

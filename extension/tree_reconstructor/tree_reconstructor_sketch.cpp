@@ -98,7 +98,7 @@ Ref<TreeSketch> with_twigs(const Ref<TreeSketch>& p_sketch, const Ref<Resource>&
     if (tree) {
         const std::shared_ptr<const treerec::Tree> wood = tree->get_tree();
         copy->set_twigs(::to_godot(treerec::twig_stock_json(treerec::stock_of_tree(*wood, to_std(name)))));
-        const TreeReconstruction::LeafSetting setting = tree->get_leaf_setting();
+        const LeafSetting setting = tree->get_leaf_setting();
         copy->set_species(setting.preset);
         copy->set_leaf_rule(setting.rule.is_valid() ? Ref<LeafRule>(setting.rule->duplicate())
                                                     : Ref<LeafRule>());

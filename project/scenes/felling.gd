@@ -76,7 +76,7 @@ func _cut(at: Vector2) -> void:
 	var where: Vector3 = tree.global_transform.affine_inverse() * (hit["position"] as Vector3)
 	var node: int = _nearest_node(tree.reconstruction, where)
 	if tree.reconstruction.get_node_parent(node) == TreeReconstruction.NO_NODE:
-		_panel.note("That is the foot of it: cut a little higher.")
+		_panel.note("That is the base of it: cut a little higher.")
 		return
 	var body: RigidBody3D = tree.fell(node, _density, true)
 	if body == null:

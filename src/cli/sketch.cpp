@@ -8,7 +8,7 @@
 #include "file_bytes.h"
 #include "pipeline/export.h"
 #include "pipeline/sketch_report.h"
-#include "sketch/read_limb.h"
+#include "sketch/read_branch.h"
 #include "sketch/read_sketch.h"
 #include "sketch/read_twigs.h"
 #include "sketch/sketch.h"
@@ -64,9 +64,10 @@ bool wants_sketch(const std::string& path) {
 const Command& sketch_command() {
     static const Command command{
         "sketch",
-        "sketch STROKES -o FILE [options]\n       treerec sketch LIMB.json --onto TREE [--scan SCAN] -o FILE "
+        "sketch STROKES -o FILE [options]\n       treerec sketch BRANCH.json --onto TREE [--scan SCAN] -o "
+        "FILE "
         "[options]",
-        "Makes a whole tree of a few freehand strokes, or draws missing limbs over a scan.",
+        "Makes a whole tree of a few freehand strokes, or draws missing branches over a scan.",
         {{"-o", "FILE",
           "the file to write: .glb .gltf .obj .ply .txt .csv .lstring, or .json for the strokes; again for "
           "more",
@@ -81,7 +82,7 @@ const Command& sketch_command() {
          {"--twigs", "FILE",
           "a library of twigs (.tres of Godot, saved as text) or one as an L-string; again for more", true},
          {"--height", "M", "metres (default: as the sketch says, or what is usual for the species)"},
-         {"--trunk-radius", "M", "metres at the foot (default: as drawn with two lines, or height / 40)"},
+         {"--trunk-radius", "M", "metres at the base (default: as drawn with two lines, or height / 40)"},
          {"--seed", "N", "what is drawn by chance (default: the sketch's, or 1)"},
          {"--depth", "HOW",
           "true: the front stays as drawn, with branches that the drawing doesn't show in front and behind;\n"
@@ -91,10 +92,10 @@ const Command& sketch_command() {
          {"--density", "F", "of twigs, 0 to 4 (default 1)"},
          {"--levels", "N", "levels of detail in .glb and .gltf files, 1 to 5 (default 1)"},
          {"--pictures-beside", "", "the pictures of a .glb go into a folder beside it, as those of a .gltf"},
-         {"--onto", "TREE", "the skeleton that gets the limbs of LIMB.json (see 'treerec info')"},
+         {"--onto", "TREE", "the skeleton that gets the branches of BRANCH.json (see 'treerec info')"},
          {"--scan", "SCAN",
-          "its point cloud, with --onto: tells how far away a limb is, and how true the tree"},
-         {"--log", "FILE", "with --onto: writes the limbs as edits, to be replayed ('treerec edit')"},
+          "its point cloud, with --onto: tells how far away a branch is, and how true the tree"},
+         {"--log", "FILE", "with --onto: writes the branches as edits, to be replayed ('treerec edit')"},
          {"--up", "AXIS",
           "with --onto or --twigs-of: the axis to the sky of a skeleton that does not say (default z)"},
          {"--tree", "N",
@@ -102,7 +103,7 @@ const Command& sketch_command() {
          {"--quiet", "", "print errors only"}},
         "STROKES: our own .json, an .svg of paths, or a .png of a drawing: a crown's outline, a trunk, and "
         "its branches, in any order.\n"
-        "LIMB.json: a camera and a stroke along each missing limb, each of which becomes an edit; see "
+        "BRANCH.json: a camera and a stroke along each missing branch, each of which becomes an edit; see "
         "docs/sketch.md. With --report its fidelity before and after is printed, too."};
     return command;
 }
@@ -118,7 +119,7 @@ void run_sketch(const std::vector<std::string>& words) {
             const std::string name = option;
             const bool of_twigs = arguments.has("--twigs-of") && (name == "--up" || name == "--tree");
             if (arguments.has(name) && !of_twigs)
-                throw UsageError(name + " is for limbs: name the tree that gets them with --onto.");
+                throw UsageError(name + " is for branches: name the tree that gets them with --onto.");
         }
     const std::vector<std::string>& outs = arguments.all("-o");
     const bool report = arguments.has("--report");
@@ -156,8 +157,9 @@ void run_sketch(const std::vector<std::string>& words) {
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet || report);
     progress.update(0.0, "Reading");
-    if (wants_sketch(positional[0]) && is_limb_file(positional[0]))
-        throw Error("'" + positional[0] + "' has limbs to be drawn onto a tree: name the tree with --onto.");
+    if (wants_sketch(positional[0]) && is_branch_file(positional[0]))
+        throw Error("'" + positional[0] +
+                    "' has branches to be drawn onto a tree: name the tree with --onto.");
     SketchOptions options;
     Sketch sketch = read_sketch(positional[0], &options);
     if (arguments.has("--depth")) options.depth = paper ? SketchDepth::kPaper : SketchDepth::kTrue;

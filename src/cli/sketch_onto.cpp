@@ -1,4 +1,4 @@
-// treerec sketch LIMB.json --onto TREE: limbs drawn over a scan.
+// treerec sketch BRANCH.json --onto TREE: branches drawn over a scan.
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -11,8 +11,8 @@
 #include "file_bytes.h"
 #include "pipeline/export.h"
 #include "scan/formats/read_cloud.h"
-#include "sketch/limb.h"
-#include "sketch/read_limb.h"
+#include "sketch/read_branch.h"
+#include "sketch/sketch_branch.h"
 #include "version.h"
 
 namespace treerec {
@@ -25,22 +25,22 @@ Json place_json(const DVec3& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
-Json limb_report(const Tree& tree, const DrawnLimb& limb, size_t stroke) {
+Json branch_report(const Tree& tree, const SketchedBranch& branch, size_t stroke) {
     Json axis = Json::array();
-    for (const LimbPlace& place : limb.axis)
+    for (const BranchPlace& place : branch.axis)
         axis.push_back({{"place", place_json(tree.frame().to_scan(place.position))},
                         {"radius_m", place.radius},
                         {"measured", place.measured}});
     return {{"stroke", stroke},
-            {"host", limb.host},
-            {"length_m", limb.length},
-            {"base_radius_m", limb.axis.front().radius},
-            {"measured", limb.measured},
-            {"twigs", limb.twigs},
-            {"nodes", limb.scion.size() - 1},
-            {"command", limb.command},
+            {"host", branch.host},
+            {"length_m", branch.length},
+            {"base_radius_m", branch.axis.front().radius},
+            {"measured", branch.measured},
+            {"twigs", branch.twigs},
+            {"nodes", branch.scion.size() - 1},
+            {"command", branch.command},
             {"axis", axis},
-            {"remarks", limb.remarks}};
+            {"remarks", branch.remarks}};
 }
 
 Json fidelity_json(const Fidelity& fidelity) {
@@ -90,7 +90,7 @@ void run_sketch_onto(const Arguments& arguments) {
     TerminalProgress progress(quiet || report);
     progress.update(0.0, "Reading");
     Tree tree = skeleton_from(arguments, arguments.text("--onto", ""));
-    const std::vector<LimbStroke> strokes = read_limb(path, tree.frame());
+    const std::vector<BranchStroke> strokes = read_branch_strokes(path, tree.frame());
     std::optional<PointCloud> cloud;
     std::vector<uint8_t> wood;
     std::optional<FidelityTracker> tracker;
@@ -104,24 +104,25 @@ void run_sketch_onto(const Arguments& arguments) {
             before = tracker->update(tree, &progress);
         }
     }
-    Json limbs = Json::array();
-    std::vector<DrawnLimb> drawn;
+    Json branches = Json::array();
+    std::vector<SketchedBranch> drawn;
     EditLog log;
     for (size_t i = 0; i < strokes.size(); i++) {
         const double done = static_cast<double>(i) / static_cast<double>(strokes.size());
         SubProgress drawing(&progress, 0.4 + 0.4 * done,
                             0.4 + 0.4 * (done + 1.0 / static_cast<double>(strokes.size())));
-        LimbOptions options;
+        SketchedBranchOptions options;
         options.seed = exports.seed + i;
         try {
-            drawn.push_back(draw_limb(tree, cloud ? &*cloud : nullptr, strokes[i], options, wood, &drawing));
+            drawn.push_back(
+                sketch_branch(tree, cloud ? &*cloud : nullptr, strokes[i], options, wood, &drawing));
         } catch (const Cancelled&) {
             throw;
         } catch (const Error& error) {
             if (strokes.size() == 1) throw;
             throw Error("Stroke " + std::to_string(i + 1) + ": " + error.what());
         }
-        if (report) limbs.push_back(limb_report(tree, drawn.back(), i + 1));
+        if (report) branches.push_back(branch_report(tree, drawn.back(), i + 1));
         log.add(perform(tree, drawn.back().command, {}));
     }
     std::optional<Fidelity> after;
@@ -136,18 +137,19 @@ void run_sketch_onto(const Arguments& arguments) {
         json["format_version"] = 1;
         json["version"] = kVersion;
         json["seed"] = exports.seed;
-        json["limbs"] = limbs;
+        json["branches"] = branches;
+        json["limbs"] = branches;  // the old word
         if (before) json["fidelity_before"] = fidelity_json(*before);
         if (after) json["fidelity_after"] = fidelity_json(*after);
         std::printf("%s\n", json.dump(2).c_str());
     }
     if (quiet || report) return;
     for (size_t i = 0; i < drawn.size(); i++) {
-        const DrawnLimb& limb = drawn[i];
-        for (const std::string& remark : limb.remarks)
+        const SketchedBranch& branch = drawn[i];
+        for (const std::string& remark : branch.remarks)
             std::fprintf(stderr, "stroke %zu: %s\n", i + 1, remark.c_str());
-        std::printf("a %.2f m long limb on node %d, %.0f %% of it measured, with %zu twigs\n", limb.length,
-                    limb.host, 100.0 * limb.measured, limb.twigs);
+        std::printf("a %.2f m long branch on node %d, %.0f %% of it measured, with %zu twigs\n",
+                    branch.length, branch.host, 100.0 * branch.measured, branch.twigs);
     }
     if (before && after)
         std::printf("explained points: %.2f %% before, %.2f %% after\n", 100.0 * before->all.explained,

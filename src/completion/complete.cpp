@@ -10,8 +10,7 @@
 #include "geometry/portable_math.h"
 #include "skeleton/cylinders/bark.h"
 #include "skeleton/cylinders/radii.h"
-#include "skeleton/flood/flood_limbs.h"
-#include "skeleton/flood/flood_skeleton.h"
+#include "skeleton/flood/flood_branches.h"
 #include "skeleton/sampling/thin.h"
 #include "skeleton/simplify/assemble.h"
 #include "tree/wood_segments.h"
@@ -156,18 +155,18 @@ Completion Completer::complete(Tree& tree, NodeId node, const DVec3& direction, 
         flood(grid, points, from, {static_cast<uint32_t>(start)}, flood_options, progress);
 
     progress.update(0.9, "Joining");
-    FloodLimbs made = limbs_of(flooded, grid, points.size());
+    FloodBranches made = flood_branches(flooded, grid, points.size());
     const bool guessed = outside(tree, DVec3(grid.means[start])) > std::max(tolerance, kStartVoxels * voxel);
-    infer_radii(made.axes, made.limbs);
-    refine_axes(made.axes, made.limbs, made.places, points, progress);
-    infer_radii(made.axes, made.limbs, true);
+    infer_radii(made.axes, made.branches);
+    refine_axes(made.axes, made.branches, made.places, points, progress);
+    infer_radii(made.axes, made.branches, true);
     Completion done;
-    for (const int32_t limb : made.places.limb)
-        done.points += limb >= 0;
-    drop_strips(made.limbs, made.axes, std::max(kTolerance, kStripVoxels * voxel));
+    for (const int32_t place : made.places.branch)
+        done.points += place >= 0;
+    drop_strips(made.branches, made.axes, std::max(kTolerance, kStripVoxels * voxel));
     drop_short(made, std::max(kShortest, kGapVoxels * voxel));
     if (made.axes.front().size() < 2 || done.points < kLeastPoints) throw Error(nothing_there(reach));
-    const Tree branch = assemble_tree(made.axes, made.limbs, 0.0);
+    const Tree branch = assemble_tree(made.axes, made.branches, 0.0);
     progress.check();
 
     std::vector<NodeId> now(static_cast<size_t>(branch.id_end()), kNoNode);

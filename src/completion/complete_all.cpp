@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "completion/unexplained.h"
-#include "skeleton/flood/flood_skeleton.h"
+#include "skeleton/branches/skeleton_branches.h"
 
 namespace treerec {
 

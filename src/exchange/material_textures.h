@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mesh/image.h"
-#include "mesh/textures.h"
+#include "textures/textures.h"
 
 namespace treerec {
 
@@ -22,9 +22,9 @@ std::vector<uint8_t> encode_png(const Image& image);
 void write_png(const std::string& path, const Image& image);
 
 struct NamedPicture {
-    // "bark_albedo", "bark_normal", "bark_roughness" (mesh/textures.h), "bark_roughness_grey" (the roughness
-    // alone, for formats that want it so), "leaf_albedo", "leaf_normal" (a spray), "blade_albedo" or
-    // "blade_normal" (one leaf, half as large).
+    // "bark_albedo", "bark_normal", "bark_roughness" (textures/textures.h), "bark_roughness_grey" (the
+    // roughness alone, for formats that want it so), "leaf_albedo", "leaf_normal" (a spray), "blade_albedo"
+    // or "blade_normal" (one leaf, half as large).
     std::string name;
     std::string_view png;                               // its bytes
     std::shared_ptr<const std::vector<uint8_t>> drawn;  // what holds them; null for the build's own

@@ -230,6 +230,14 @@ class SceneReader {
     size_t visited_ = 0;
 };
 
+// Of the path as it was given, UTF-8, on every system, as the callbacks below take it: a filesystem path's
+// string() is in the code page on Windows.
+std::string folder_of(const std::string& path) {
+    const bool windows = std::filesystem::path::preferred_separator == '\\';
+    const size_t slash = path.find_last_of(windows ? "/\\" : "/");
+    return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
 tinygltf::Model parse(const std::string& path, const FileBytes& bytes) {
     tinygltf::TinyGLTF reader;
     // Pictures don't matter, and no name is given to a shell.
@@ -255,7 +263,7 @@ tinygltf::Model parse(const std::string& path, const FileBytes& bytes) {
     const std::string_view text = bytes.view();
     if (text.size() > UINT32_MAX) throw Error("'" + path + "' is larger than 4 GB: simplify it.");
     const auto size = static_cast<unsigned int>(text.size());
-    const std::string folder = path_of(path).parent_path().string();
+    const std::string folder = folder_of(path);
     tinygltf::Model model;
     std::string error, warning;
     bool good = false;

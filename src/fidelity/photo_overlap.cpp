@@ -10,7 +10,7 @@
 #include "geometry/parallel.h"
 #include "mesh/leaf_cards.h"
 #include "mesh/levels.h"
-#include "mesh/textures.h"
+#include "textures/textures.h"
 
 namespace treerec {
 

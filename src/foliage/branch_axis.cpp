@@ -23,8 +23,8 @@ DVec3 direction_between(const DVec3& before, double before_length, const DVec3& 
     return normalized_or(before * after_length + after * before_length, after);
 }
 
-// How a branch leaves its parent. A stout one first goes the parent's way and then bends off, as limbs of a
-// fork do; a thin one grows straight out.
+// How a branch leaves its parent. A stout one first goes the parent's way and then bends off, as branches of
+// a fork do; a thin one grows straight out.
 struct Departure {
     DVec3 direction{0.0};
     double share = 0.0;  // how much of `direction` the branch takes, 0..1

@@ -20,7 +20,7 @@ struct LeafPlacement {
     Vec3 x, y, z;
     Vec3 outward;
     float size = 0.1f;       // metres
-    Vec2 wind{0.0f};         // WindGroups::codes() of limb and bough (INSTANCE_CUSTOM.y, w)
+    Vec2 wind{0.0f};         // WindGroups::codes() of primary and secondary branch (INSTANCE_CUSTOM.y, w)
     float phase = 0.0f;      // 0..1 (INSTANCE_CUSTOM.x)
     float hue = 0.0f;        // 0..1 (INSTANCE_CUSTOM.z)
     float stiffness = 0.0f;  // 0..1 of its branch

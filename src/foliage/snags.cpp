@@ -13,9 +13,9 @@ namespace {
 constexpr double kShortRadii = 6.0;   // of the host
 constexpr double kHugRadii = 3.0;     // of the host, from its axis
 constexpr double kLowRadii = 12.0;    // of the host
-constexpr double kThinShare = 0.5;    // of the host's radius: thicker wood is a limb or a stem
-constexpr double kBelowCrown = 0.1;   // of the thin wood's length lies below the crown's foot
-constexpr size_t kHeightSteps = 256;  // the crown's foot is found to such a share of the height
+constexpr double kThinShare = 0.5;    // of the host's radius: thicker wood is a branch or a stem
+constexpr double kBelowCrown = 0.1;   // of the thin wood's length lies below the crown's base
+constexpr size_t kHeightSteps = 256;  // the crown's base is found to such a share of the height
 
 // What a twig and all that grows on it span.
 struct Span {
@@ -25,7 +25,7 @@ struct Span {
 };
 
 // The height below which a tenth of the thin wood's length lies, `skipped` branches not counted.
-double crown_foot(const Tree& tree, const BranchList& list, double thin_radius,
+double crown_base(const Tree& tree, const BranchList& list, double thin_radius,
                   const std::vector<uint8_t>& skipped) {
     const Bounds box = tree.bounds();
     const double step = std::max((box.max.y - box.min.y) / static_cast<double>(kHeightSteps), 1e-12);
@@ -80,7 +80,7 @@ std::vector<uint8_t> find_snags(const Tree& tree, const BranchList& list, double
             span.top = std::max(span.top, tree.node(id).position.y);
         }
     }
-    const double foot = crown_foot(tree, list, stout_radius, snag);
+    const double base = crown_base(tree, list, stout_radius, snag);
     for (size_t i = 0; i < count; i++) {
         const Branch& branch = list.branches[i];
         if (branch.attach == kNoNode || snag[i]) continue;
@@ -88,7 +88,7 @@ std::vector<uint8_t> find_snags(const Tree& tree, const BranchList& list, double
         if (twig[i] != static_cast<int32_t>(i)) continue;
         const double host = tree.node(branch.attach).radius;
         const Span& span = spans[i];
-        if (span.aside < kHugRadii * host || (span.reach < kLowRadii * host && span.top < foot)) snag[i] = 1;
+        if (span.aside < kHugRadii * host || (span.reach < kLowRadii * host && span.top < base)) snag[i] = 1;
     }
     return snag;
 }

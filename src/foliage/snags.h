@@ -10,7 +10,7 @@
 namespace treerec {
 
 // By branch: 1 for a snag, and for all that grows on one. A scan of an old stem is full of them - dead twigs,
-// bark strips, water shoots, noise - and leaves on them make ivy of its stem and a bush of its foot. A snag
+// bark strips, water shoots, noise - and leaves on them make ivy of its stem and a bush of its base. A snag
 // springs from wood thicker than `stout_radius` (metres) and
 //   - is shorter than six radii of that wood, or
 //   - is itself thinner than `stout_radius` and half that wood, and hugs it: nowhere further from its axis

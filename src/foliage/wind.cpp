@@ -13,7 +13,8 @@ namespace {
 constexpr double kMostOut = 1023.0 / 1024.0;  // a half's mantissa rounds to no more
 constexpr double kLeastSine = 0.3;            // of the angle at which a branch leaves its parent
 constexpr double kSettling = 3.0;             // radii past the bark until a branch goes its own way
-// Of the tree's height: tips of longer limbs and boughs swing no further than those of such a length.
+// Of the tree's height: tips of longer primary and secondary branches swing no further than those of such a
+// length.
 constexpr double kLongest[2] = {0.35, 0.15};
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What of the wind's motion bark and leaves must agree on (docs/wind.md): how far out on its limb, and on its
-// bough of that limb, a piece of wood is.
+// What of the wind's motion bark and leaves must agree on (docs/wind.md): how far out on its primary branch,
+// and on its secondary branch of that primary branch, a piece of wood is.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,17 @@ float wind_code(int phase, double out);
 // A code as the bits of a half.
 uint16_t half_code(float code);
 
-// A limb is a branch of order 1 with all that it bears, a bough one of order 2: each swings about its pivot,
-// where it leaves its parent, as one. Whatever touches belongs to the same groups, or lies at the pivot of
-// the one that begins there, where its motion and the change of that are zero; so nothing comes apart.
+// A primary branch is a branch of order 1 with all that it bears, a secondary branch one of order 2: each
+// swings about its pivot, where it leaves its parent, as one. Whatever touches belongs to the same groups, or
+// lies at the pivot of the one that begins there, where its motion and the change of that are zero; so
+// nothing comes apart.
 class WindGroups {
   public:
     // tree and list must outlive it. height: of the tree, metres.
     WindGroups(const Tree& tree, const BranchList& list, double height);
 
-    // The codes of limb and bough at a point on or in the bark. way: metres along the chords of the branch
-    // (AxisPoint::way). off: from the axis there to the point.
+    // The codes of primary and secondary branch at a point on or in the bark. way: metres along the chords of
+    // the branch (AxisPoint::way). off: from the axis there to the point.
     Vec2 codes(size_t branch, double way, const DVec3& off = DVec3(0.0)) const;
     // The same for a point far from any fork, where `off` is without effect.
     bool is_free(size_t branch, double way) const { return way >= runs_[branch].settled; }

@@ -18,7 +18,7 @@ bool has_link(const Surface& surface, Vertex v) {
     return false;
 }
 
-// Next on the link that leads on towards the tip (1) or the foot (-1), the way that climbs most; null: none.
+// Next on the link that leads on towards the tip (1) or the base (-1), the way that climbs most; null: none.
 Vertex next_on_link(const Surface& surface, Vertex from, int way) {
     const SurfaceMesh& mesh = surface.mesh;
     Vertex best = SurfaceMesh::null_vertex();

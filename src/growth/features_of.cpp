@@ -233,8 +233,8 @@ void add_obstacles(const Tree& tree, const BranchList& list, const TreePlan& pla
             throw Error("An obstacle stands in the seed that bark starts from. Move one of them aside.");
     }
     if (!planned.plan.seed.empty()) return;
-    const DVec3& foot = planned.plan.branches.front().axis.front().position;
-    if (obstacles.distance(Box{foot, foot}, kSeed * recipe.longest) < kSeed * recipe.longest)
+    const DVec3& base = planned.plan.branches.front().axis.front().position;
+    if (obstacles.distance(Box{base, base}, kSeed * recipe.longest) < kSeed * recipe.longest)
         throw Error(
             "An obstacle stands where the trunk begins, below the ground: nothing can grow there. "
             "Move it aside.");

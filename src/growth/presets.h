@@ -15,10 +15,10 @@ struct GrowthPreset {
     std::string_view recipe;  // growth/recipe.h; for a trunk whose radius is kPresetRadius
 };
 
-// Metres, of the trunk where it is thickest above its foot's flare.
+// Metres, of the trunk where it is thickest above its base's flare.
 inline constexpr double kPresetRadius = 0.22;
 
-// What that is of a tree: metres, at breast height; of lower trees at the foot.
+// What that is of a tree: metres, at breast height; of lower trees at the base.
 double trunk_radius(const Tree& tree);
 
 // Longest edges for a preset, metres: a fifth of the trunk's radius, at which mouths and lips show, or as

@@ -155,7 +155,7 @@ std::vector<Parameter> with_place(double along, std::vector<Parameter> rest) {
     std::vector<Parameter> all{
         node,
         length_parameter("along", along, -kFarthest, kFarthest,
-                         "from the node along its branch; of the trunk from its foot"),
+                         "from the node along its branch; of the trunk from its base"),
         number_parameter("around", 0.0, -3600.0, 3600.0, "degrees about the branch").slider(0.0, 360.0)};
     all.insert(all.end(), rest.begin(), rest.end());
     return all;

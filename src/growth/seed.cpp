@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kSides = 6;           // of the prism
 constexpr double kPrismEdge = 0.7;  // of the longest edge
-constexpr double kPrismTip = 1.7;   // such edges above its foot
+constexpr double kPrismTip = 1.7;   // such edges above its base
 constexpr size_t kMostFaces = 200000;
 constexpr double kAtCorner = 0.5;  // of the shortest edge: nearer to a corner, the tip is that corner,
 constexpr double kAtEdge = 0.1;    // and with less than such a share of the far corner, it lies on the edge
@@ -151,19 +151,19 @@ Vertex vertex_at(Surface& surface, const Exit& exit, double shortest) {
 
 Vertex plant_prism(Surface& surface, const GrowthPlan& plan, double longest) {
     SurfaceMesh& mesh = surface.mesh;
-    const AxisPlace& foot = plan.branches.front().axis.front();
-    const DVec3 up = foot.direction, x = any_perpendicular(up), z = glm::cross(up, x);
-    const double edge = kPrismEdge * longest, tip = foot.along + kPrismTip * edge;
+    const AxisPlace& base = plan.branches.front().axis.front();
+    const DVec3 up = base.direction, x = any_perpendicular(up), z = glm::cross(up, x);
+    const double edge = kPrismEdge * longest, tip = base.along + kPrismTip * edge;
     Vertex ring[2][kSides];
     for (int row = 0; row < 2; row++)
         for (int side = 0; side < kSides; side++) {
             const double angle = 2.0 * kPi * side / kSides;
             ring[row][side] = add_cambium(
-                surface, foot.pith + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
-                foot.along + edge * row, tip);
+                surface, base.pith + edge * (x * std::cos(angle) + z * std::sin(angle)) + up * (edge * row),
+                base.along + edge * row, tip);
         }
-    const Vertex below = add_cambium(surface, foot.pith, foot.along, tip);
-    const Vertex above = add_cambium(surface, foot.pith + up * (kPrismTip * edge), tip, tip);
+    const Vertex below = add_cambium(surface, base.pith, base.along, tip);
+    const Vertex above = add_cambium(surface, base.pith + up * (kPrismTip * edge), tip, tip);
     surface.cells[above].tissue = Tissue::kApical;
     for (int side = 0; side < kSides; side++) {
         const int next = (side + 1) % kSides;
@@ -214,10 +214,10 @@ Vertex plant_mesh(Surface& surface, const GrowthPlan& plan, double shortest) {
         surface.corners(face, v);
         inside.add(surface.place(v[0]), surface.place(v[1]), surface.place(v[2]));
     }
-    const DVec3& foot = trunk.axis.front().pith;
-    if (!inside.holds(foot))
-        throw Error("The trunk does not begin in the seed: move it so that it holds " + number_text(foot.x) +
-                    "," + number_text(foot.y) + "," + number_text(foot.z) + ".");
+    const DVec3& base = trunk.axis.front().pith;
+    if (!inside.holds(base))
+        throw Error("The trunk does not begin in the seed: move it so that it holds " + number_text(base.x) +
+                    "," + number_text(base.y) + "," + number_text(base.z) + ".");
     const std::optional<Exit> exit = find_exit(surface, trunk);
     if (!exit) throw Error("The trunk does not come out of the seed: nothing is left to grow.");
     const Vertex tip = vertex_at(surface, *exit, shortest);
@@ -229,7 +229,7 @@ Vertex plant_mesh(Surface& surface, const GrowthPlan& plan, double shortest) {
         surface.links[mesh.edge(h)] = true;
     // As if all had been farther apart: what is finer than T_m is merged at once.
     for (const Vertex v : mesh.vertices())
-        surface.cells[v].previous = foot + 2.0 * (surface.place(v) - foot);
+        surface.cells[v].previous = base + 2.0 * (surface.place(v) - base);
     return tip;
 }
 

@@ -17,10 +17,10 @@ constexpr double kCatchUp = 2.0;
 // it grows less in a step; there where it grows by so much of its edges in that, or more.
 constexpr double kSmooth = 0.2, kTension = 0.15, kPace = 0.1;
 constexpr int kPieces = 2, kTries = 6;  // to find where wood that is not round ends
-constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's foot or end
+constexpr double kFlatEnd = 4.0;  // a radius over how far its wood goes on beyond the axis's base or end
 
 // How far a vertex is from the middle of its wood, and which way it grows, as its bark sees it: beside the
-// axis, and below its foot and above a closed end as in a flat bowl.
+// axis, and below its base and above a closed end as in a flat bowl.
 struct Stand {
     DVec3 off, normal;
 };
@@ -30,11 +30,11 @@ Stand stand_of(const GrowthPlan& plan, const GrowthBranch& branch, const AxisPla
     const DVec3 off = place - wood_centre(plan, axis, step + 1.0);
     const double up = glm::dot(normal, axis.direction);
     Stand stand{off - axis.direction * glm::dot(off, axis.direction), normal - axis.direction * up};
-    const AxisPlace &foot = branch.axis.front(), &end = branch.axis.back();
-    const double above = glm::dot(place - wood_centre(plan, foot, step + 1.0), foot.direction);
+    const AxisPlace &base = branch.axis.front(), &end = branch.axis.back();
+    const double above = glm::dot(place - wood_centre(plan, base, step + 1.0), base.direction);
     const double past = glm::dot(place - wood_centre(plan, end, step + 1.0), end.direction);
     double beyond = 0.0;
-    if (branch.parent < 0 && above < 0.0 && axis.along < foot.along + foot.radius) beyond = above;
+    if (branch.parent < 0 && above < 0.0 && axis.along < base.along + base.radius) beyond = above;
     if (!branch.ends_open && past > 0.0 && axis.along > end.along - end.radius) beyond = past;
     if (beyond != 0.0) {
         stand.off += axis.direction * (kFlatEnd * beyond);

@@ -50,7 +50,7 @@ A -> !(w0*vr) F(0.3) [&(a) F(0.3) A] /(d1) [&(a) F(0.3) A] /(d2) [&(a) F(0.3) A]
 F(l) -> F(l*lr)
 !(w) -> !(w*vr)
 )"},
-    {"oak", R"(# A broad crown on a short trunk: limbs wind, and fork into a strong and a weak arm.
+    {"oak", R"(# A broad crown on a short trunk: branches wind, and fork into a strong and a weak arm.
 iterations: 14
 leaf_preset: oak
 seed: 2
@@ -98,7 +98,7 @@ H(l, w, k) : k > 0 -> !(w) +(normal(0, 3)) F(l/7) [+(uniform(45, 60)) S(l*0.075*
 H(l, w, k) -> !(0.002) F(l/7)
 S(l, w) -> !(max(w, 0.002)) F(l/2) !(0.002) F(l/2)
 )"},
-    {"willow", R"(# Limbs that rise and spread, and long shoots that hang from them.
+    {"willow", R"(# Branches that rise and spread, and long shoots that hang from them.
 iterations: 24
 leaf_preset: willow
 seed: 3

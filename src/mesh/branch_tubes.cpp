@@ -5,6 +5,7 @@
 #include "error.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "mesh/parallel_transport.h"
 #include "mesh/tube_builder.h"
 
 namespace treerec {
@@ -199,18 +200,18 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
     if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk())
-        tube.foot = cut_level(out.data() + tube.first_ring, tube.rings);
-    if (!tube.foot) tube.flare = {};
-    if (tube.foot) stretch_foot(tube.flare, out.data() + tube.first_ring, tube.rings);
+        tube.ground = cut_level(out.data() + tube.first_ring, tube.rings);
+    if (!tube.ground) tube.flare = {};
+    if (tube.ground) stretch_base(tube.flare, out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
-    tube.foot_radius = points.front().radius;
+    tube.base_radius = points.front().radius;
     // From as far as coarser levels are seen, a thick end still shows.
     tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
     tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
-    tube.base = branch.attach == kNoNode && !tube.foot && begins;
+    tube.base = branch.attach == kNoNode && !tube.ground && begins;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
-    frame_rings(out.data() + tube.first_ring, tube.rings);
+    parallel_transport(out.data() + tube.first_ring, tube.rings);
 }
 
 // Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.

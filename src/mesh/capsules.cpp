@@ -1,7 +1,7 @@
 #include "mesh/capsules.h"
 
 #include "error.h"
-#include "mesh/limb_pieces.h"
+#include "mesh/branch_pieces.h"
 
 namespace treerec {
 
@@ -13,8 +13,8 @@ std::vector<Capsule> fit_capsules(const Tree& tree, const CapsuleOptions& option
         throw Error("Capsules need a minimum radius of 0 or more and a tolerance above 0.");
     }
     std::vector<Capsule> capsules;
-    for (const LimbPiece& piece :
-         part_limbs(tree, options.maximum, options.minimum_radius, options.tolerance, false)) {
+    for (const BranchPiece& piece :
+         part_branches(tree, options.maximum, options.minimum_radius, options.tolerance, false)) {
         capsules.push_back({piece.from, piece.to, piece.mean_radius, piece.node});
     }
     return capsules;

@@ -17,7 +17,7 @@ constexpr double kDown = 0.8;        // and down onto the parent's bark,
 constexpr double kLengthwise = 0.6;  // and more than that along the parent's axis, as its fibres do
 constexpr double kMostDown = 0.45;   // of the parent's radius
 constexpr double kSteepest = 2.5;    // how much longer the web is where the branch leaves flat
-constexpr double kSink = 0.01;       // of the parent's radius: how deep the foot lies in its bark
+constexpr double kSink = 0.01;       // of the parent's radius: how deep the base lies in its bark
 constexpr double kLeastUp = 0.25;    // of the branch's radius; shorter webs are none
 constexpr double kMostOfBranch = 0.6;
 constexpr double kThickRadius = 0.02;  // metres: from here on the web has a row more
@@ -113,11 +113,11 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
 
 // One line of a branch's tube, from corner to corner, and where it comes out of the parent's bark.
 struct Generator {
-    DVec3 crossing, top, foot;
+    DVec3 crossing, top, base;
     DVec3 way;            // unit, up the branch at the crossing
     double exit;          // metres along
     double end;           // metres along: where the web ends
-    BarkPlace at;         // the foot's
+    BarkPlace at;         // the base's
     size_t span;          // of the host, where that is
     DVec3 outward, side;  // of the branch, at the end of the web
     DVec3 bark;           // the parent's normal at the crossing,
@@ -134,8 +134,8 @@ class CollarMaker {
             if (!find_exit(j)) return {};
         if (!reach_up()) return {};
         for (uint32_t j = 0; j < branch_.sides; j++)
-            if (!set_foot(j)) return {};
-        if (!hide_foot()) return {};
+            if (!set_base(j)) return {};
+        if (!hide_base()) return {};
         find_middle();
         return write(out);
     }
@@ -191,8 +191,8 @@ class CollarMaker {
 
     bool find_exit(uint32_t index);
     bool reach_up();
-    bool set_foot(uint32_t index);
-    bool hide_foot();
+    bool set_base(uint32_t index);
+    bool hide_base();
     void find_middle();
     void web(uint32_t index, double share, double row_radius, CollarVertex& vertex) const;
     void dress_as_host(CollarVertex& vertex, const BarkPlace& at) const;
@@ -273,7 +273,7 @@ bool CollarMaker::reach_up() {
     return true;
 }
 
-bool CollarMaker::set_foot(uint32_t index) {
+bool CollarMaker::set_base(uint32_t index) {
     Generator& line = lines_[index];
     const double own = radius_at(line.exit);
     const DVec3 axis = host_.rings[std::min(span_, host_.count - 2)].normal;
@@ -289,27 +289,27 @@ bool CollarMaker::set_foot(uint32_t index) {
         line.at = locate(host_, line.crossing + away * down, hint);
         if (line.at.beyond) continue;
         line.span = hint;
-        line.foot = line.at.centre + line.at.radial * (line.at.surface - kSink * line.at.radius);
+        line.base = line.at.centre + line.at.radial * (line.at.surface - kSink * line.at.radius);
         return true;
     }
     return false;
 }
 
 // Where the parent bends, the straight way between two corners may leave its bark: they go deeper then.
-bool CollarMaker::hide_foot() {
+bool CollarMaker::hide_base() {
     for (int pass = 0; pass < 4; pass++) {
         bool hidden = true;
         for (uint32_t j = 0; j < branch_.sides; j++) {
             Generator &one = lines_[j], &other = lines_[(j + 1) % branch_.sides];
             if (one.span == other.span) continue;  // one frustum is convex
             size_t hint = span_;
-            const BarkPlace between = locate(host_, 0.5 * (one.foot + other.foot), hint);
+            const BarkPlace between = locate(host_, 0.5 * (one.base + other.base), hint);
             if (between.beyond) return false;
             const double above = between.height + 0.2 * kSink * between.radius;
             if (above <= 0.0) continue;
             hidden = false;
             for (Generator* line : {&one, &other})
-                line->foot -= line->at.radial * (above + 0.5 * kSink * between.radius);
+                line->base -= line->at.radial * (above + 0.5 * kSink * between.radius);
         }
         if (hidden) return true;
     }
@@ -324,16 +324,16 @@ void CollarMaker::find_middle() {
     middle_ = locate(host_, sum / static_cast<double>(branch_.sides), hint).corner;
 }
 
-// On the curve from the foot over the crossing to the top, tangent to both barks; share: 0 .. 1 along it.
+// On the curve from the base over the crossing to the top, tangent to both barks; share: 0 .. 1 along it.
 void CollarMaker::web(uint32_t index, double share, double row_radius, CollarVertex& vertex) const {
     const Generator& line = lines_[index];
     const double a = (1.0 - share) * (1.0 - share), b = 2.0 * share * (1.0 - share), c = share * share;
-    vertex.position = line.foot * a + line.crossing * b + line.top * c;
+    vertex.position = line.base * a + line.crossing * b + line.top * c;
     const DVec3& own = line.outward;
     DVec3 normal = line.at.normal * (1.0 - share) + own * share;
     if (share > 0.0 && share < 1.0) {
         const DVec3 way = normalized_or(
-            (line.crossing - line.foot) * (1.0 - share) + (line.top - line.crossing) * share, DVec3(0.0));
+            (line.crossing - line.base) * (1.0 - share) + (line.top - line.crossing) * share, DVec3(0.0));
         normal -= way * glm::dot(normal, way);
     }
     vertex.normal = normalized_or(normal, own);

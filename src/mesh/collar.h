@@ -30,7 +30,7 @@ struct CollarVertex {
     double host_along;  // and how far along that is
 };
 
-// Rows of vertices, each of the columns of the branch's tube: first the foot, on the parent's bark; then
+// Rows of vertices, each of the columns of the branch's tube: first the base, on the parent's bark; then
 // twice the same places, once with the picture of the branch's bark and once with the parent's; then on along
 // the branch, up to a whole ring of it. Faces join row 0 to 2, 1 to 3, 3 to 4 and so on.
 struct Collar {
@@ -39,7 +39,7 @@ struct Collar {
 };
 
 // Appends the rows to `out`. host_span: about which of the host's rings the branch starts. No collar where
-// the branch does not come out of the host's bark all round, or has not the room for it. A corner's foot lies
+// the branch does not come out of the host's bark all round, or has not the room for it. A corner's base lies
 // within the host, by about a hundredth of its radius.
 Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span,
                    std::vector<CollarVertex>& out);

@@ -5,7 +5,7 @@
 
 #include "error.h"
 #include "geometry/portable_math.h"
-#include "mesh/limb_pieces.h"
+#include "mesh/branch_pieces.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -48,8 +48,8 @@ std::vector<ConvexPart> fit_convex_parts(const Tree& tree, const ConvexOptions& 
         }
         wood = &trunk;
     }
-    for (const LimbPiece& piece :
-         part_limbs(*wood, options.maximum, options.minimum_radius, options.tolerance, true)) {
+    for (const BranchPiece& piece :
+         part_branches(*wood, options.maximum, options.minimum_radius, options.tolerance, true)) {
         const double length = glm::distance(piece.from, piece.to);
         if (length < kThinnest) continue;
         const DVec3 way = (piece.to - piece.from) / length;

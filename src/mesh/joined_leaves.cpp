@@ -28,7 +28,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
     mesh.indices.resize(leaves.size() * corner_indices);
     joined.lengthwise.resize(vertices);
     joined.across.resize(vertices);
-    joined.bough.resize(vertices);
+    joined.secondary.resize(vertices);
     size_t v = 0, index = 0;
     for (size_t i = 0; i < leaves.size(); i++) {
         if (progress && i % kLeavesBetweenChecks == 0) progress->check();
@@ -48,7 +48,7 @@ JoinedLeaves join_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& c
             mesh.custom0[v] = petiole;
             joined.lengthwise[v] = lengthwise;
             joined.across[v] = across;
-            joined.bough[v] = leaf.wind.y;
+            joined.secondary[v] = leaf.wind.y;
         }
     }
     return joined;

@@ -151,9 +151,9 @@ Mesh spray(const LeafRules& rules, int level) {
 Mesh single_leaf(const LeafRules& rules, int level, float petiole) {
     CardBuilder card;
     card.stalk(Frame(), petiole, kStalkShare);
-    Frame foot;
-    foot.origin.y = petiole;
-    card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
+    Frame base;
+    base.origin.y = petiole;
+    card.blade(base, 1.0f, static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
                rules.fold);
     return card.take();
 }
@@ -179,18 +179,18 @@ Mesh pinnate_leaf(const LeafRules& rules, int level, float petiole) {
     const auto curl = static_cast<float>(rules.curl), fold = static_cast<float>(rules.fold);
     for (int i = 0; i < pairs; i++) {
         const float place = pairs > 1 ? static_cast<float>(i) / static_cast<float>(pairs - 1) : 1.0f;
-        Frame foot;
-        foot.origin.y = petiole + 0.12f + (top - 0.12f) * (count % 2 ? 0.86f : 1.0f) * place;
+        Frame base;
+        base.origin.y = petiole + 0.12f + (top - 0.12f) * (count % 2 ? 0.86f : 1.0f) * place;
         // Longest in the middle, and closing in on the tip.
         const float size = length * (0.78f + 0.22f * portable::sin(3.1f * (0.15f + 0.7f * place)));
         for (const float side : {-1.0f, 1.0f})
-            card.blade(foot.rolled(side * fold).turned(side * (72.0f - 22.0f * place)), size,
+            card.blade(base.rolled(side * fold).turned(side * (72.0f - 22.0f * place)), size,
                        width * size / length, level, curl, leaflets_fold(rules));
     }
     if (count % 2) {
-        Frame foot;
-        foot.origin.y = petiole + top;
-        card.blade(foot, length, width, level, curl, leaflets_fold(rules));
+        Frame base;
+        base.origin.y = petiole + top;
+        card.blade(base, length, width, level, curl, leaflets_fold(rules));
     }
     return card.take();
 }
@@ -199,8 +199,8 @@ Mesh palmate_leaf(const LeafRules& rules, int level, float petiole) {
     CardBuilder card;
     const int count = leaflets_at(rules, level);
     card.stalk(Frame(), petiole, kStalkShare);
-    Frame foot;
-    foot.origin.y = petiole;
+    Frame base;
+    base.origin.y = petiole;
     for (int i = 0; i < count; i++) {
         const float place =
             count > 1 ? 2.0f * static_cast<float>(i) / static_cast<float>(count - 1) - 1.0f : 0.0f;
@@ -208,7 +208,7 @@ Mesh palmate_leaf(const LeafRules& rules, int level, float petiole) {
             count > 1 ? kPalmateHalf * std::min(1.0f, 0.35f + 0.11f * static_cast<float>(count)) : 0.0f;
         const float size = 1.0f - 0.42f * place * place;
         const float side = place < 0.0f ? -1.0f : place > 0.0f ? 1.0f : 0.0f;
-        card.blade(foot.rolled(side * static_cast<float>(rules.fold)).turned(spread * place), size,
+        card.blade(base.rolled(side * static_cast<float>(rules.fold)).turned(spread * place), size,
                    size * static_cast<float>(rules.blade_width), level, static_cast<float>(rules.curl),
                    leaflets_fold(rules));
     }
@@ -223,15 +223,15 @@ Mesh needle_bundle(const LeafRules& rules, int level, float petiole) {
         // Around the bundle's axis, each leaning out of it.
         const double around = 2.0 * kPi * i / count;
         const float lean = count > 1 ? glm::radians(kNeedleSplay) : 0.0f;
-        Frame foot;
-        foot.origin.y = petiole;
+        Frame base;
+        base.origin.y = petiole;
         const Vec3 out(static_cast<float>(portable::cos(around)), 0.0f,
                        static_cast<float>(portable::sin(around)));
-        foot.y = Vec3(0.0f, portable::cos(lean), 0.0f) + out * portable::sin(lean);
-        foot.x =
-            glm::normalize(glm::cross(foot.y, std::abs(out.z) > 0.5f ? Vec3(0, 0, 1) : Vec3(0.3f, 0, 1)));
-        foot.z = glm::cross(foot.x, foot.y);
-        card.blade(foot, 1.0f, static_cast<float>(rules.blade_width), 1, static_cast<float>(rules.curl), 0.0);
+        base.y = Vec3(0.0f, portable::cos(lean), 0.0f) + out * portable::sin(lean);
+        base.x =
+            glm::normalize(glm::cross(base.y, std::abs(out.z) > 0.5f ? Vec3(0, 0, 1) : Vec3(0.3f, 0, 1)));
+        base.z = glm::cross(base.x, base.y);
+        card.blade(base, 1.0f, static_cast<float>(rules.blade_width), 1, static_cast<float>(rules.curl), 0.0);
     }
     return card.take();
 }

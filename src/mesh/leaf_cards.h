@@ -45,8 +45,8 @@ float leaf_growth(double level);  // how much larger
 void add_leaves(Bounds& bounds, const std::vector<LeafPlacement>& leaves, float growth = 1.0f);
 
 // Godot's MultiMesh buffer: per leaf 12 floats of transform (3 rows of 4), 4 of colour (the outward direction
-// in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, wind code of the limb,
-// hue, wind code of the bough; see foliage/wind.h).
+// in the leaf's own axes as rgb * 2 - 1, occlusion in a), 4 of custom data (phase, wind code of the primary
+// branch, hue, wind code of the secondary branch; see foliage/wind.h).
 std::vector<float> leaf_buffer(const std::vector<LeafPlacement>& leaves);
 
 }  // namespace treerec

@@ -41,7 +41,7 @@ struct Mesh {
     MeshArray<Vec4> colors;    // wind channels (design.md): sway, along, phase, ambient occlusion; 0..1
     MeshArray<Vec4> custom0;   // pivot of the branch xyz, branch level w
     MeshArray<float> radii;    // of the wood, metres; below 0 where two branches' pictures meet on a collar
-    MeshArray<Vec2> wind;      // WindGroups::codes() of limb and bough
+    MeshArray<Vec2> wind;      // WindGroups::codes() of primary and secondary branch
     MeshArray<uint32_t> indices;
 
     size_t triangle_count() const { return indices.size() / 3; }

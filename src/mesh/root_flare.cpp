@@ -9,14 +9,14 @@ namespace treerec {
 
 namespace {
 
-constexpr double kWider = 1.32;        // the foot's radius over that of the trunk above it, as trunks stand
+constexpr double kWider = 1.32;        // the base's radius over that of the trunk above it, as trunks stand
 constexpr double kReach = 1.6;         // radii up the trunk, but
 constexpr double kMostReach = 0.45;    // metres at most
 constexpr double kLookUp = 3.0;        // radii: where the trunk above is measured
 constexpr double kLobe = 0.45;         // of the flare: how much further out it is at a root than between two
 constexpr double kRoughly = 0.05;      // less than that is left out
 constexpr uint32_t kSidesPerLobe = 4;  // fewer show no root
-constexpr double kFootHeight = 3.0;    // radii: how far up a trunk widens into its roots
+constexpr double kBaseHeight = 3.0;    // radii: how far up a trunk widens into its roots
 
 }  // namespace
 
@@ -25,15 +25,15 @@ RootFlare plan_flare(std::vector<AxisPoint>& points, uint32_t sides) {
     if (points.size() < 2) return flare;
     const double length = points.back().along;
     size_t hint = 0;
-    const double foot = points.front().radius;
-    const double up = kLookUp * foot;
+    const double base = points.front().radius;
+    const double up = kLookUp * base;
     if (up > 0.5 * length) return flare;
     const double above = axis_at(points, up, hint).radius;
-    // What it is at the foot already, and must stay.
-    const double lacks = kWider * above / foot - 1.0;
+    // What it is at the base already, and must stay.
+    const double lacks = kWider * above / base - 1.0;
     if (lacks < kRoughly) return flare;
     flare.amount = std::min(lacks, kWider - 1.0);
-    flare.reach = std::min(kReach * foot, kMostReach);
+    flare.reach = std::min(kReach * base, kMostReach);
     flare.lobes = static_cast<int>(std::min(sides / kSidesPerLobe, 6u));
     if (flare.lobes < 3) flare.lobes = 0;
     for (double share : {0.25, 0.55, 1.0}) {
@@ -59,12 +59,12 @@ FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle) {
     return at;
 }
 
-void stretch_foot(const RootFlare& flare, Ring* rings, size_t count) {
+void stretch_base(const RootFlare& flare, Ring* rings, size_t count) {
     for (size_t i = 0; i < count && rings[i].along < flare.reach; i++) {
         const double left = 1.0 - rings[i].along / flare.reach;
         rings[i].stretch = 1.0 + flare.amount * left * left;
     }
-    limit_slant(rings, count, std::max(kFootHeight * rings[0].radius, flare.reach));
+    limit_slant(rings, count, std::max(kBaseHeight * rings[0].radius, flare.reach));
 }
 
 }  // namespace treerec

@@ -1,4 +1,4 @@
-// The foot of a trunk, which widens into its roots. Internal to mesh/.
+// The base of a trunk, which widens into its roots. Internal to mesh/.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct RootFlare {
     int lobes = 0;        // roots that it runs out into; 0: round
 };
 
-// What a standing trunk still lacks: scans often lose the foot in grass, and a pipe in the ground is no tree.
+// What a standing trunk still lacks: scans often lose the base in grass, and a pipe in the ground is no tree.
 // One that the scan itself widens keeps what was measured. Adds points to hang rings on. points: the trunk's
 // axis, from the root; sides: of its tube.
 RootFlare plan_flare(std::vector<AxisPoint>& points, uint32_t sides);
@@ -29,8 +29,8 @@ struct FlareAt {
 // At an angle of a ring that lies below the flare's reach.
 FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle);
 
-// The picture of a foot's bark: as wide as the wood is on average there, as far as limit_slant() lets it.
+// The picture of a base's bark: as wide as the wood is on average there, as far as limit_slant() lets it.
 // rings: of the trunk, from the root.
-void stretch_foot(const RootFlare& flare, Ring* rings, size_t count);
+void stretch_base(const RootFlare& flare, Ring* rings, size_t count);
 
 }  // namespace treerec

@@ -35,19 +35,19 @@ struct Tube {
     uint32_t rings = 0;  // 0: not drawn
     uint32_t sides = 0;
     bool round_tip = false;
-    bool cut = false;             // the tip is a cut face
-    bool base = false;            // closed where it begins
-    bool point = false;           // the last ring is only the apex
-    bool plug = false;            // closed where it begins by flat faces on its own corners
-    double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
-    double parent_radius = 0.0;   // metres, 0 for the trunk
-    DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
-    std::optional<double> foot;   // y of a standing trunk's level cut
-    RootFlare flare;              // of that trunk
-    Collar collar;                // on its parent's bark
-    size_t first_collar = 0;      // its vertices in the chunk
-    double foot_radius = 0.0;     // metres, of the wood where it starts; coarser levels only
-    uint32_t host_ring = 0;       // of the parent, below where this one starts
+    bool cut = false;              // the tip is a cut face
+    bool base = false;             // closed where it begins
+    bool point = false;            // the last ring is only the apex
+    bool plug = false;             // closed where it begins by flat faces on its own corners
+    double exit = 0.0;             // metres along, where it leaves its parent's bark; 0 for the trunk
+    double parent_radius = 0.0;    // metres, 0 for the trunk
+    DVec3 parent_direction{0.0};   // unit, of the parent where the tube starts
+    std::optional<double> ground;  // y of a standing trunk's level cut
+    RootFlare flare;               // of that trunk
+    Collar collar;                 // on its parent's bark
+    size_t first_collar = 0;       // its vertices in the chunk
+    double base_radius = 0.0;      // metres, of the wood where it starts; coarser levels only
+    uint32_t host_ring = 0;        // of the parent, below where this one starts
     size_t first_vertex = 0;
     size_t first_index = 0;
 

@@ -11,6 +11,265 @@ namespace {
 
 constexpr double kCrease = 0.2;  // of the light: how much darker it is halfway up a collar
 
+// Puts the vertices of one tube into the mesh, row after row, and then its faces.
+class Emitter {
+  public:
+    Emitter(const Builder& builder, size_t index, Mesh& mesh)
+        : b_(builder),
+          index_(index),
+          mesh_(mesh),
+          branch_(b_.list.branches[index]),
+          tube_(b_.tubes[index]),
+          run_(b_.rings_of(index)),
+          last_(run_[tube_.rings - 1]),
+          sides_(tube_.sides),
+          stride_(tube_.sides + 1),
+          circle_(polygon(tube_.sides)),
+          phase_(b_.phase_of(index)),
+          custom0_(Vec3(run_[0].centre), static_cast<float>(branch_.order)),
+          vertex_(tube_.first_vertex) {}
+
+    void put_collar();
+    void put_rings();
+    void put_tip();
+    void put_base();
+    void put_apexes();
+    void join() const;
+
+  private:
+    double length() const { return last_.along; }
+
+    void put(const DVec3& position, const DVec3& normal, const DVec3& tangent, double around, double repeats,
+             double v, double radius, const Vec4& color) {
+        mesh_.positions[vertex_] = Vec3(position);
+        mesh_.normals[vertex_] = Vec3(normal);
+        mesh_.uvs[vertex_] = {static_cast<float>(around * repeats), static_cast<float>(v)};
+        mesh_.colors[vertex_] = color;
+        mesh_.tangents[vertex_] = Vec4(Vec3(tangent), -1.0f);
+        if (b_.options.pivots) {
+            mesh_.custom0[vertex_] = custom0_;
+            mesh_.radii[vertex_] = static_cast<float>(radius / b_.widened[index_]);
+            mesh_.wind[vertex_] = code_;
+        }
+        vertex_++;
+    }
+
+    Vec4 color_at(const DVec3& centre, double along, double light, float of_phase) const {
+        return Vec4(static_cast<float>(b_.crown.sway(centre)),
+                    static_cast<float>(std::min(along / length(), 1.0)), of_phase, static_cast<float>(light));
+    }
+
+    double light_at(const DVec3& centre, double along, double shade = 1.0) const {
+        return b_.light_at(tube_, run_[0].radius, centre, along, shade);
+    }
+
+    // How far normals lean to those of the parent's bark where a branch comes out of it, so that light finds
+    // no edge: 0 .. 1.
+    double blend_at(const Ring& ring) const {
+        if (tube_.parent_radius <= 0.0 || b_.options.level > 0 || tube_.collar.rows > 0 ||
+            run_[1].radius < kCollarRadius)
+            return 0.0;
+        const double past = (ring.along - tube_.exit) / (1.5 * run_[1].radius);
+        return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
+    }
+
+    void put_ring(size_t i);
+
+    const Builder& b_;
+    const size_t index_;  // of the branch
+    Mesh& mesh_;
+    const Branch& branch_;
+    const Tube& tube_;
+    const Ring* const run_;
+    const Ring& last_;
+    const uint32_t sides_, stride_;
+    const DVec2* const circle_;
+    const float phase_;
+    const Vec4 custom0_;
+    size_t vertex_;    // that is put next,
+    Vec2 code_{0.0f};  // and its wind code
+};
+
+void Emitter::put_collar() {
+    const CollarVertex* const collar = b_.collars[index_ / kBranchesPerChunk].data() + tube_.first_collar;
+    const size_t host = static_cast<size_t>(std::max(branch_.parent, 0));
+    const float host_phase = tube_.collar.rows > 0 ? b_.phase_of(host) : 0.0f;
+    // What all rows of a column share, and what two rows at one place do.
+    double bark_light[kMostSides];
+    Vec2 codes[kMostSides];
+    Vec4 shades[kMostSides];
+    for (uint32_t row = 0; row < tube_.collar.rows; row++) {
+        const bool lowest = row == 0, as_host = lowest || row == 2;
+        // Where the branch's picture meets its parent's: the bark's shader blends them.
+        const double sign = row == 1 || row == 2 ? -1.0 : 1.0;
+        const CollarVertex* const corners = collar + row * stride_;
+        for (uint32_t j = 0; j < stride_; j++) {
+            const CollarVertex& from = corners[j];
+            const uint32_t column = j < sides_ ? j : 0;
+            if (row != 2 && j < sides_) {
+                if (lowest)
+                    bark_light[j] = b_.light_at(b_.tubes[host], b_.rings_of(host)[0].radius, from.host_centre,
+                                                from.host_along, 1.0);
+                const double own = light_at(from.position, from.along);
+                const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
+                const double light = (bark_light[j] + (own - bark_light[j]) * from.own) * crease;
+                // The base moves as the bark that it stands on.
+                codes[j] = lowest ? b_.wind_at(host, from.host_along, from.position)
+                                  : b_.wind_at(index_, from.along, from.position);
+                shades[j] = color_at(from.position, lowest ? 0.0 : std::max(from.along, 1e-4 * length()),
+                                     light, lowest ? host_phase : phase_);
+            }
+            code_ = codes[column];
+            put(from.position, from.normal, from.tangent, from.around,
+                b_.repeats_of(as_host ? host : index_, from.radius), from.v, sign * from.radius,
+                shades[column]);
+        }
+    }
+}
+
+void Emitter::put_rings() {
+    for (size_t i = tube_.collar.next_ring; i < tube_.rings - (tube_.point ? 1 : 0); i++)
+        put_ring(i);
+}
+
+void Emitter::put_ring(size_t i) {
+    const Ring& ring = run_[i];
+    const DVec3 y = ring.y();
+    const double slope = ring_slope(run_, tube_.rings, i);
+    const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
+    const Vec4 color = color_at(ring.centre, ring.along, light_at(ring.centre, ring.along), phase_);
+    const bool flares = tube_.flare.amount > 0.0 && ring.along < tube_.flare.reach;
+    const double shown = ring.radius * ring.stretch;
+    const double ring_repeats = b_.repeats_of(index_, shown);
+    const double blend = i == 0 ? 0.0 : blend_at(ring);
+    const bool free = b_.wind.is_free(index_, ring.way);
+    const double per_side = 1.0 / sides_;
+    code_ = b_.wind.codes(index_, ring.way);
+    for (uint32_t j = 0; j < stride_; j++) {
+        const DVec3 radial = ring.x * circle_[j].x + y * circle_[j].y;
+        DVec3 tangent = (y * circle_[j].x - ring.x * circle_[j].y);
+        DVec3 outward = (radial - ring.normal * slope) * scale;
+        double radius = ring.radius;
+        if (flares) {
+            const FlareAt flare = flare_at(tube_.flare, ring, 2.0 * kPi * (j % sides_) / sides_);
+            radius = flare.radius;
+            outward = normalized_or(
+                radial - ring.normal * flare.slope - (y * circle_[j].x - ring.x * circle_[j].y) * flare.turn,
+                radial);
+            tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
+        }
+        DVec3 position = ring.centre + radial * radius;
+        double v = ring.along;
+        if (i == 0 && tube_.ground) {
+            // Along the trunk to the level cut.
+            const double down = (position.y - *tube_.ground) / ring.normal.y;
+            position -= ring.normal * down;
+            v -= down;
+        }
+        Vec4 corner_color = color;
+        if (blend > 0.0) {
+            const DVec3 from = position - run_[0].centre;
+            const DVec3 bark = from - tube_.parent_direction * glm::dot(from, tube_.parent_direction);
+            const DVec3 away = normalized_or(bark, outward);
+            // What looks away from the parent's axis lies in no crease.
+            const double shade = 1.0 - glm::smoothstep(0.0, 0.8, glm::dot(radial, away));
+            corner_color =
+                color_at(ring.centre, ring.along, light_at(ring.centre, ring.along, shade), phase_);
+            outward = normalized_or(outward + away * blend, outward);
+            tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
+        }
+        if (!free) code_ = b_.wind.codes(index_, ring.way, position - ring.centre);
+        put(position, outward, tangent, per_side * j, ring_repeats, v, shown, corner_color);
+    }
+}
+
+// A dome or a cut face; nothing where the tip is a point.
+void Emitter::put_tip() {
+    code_ = b_.wind.codes(index_, last_.way);
+    if (!tube_.round_tip) return;
+    const DVec3 normal = last_.normal, x = last_.x, y = last_.y();
+    const double repeats = b_.repeats_of(index_, last_.radius);
+    const double per_side = 1.0 / sides_;
+    const Vec4 color = color_at(last_.centre, length(), light_at(last_.centre, length()), phase_);
+    for (uint32_t j = 0; j < stride_; j++) {
+        const DVec3 radial = x * circle_[j].x + y * circle_[j].y;
+        const DVec3 around = y * circle_[j].x - x * circle_[j].y;
+        if (tube_.cut) {
+            put(last_.centre + (radial * 0.97 + normal * 0.015) * last_.radius, normal, around, per_side * j,
+                b_.repeats_of(index_, kHeartwood), length(), kHeartwood, color);
+        } else {
+            put(last_.centre + (radial * 0.76 + normal * 0.62) * last_.radius,
+                radial * 0.7746 + normal * 0.6325, around, per_side * j, repeats,
+                length() + 0.66 * last_.radius, last_.radius, color);
+        }
+    }
+}
+
+void Emitter::put_base() {
+    if (!tube_.base) return;
+    const Ring& first = run_[0];
+    const DVec3 down = -first.normal;
+    const double per_side = 1.0 / sides_;
+    const Vec4 dim = color_at(first.centre, 0.0, light_at(first.centre, 0.0), phase_);
+    for (uint32_t j = 0; j < stride_; j++) {
+        const DVec3 radial = first.x * circle_[j].x + first.y() * circle_[j].y;
+        put(first.centre + radial * first.radius, down, first.x, per_side * j,
+            b_.repeats_of(index_, kHeartwood), 0.0, kHeartwood, dim);
+    }
+    put(first.centre, down, first.x, 0.5, b_.repeats_of(index_, kHeartwood), -first.radius, kHeartwood, dim);
+}
+
+// The end of the tip, once for each side: as high as the tip is wide, or nearly level where it is cut.
+void Emitter::put_apexes() {
+    const DVec3 normal = last_.normal, x = last_.x, y = last_.y();
+    const double per_side = 1.0 / sides_;
+    const Vec4 color = color_at(last_.centre, length(), light_at(last_.centre, length()), phase_);
+    const DVec3 apex = last_.centre + normal * ((tube_.cut ? 0.02 : 0.98) * last_.radius);
+    const double shown = tube_.cut ? kHeartwood : last_.radius;
+    for (uint32_t j = 0; j < sides_; j++) {
+        const DVec2 between = 0.5 * (circle_[j] + circle_[j + 1]);
+        const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
+        // A drawn-out point is lit like the wood below it.
+        const DVec3 outward = tube_.point ? glm::normalize(x * between.x + y * between.y) : normal;
+        put(apex, outward, tangent, per_side * (j + 0.5), b_.repeats_of(index_, shown),
+            length() + (tube_.cut ? 1.0 : 1.2) * last_.radius, shown, color);
+    }
+}
+
+void Emitter::join() const {
+    size_t at = tube_.first_index;
+    const uint32_t base = static_cast<uint32_t>(tube_.first_vertex);
+    const uint32_t rows = static_cast<uint32_t>(tube_.rows());
+    const uint32_t apexes = base + rows * stride_ + static_cast<uint32_t>(tube_.caps());
+    const uint32_t first_row = tube_.collar.rows ? 1 : 0;
+    const auto join_rows = [&](uint32_t low, uint32_t high) {
+        for (uint32_t j = 0; j < sides_; j++) {
+            const uint32_t a = base + low * stride_ + j, b = a + 1, c = base + high * stride_ + j, d = c + 1;
+            for (uint32_t corner : {a, b, d, a, d, c})
+                mesh_.indices[at++] = corner;
+        }
+    };
+    if (first_row) {
+        join_rows(0, 2);
+        join_rows(1, 3);
+    }
+    for (uint32_t row = first_row ? 3 : 0; row + 1 < rows; row++)
+        join_rows(row, row + 1);
+    for (uint32_t j = 0; j < sides_; j++) {
+        const uint32_t a = base + (rows - 1) * stride_ + j;
+        for (uint32_t corner : {a, a + 1, apexes + j})
+            mesh_.indices[at++] = corner;
+    }
+    for (uint32_t j = 1; tube_.plug && j + 1 < sides_; j++)
+        for (const uint32_t corner : {base, base + j + 1, base + j})
+            mesh_.indices[at++] = corner;
+    for (uint32_t j = 0; tube_.base && j < sides_; j++) {
+        const uint32_t a = base + rows * stride_ + j;
+        for (uint32_t corner : {a + 1, a, base + rows * stride_ + stride_})
+            mesh_.indices[at++] = corner;
+    }
+}
+
 }  // namespace
 
 // How much of the sky the bark sees (COLOR.a). shade: 0 .. 1, how much of the place lies in the crease
@@ -51,201 +310,13 @@ Vec2 Builder::wind_at(size_t index, double along, const DVec3& place) const {
 }
 
 void Builder::emit(size_t index, Mesh& mesh) const {
-    const Branch& branch = list.branches[index];
-    const Tube& tube = tubes[index];
-    const Ring* const run = rings_of(index);
-    const uint32_t sides = tube.sides, stride = sides + 1;
-    const size_t count = tube.rings;
-    const Ring& last_ring = run[count - 1];
-    const double length = last_ring.along;
-    const double repeats = repeats_of(index, last_ring.radius);
-    const float phase = phase_of(index);
-    const Vec4 custom0(Vec3(run[0].centre), static_cast<float>(branch.order));
-    const DVec2* const circle = polygon(sides);
-    const double per_side = 1.0 / sides;
-    size_t vertex = tube.first_vertex;
-    Vec2 code{0.0f};  // the wind's, of the vertex that is put next
-    const auto put = [&](const DVec3& position, const DVec3& normal, const DVec3& tangent, double around,
-                         double repeats, double v, double radius, const Vec4& color) {
-        mesh.positions[vertex] = Vec3(position);
-        mesh.normals[vertex] = Vec3(normal);
-        mesh.uvs[vertex] = {static_cast<float>(around * repeats), static_cast<float>(v)};
-        mesh.colors[vertex] = color;
-        mesh.tangents[vertex] = Vec4(Vec3(tangent), -1.0f);
-        if (options.pivots) {
-            mesh.custom0[vertex] = custom0;
-            mesh.radii[vertex] = static_cast<float>(radius / widened[index]);
-            mesh.wind[vertex] = code;
-        }
-        vertex++;
-    };
-    const auto color_at = [&](const DVec3& centre, double along, double light, float of_phase) {
-        return Vec4(static_cast<float>(crown.sway(centre)), static_cast<float>(std::min(along / length, 1.0)),
-                    of_phase, static_cast<float>(light));
-    };
-    const CollarVertex* const collar = collars[index / kBranchesPerChunk].data() + tube.first_collar;
-    const size_t host = static_cast<size_t>(std::max(branch.parent, 0));
-    const float host_phase = tube.collar.rows > 0 ? phase_of(host) : 0.0f;
-    // What all rows of a column share, and what two rows at one place do.
-    double bark_light[kMostSides];
-    Vec2 codes[kMostSides];
-    Vec4 shades[kMostSides];
-    for (uint32_t row = 0; row < tube.collar.rows; row++) {
-        const bool foot = row == 0, as_host = foot || row == 2;
-        // Where the branch's picture meets its parent's: the bark's shader blends them.
-        const double sign = row == 1 || row == 2 ? -1.0 : 1.0;
-        const CollarVertex* const corners = collar + row * stride;
-        for (uint32_t j = 0; j < stride; j++) {
-            const CollarVertex& from = corners[j];
-            const uint32_t column = j < sides ? j : 0;
-            if (row != 2 && j < sides) {
-                if (foot)
-                    bark_light[j] = light_at(tubes[host], rings_of(host)[0].radius, from.host_centre,
-                                             from.host_along, 1.0);
-                const double own = light_at(tube, run[0].radius, from.position, from.along, 1.0);
-                const double crease = 1.0 - kCrease * 4.0 * from.own * (1.0 - from.own);
-                const double light = (bark_light[j] + (own - bark_light[j]) * from.own) * crease;
-                // The foot moves as the bark that it stands on.
-                codes[j] = foot ? wind_at(host, from.host_along, from.position)
-                                : wind_at(index, from.along, from.position);
-                shades[j] = color_at(from.position, foot ? 0.0 : std::max(from.along, 1e-4 * length), light,
-                                     foot ? host_phase : phase);
-            }
-            code = codes[column];
-            put(from.position, from.normal, from.tangent, from.around,
-                repeats_of(as_host ? host : index, from.radius), from.v, sign * from.radius, shades[column]);
-        }
-    }
-    // Where a branch comes out, its normals lean to those of its parent's bark, so that light finds no edge.
-    const auto blend_at = [&](const Ring& ring) {
-        if (tube.parent_radius <= 0.0 || options.level > 0 || tube.collar.rows > 0 ||
-            run[1].radius < kCollarRadius)
-            return 0.0;
-        const double past = (ring.along - tube.exit) / (1.5 * run[1].radius);
-        return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
-    };
-    for (size_t i = tube.collar.next_ring; i < count - (tube.point ? 1 : 0); i++) {
-        const Ring& ring = run[i];
-        const DVec3 y = ring.y();
-        const double slope = ring_slope(run, count, i);
-        const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
-        const Vec4 color = color_at(ring.centre, ring.along,
-                                    light_at(tube, run[0].radius, ring.centre, ring.along, 1.0), phase);
-        const bool flares = tube.flare.amount > 0.0 && ring.along < tube.flare.reach;
-        const double shown = ring.radius * ring.stretch;
-        const double ring_repeats = repeats_of(index, shown);
-        const double blend = i == 0 ? 0.0 : blend_at(ring);
-        const bool free = wind.is_free(index, ring.way);
-        code = wind.codes(index, ring.way);
-        for (uint32_t j = 0; j < stride; j++) {
-            const DVec3 radial = ring.x * circle[j].x + y * circle[j].y;
-            DVec3 tangent = (y * circle[j].x - ring.x * circle[j].y);
-            DVec3 outward = (radial - ring.normal * slope) * scale;
-            double radius = ring.radius;
-            if (flares) {
-                const FlareAt flare = flare_at(tube.flare, ring, 2.0 * kPi * (j % sides) / sides);
-                radius = flare.radius;
-                outward = normalized_or(radial - ring.normal * flare.slope -
-                                            (y * circle[j].x - ring.x * circle[j].y) * flare.turn,
-                                        radial);
-                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
-            }
-            DVec3 position = ring.centre + radial * radius;
-            double v = ring.along;
-            if (i == 0 && tube.foot) {
-                // Along the trunk to the level cut.
-                const double down = (position.y - *tube.foot) / ring.normal.y;
-                position -= ring.normal * down;
-                v -= down;
-            }
-            Vec4 corner_color = color;
-            if (blend > 0.0) {
-                const DVec3 from = position - run[0].centre;
-                const DVec3 bark = from - tube.parent_direction * glm::dot(from, tube.parent_direction);
-                const DVec3 away = normalized_or(bark, outward);
-                // What looks away from the parent's axis lies in no crease.
-                const double shade = 1.0 - glm::smoothstep(0.0, 0.8, glm::dot(radial, away));
-                corner_color = color_at(ring.centre, ring.along,
-                                        light_at(tube, run[0].radius, ring.centre, ring.along, shade), phase);
-                outward = normalized_or(outward + away * blend, outward);
-                tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
-            }
-            if (!free) code = wind.codes(index, ring.way, position - ring.centre);
-            put(position, outward, tangent, per_side * j, ring_repeats, v, shown, corner_color);
-        }
-    }
-    // The tip: a dome, or a point as high as the tip is wide.
-    code = wind.codes(index, last_ring.way);
-    const DVec3 normal = last_ring.normal, x = last_ring.x, y = last_ring.y();
-    const Vec4 color = color_at(last_ring.centre, length,
-                                light_at(tube, run[0].radius, last_ring.centre, length, 1.0), phase);
-    if (tube.round_tip) {
-        for (uint32_t j = 0; j < stride; j++) {
-            const DVec3 radial = x * circle[j].x + y * circle[j].y;
-            const DVec3 around = y * circle[j].x - x * circle[j].y;
-            if (tube.cut) {
-                put(last_ring.centre + (radial * 0.97 + normal * 0.015) * last_ring.radius, normal, around,
-                    per_side * j, repeats_of(index, kHeartwood), length, kHeartwood, color);
-            } else {
-                put(last_ring.centre + (radial * 0.76 + normal * 0.62) * last_ring.radius,
-                    radial * 0.7746 + normal * 0.6325, around, per_side * j, repeats,
-                    length + 0.66 * last_ring.radius, last_ring.radius, color);
-            }
-        }
-    }
-    if (tube.base) {
-        const DVec3 down = -run[0].normal;
-        const Vec4 dim =
-            color_at(run[0].centre, 0.0, light_at(tube, run[0].radius, run[0].centre, 0.0, 1.0), phase);
-        for (uint32_t j = 0; j < stride; j++) {
-            const DVec3 radial = run[0].x * circle[j].x + run[0].y() * circle[j].y;
-            put(run[0].centre + radial * run[0].radius, down, run[0].x, per_side * j,
-                repeats_of(index, kHeartwood), 0.0, kHeartwood, dim);
-        }
-        put(run[0].centre, down, run[0].x, 0.5, repeats_of(index, kHeartwood), -run[0].radius, kHeartwood,
-            dim);
-    }
-    const DVec3 apex = last_ring.centre + normal * ((tube.cut ? 0.02 : 0.98) * last_ring.radius);
-    const double shown = tube.cut ? kHeartwood : last_ring.radius;
-    for (uint32_t j = 0; j < sides; j++) {
-        const DVec2 between = 0.5 * (circle[j] + circle[j + 1]);
-        const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
-        // A drawn-out point is lit like the wood below it.
-        const DVec3 outward = tube.point ? glm::normalize(x * between.x + y * between.y) : normal;
-        put(apex, outward, tangent, per_side * (j + 0.5), repeats_of(index, shown),
-            length + (tube.cut ? 1.0 : 1.2) * last_ring.radius, shown, color);
-    }
-    size_t at = tube.first_index;
-    const uint32_t base = static_cast<uint32_t>(tube.first_vertex);
-    const uint32_t rows = static_cast<uint32_t>(tube.rows());
-    const uint32_t apexes = base + rows * stride + static_cast<uint32_t>(tube.caps());
-    const uint32_t first_row = tube.collar.rows ? 1 : 0;
-    const auto join_rows = [&](uint32_t low, uint32_t high) {
-        for (uint32_t j = 0; j < sides; j++) {
-            const uint32_t a = base + low * stride + j, b = a + 1, c = base + high * stride + j, d = c + 1;
-            for (uint32_t corner : {a, b, d, a, d, c})
-                mesh.indices[at++] = corner;
-        }
-    };
-    if (first_row) {
-        join_rows(0, 2);
-        join_rows(1, 3);
-    }
-    for (uint32_t row = first_row ? 3 : 0; row + 1 < rows; row++)
-        join_rows(row, row + 1);
-    for (uint32_t j = 0; j < sides; j++) {
-        const uint32_t a = base + (rows - 1) * stride + j;
-        for (uint32_t corner : {a, a + 1, apexes + j})
-            mesh.indices[at++] = corner;
-    }
-    for (uint32_t j = 1; tube.plug && j + 1 < sides; j++)
-        for (const uint32_t corner : {base, base + j + 1, base + j})
-            mesh.indices[at++] = corner;
-    for (uint32_t j = 0; tube.base && j < sides; j++) {
-        const uint32_t a = base + rows * stride + j;
-        for (uint32_t corner : {a + 1, a, base + rows * stride + stride})
-            mesh.indices[at++] = corner;
-    }
+    Emitter emitter(*this, index, mesh);
+    emitter.put_collar();
+    emitter.put_rings();
+    emitter.put_tip();
+    emitter.put_base();
+    emitter.put_apexes();
+    emitter.join();
 }
 
 }  // namespace treerec::tubes

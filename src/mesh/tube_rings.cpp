@@ -7,8 +7,8 @@ namespace treerec {
 
 namespace {
 
-constexpr double kFootRadii = 1.0;  // how far the trunk goes on below the ground, over its radius,
-constexpr double kMostFoot = 0.25;  // and in metres at most
+constexpr double kBaseRadii = 1.0;  // how far the trunk goes on below the ground, over its radius,
+constexpr double kMostBase = 0.25;  // and in metres at most
 constexpr double kUpright = 0.5;    // the least y of a standing trunk's direction
 constexpr double kMostSlant = 0.3;  // of the bark's picture at its seam: metres around per metre along
 
@@ -43,24 +43,10 @@ std::optional<double> cut_level(Ring* rings, size_t count) {
         above++;
     if (above->normal.y < kUpright || next.centre.y <= cut.centre.y) return std::nullopt;
     cut.normal = above->normal;
-    const double foot = cut.centre.y - std::min(kFootRadii * cut.radius, kMostFoot);
+    const double base = cut.centre.y - std::min(kBaseRadii * cut.radius, kMostBase);
     // A leaning trunk's next ring may reach below that: the cut stays under it.
     const double dip = next.radius * std::sqrt(std::max(0.0, 1.0 - next.normal.y * next.normal.y));
-    return std::min(foot, next.centre.y - dip - 0.1 * cut.radius);
-}
-
-void frame_rings(Ring* rings, size_t count) {
-    if (count == 0) return;
-    DVec3 normal = rings[0].normal;
-    DVec3 x = any_perpendicular(normal);
-    for (size_t i = 0; i < count; i++) {
-        Ring& ring = rings[i];
-        const double turn = 1.0 + glm::dot(normal, ring.normal);
-        if (turn > 1e-9) x -= (normal + ring.normal) * (glm::dot(x, ring.normal) / turn);
-        normal = ring.normal;
-        x = normalized_or(x - normal * glm::dot(x, normal), any_perpendicular(normal));
-        ring.x = x;
-    }
+    return std::min(base, next.centre.y - dip - 0.1 * cut.radius);
 }
 
 void limit_slant(Ring* rings, size_t count, double height) {

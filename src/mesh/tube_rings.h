@@ -13,9 +13,9 @@ struct Ring {
     DVec3 centre;
     DVec3 normal;  // unit, towards the tip
     double radius;
-    double along;      // from the branch's start
-    DVec3 x{0.0};      // unit, across the normal: where the ring's first corner lies; set by frame_rings()
-    double way = 0.0;  // AxisPoint::way
+    double along;  // from the branch's start
+    DVec3 x{0.0};  // unit, across the normal: where the ring's first corner lies; set by parallel_transport()
+    double way = 0.0;      // AxisPoint::way
     double stretch = 1.0;  // of the bark's picture: the radius that it goes around by, over this one
     DVec3 y() const { return glm::cross(normal, x); }  // a quarter turn on
 };
@@ -27,9 +27,6 @@ void limit_tilt(Ring* rings, size_t count);
 // the first ring's normal to where that goes on along, and gives the cut's y. Nothing for what lies or has
 // fewer than two rings. rings: from the root.
 std::optional<double> cut_level(Ring* rings, size_t count);
-
-// Parallel transport: each ring's x is the last one's by the smallest turn that takes its normal to this one.
-void frame_rings(Ring* rings, size_t count);
 
 // Where the wood widens or thins within a short way, the bark's picture would wind about it if it kept its
 // scale, since more of it goes around at one end. Up to `height` metres along it stretches instead, so that

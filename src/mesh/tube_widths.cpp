@@ -3,13 +3,14 @@
 #include <algorithm>
 
 #include "geometry/portable_math.h"
+#include "mesh/parallel_transport.h"
 #include "mesh/tube_builder.h"
 
 namespace treerec::tubes {
 
 namespace {
 
-constexpr double kFreeFoot = 1.5;    // twigs that stand for more than this may be wider than what bears them
+constexpr double kFreeBase = 1.5;    // twigs that stand for more than this may be wider than what bears them
 constexpr double kNarrowest = 1.0;   // of a ring's own radius: no tube is thinner than its wood,
 constexpr double kWidest = 1.5;      // and none wider, where the few rings left cover too little,
 constexpr double kWidestFree = 2.5;  // unless it stands for many: then over how many times its area
@@ -39,8 +40,8 @@ void Builder::widen(size_t index) {
         whole += 2.0 * share_of(run, tube.rings, i);
     const double area = widened[index] * (goes_on ? whole : drawn_area(tree, list, list.branches[index]));
     // A twig that stands for many may start wider than what bears it: from so far nobody sees it.
-    const bool free = widened[index] > kFreeFoot && list.branches[index].attach != kNoNode;
-    if (free) run[0].radius = std::max(run[0].radius, tube.foot_radius);
+    const bool free = widened[index] > kFreeBase && list.branches[index].attach != kNoNode;
+    if (free) run[0].radius = std::max(run[0].radius, tube.base_radius);
     // Else its start stays hidden; and a flare has its own width.
     size_t first = free || (tube.parent_radius <= 0.0 && !goes_on) ? 0 : 1;
     while (tube.flare.amount > 0.0 && first < tube.rings && run[first].along <= tube.flare.reach)
@@ -59,7 +60,7 @@ void Builder::widen(size_t index) {
     // The wood itself is no thicker for that.
     widened[index] = static_cast<float>(std::max(wider, 1.0));
     limit_tilt(run, tube.rings);
-    frame_rings(run, tube.rings);
+    parallel_transport(run, tube.rings);
 }
 
 }  // namespace treerec::tubes

@@ -14,7 +14,7 @@ namespace treerec {
 namespace {
 
 constexpr double kGolden = 0.61803398874989485;
-constexpr double kMeanRadius = 0.6;  // of a twig, over that of its foot
+constexpr double kMeanRadius = 0.6;  // of a twig, over that of its base
 constexpr double kLength = 0.005;    // over the tree's height, doubled per level: shorter twigs are fewer
 constexpr double kWidest = 1.5;      // over level_width(): as wide on average a twig is drawn at most,
 constexpr double kStubbiest = 0.15;  // and over its own length

@@ -7,8 +7,8 @@
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
-#include "mesh/linear_light.h"
-#include "mesh/texture_noise.h"
+#include "textures/linear_light.h"
+#include "textures/texture_noise.h"
 
 namespace treerec {
 

@@ -5,7 +5,7 @@
 
 #include "geometry/vec.h"
 #include "mesh/image.h"
-#include "mesh/textures.h"
+#include "textures/textures.h"
 
 namespace treerec {
 

@@ -42,14 +42,14 @@ PhotoBark bark_of_photos(const Tree& tree, const PhotoModel& model, const std::s
     PhotoBark bark;
     const TrunkChart chart = chart_trunk(tree, kLongest);
     if (!(chart.length() > 0.0)) {
-        bark.why_not = "The tree has no piece of trunk below its first limb that bark could be taken from.";
+        bark.why_not = "The tree has no piece of trunk below its first branch that bark could be taken from.";
         return bark;
     }
     const BarkSurvey survey = survey_bark(tree, chart, model, things, progress);
     if (progress) progress->update(kSurveyEnd, "Bark");
     bark.pixel = bark.detail = survey.usual_pixel();
     if (!(bark.pixel > 0.0)) {
-        bark.why_not = "No photo shows the trunk below its first limb from the front.";
+        bark.why_not = "No photo shows the trunk below its first branch from the front.";
         return bark;
     }
     if (bark.pixel > options.coarsest) {

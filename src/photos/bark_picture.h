@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "mesh/textures.h"
 #include "photos/colmap_model.h"
 #include "photos/seen_bark.h"
 #include "progress.h"
+#include "textures/textures.h"
 #include "tree/tree.h"
 
 namespace treerec {

@@ -11,11 +11,11 @@
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
-#include "mesh/linear_light.h"
 #include "photos/depth_picture.h"
 #include "photos/even_exposures.h"
 #include "photos/photo_picture.h"
 #include "photos/sky_mask.h"
+#include "textures/linear_light.h"
 
 namespace treerec {
 

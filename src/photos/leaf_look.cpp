@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/portable_math.h"
-#include "mesh/linear_light.h"
+#include "textures/linear_light.h"
 
 namespace treerec {
 

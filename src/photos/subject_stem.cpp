@@ -85,7 +85,7 @@ std::optional<SubjectStem> find_within(std::span<const DVec3> points, const DVec
     }
     if (!at_top || static_cast<double>(stem.rings.size()) < kLeastSections * static_cast<double>(kSlices))
         return {};
-    // What hangs in the air around its upper part are its own limbs.
+    // What hangs in the air around its upper part are its own branches.
     size_t above = 0, beside = 0;
     for (size_t i = 0; i < points.size(); i++) {
         if (heights[i] < high - kUpperPart * (high - low)) continue;

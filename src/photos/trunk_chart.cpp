@@ -13,10 +13,10 @@ namespace treerec {
 
 namespace {
 
-constexpr double kFlare = 1.3;     // of the stem's radius: wider is the foot
-constexpr double kLimb = 0.4;      // of the stem's radius: as thick ends the clear part
+constexpr double kFlare = 1.3;     // of the stem's radius: wider is the base
+constexpr double kBranch = 0.4;    // of the stem's radius: as thick ends the clear part
 constexpr double kThinnest = 0.5;  // of the stem's radius
-constexpr double kFoot = 0.08;     // of the way up to the limb: grass, and earth that was splashed up
+constexpr double kBase = 0.08;     // of the way up to the branch: grass, and earth that was splashed up
 constexpr double kRounds = 1.25;
 
 struct Section {
@@ -33,7 +33,7 @@ std::vector<NodeId> trunk_nodes(const Tree& tree) {
     return stem;
 }
 
-// Up to the first limb.
+// Up to the first branch.
 std::vector<Section> clear_sections(const Tree& tree, const std::vector<NodeId>& stem) {
     std::vector<Section> sections;
     double along = 0.0;
@@ -45,7 +45,7 @@ std::vector<Section> clear_sections(const Tree& tree, const std::vector<NodeId>&
         bool forks = false;
         for (const NodeId child : tree.children(stem[i]))
             forks = forks || ((i + 1 == stem.size() || child != stem[i + 1]) &&
-                              tree.node(child).radius >= kLimb * node.radius);
+                              tree.node(child).radius >= kBranch * node.radius);
         if (forks && i > 0) break;
     }
     return sections;
@@ -113,8 +113,8 @@ TrunkChart chart_trunk(const Tree& tree, double longest) {
         radii.push_back(between(sections, top * i / kSamples).radius);
     std::vector<double> sorted = radii;
     const double usual = quantile(sorted, 0.5);
-    double from = kFoot * top, to = top;
-    // The limb's own widening of the stem begins below it.
+    double from = kBase * top, to = top;
+    // The branch's own widening of the stem begins below it.
     if (to > 4.0 * usual) to -= usual;
     for (int i = 0; i <= kSamples / 2; i++)
         if (radii[static_cast<size_t>(i)] > kFlare * usual) from = std::max(from, top * (i + 1) / kSamples);

@@ -19,9 +19,9 @@ struct ChartRing {
     double slope = 0.0;           // how much the radius grows per metre along
 };
 
-// Without root flare and stout limbs. Metres are true both ways: rows go along the stem, the uppermost first,
-// columns around it, to the right as one sees them from outside, as far as a quarter of a round beyond a
-// whole one, so that a piece of the chart may lie anywhere on the stem.
+// Without root flare and stout branches. Metres are true both ways: rows go along the stem, the uppermost
+// first, columns around it, to the right as one sees them from outside, as far as a quarter of a round beyond
+// a whole one, so that a piece of the chart may lie anywhere on the stem.
 class TrunkChart {
   public:
     struct Spot {
@@ -48,9 +48,9 @@ class TrunkChart {
     double half_width_ = 0.0;
 };
 
-// Of the tree's trunk (main_child() from the root on): begins above the root flare, ends below the first limb
-// of two fifths of the stem's radius, or where the stem is half as thick as at its foot, or `longest` metres
-// further. Empty for a tree without such a stem.
+// Of the tree's trunk (main_child() from the root on): begins above the root flare, ends below the first
+// branch of two fifths of the stem's radius, or where the stem is half as thick as at its base, or `longest`
+// metres further. Empty for a tree without such a stem.
 TrunkChart chart_trunk(const Tree& tree, double longest);
 
 }  // namespace treerec

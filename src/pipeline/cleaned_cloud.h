@@ -15,7 +15,7 @@ namespace treerec {
 inline constexpr std::string_view kCleanedMark = "comment cleaned by treerec\n";
 
 // Of result.cloud, where the reconstruction told leaves from wood: 1 for leaves and what grows around the
-// foot, 0 for wood. Else its labels stay those of the scan's file.
+// base, 0 for wood. Else its labels stay those of the scan's file.
 void label_found_leaves(Reconstruction& result);
 
 // In the format that the extension names (scan/formats/read_cloud.h), in the scan's own coordinates, axes and

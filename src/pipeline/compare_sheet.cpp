@@ -41,14 +41,14 @@ std::vector<size_t> spread_out(const PhotoModel& model) {
 std::vector<double> wood_in(const Tree& tree, const PinholeView& view) {
     std::vector<double> covered(static_cast<size_t>(view.width) * static_cast<size_t>(view.height), 0.0);
     const DVec3 ahead = -view.turn[2];
-    const DVec3 foot = tree.node(tree.root()).position;
+    const DVec3 base = tree.node(tree.root()).position;
     for (const WoodSegment& segment : wood_segments(tree)) {
         const auto from = view.project(segment.from), to = view.project(segment.to);
         if (!from || !to) continue;
         const auto radius_of = [&](const DVec3& place, double radius) {
             return std::max(kLeastRadius, view.focal * radius / glm::dot(ahead, place - view.centre));
         };
-        const bool stands = glm::distance(segment.from, foot) < std::max(segment.from_radius, segment.radius);
+        const bool stands = glm::distance(segment.from, base) < std::max(segment.from_radius, segment.radius);
         const double first = radius_of(segment.from, segment.from_radius);
         const double last = radius_of(segment.to, segment.radius);
         const double most = std::max(first, last) + 1.0;
@@ -63,7 +63,7 @@ std::vector<double> wood_in(const Tree& tree, const PinholeView& view) {
             for (int x = left; x <= right; x++) {
                 const DVec2 p(x + 0.5, y + 0.5);
                 const double along = square > 0.0 ? glm::dot(p - *from, way) / square : 0.0;
-                // Branches go on from one another by round ends; these would reach below the foot.
+                // Branches go on from one another by round ends; these would reach below the base.
                 if (stands && along < 0.0) continue;
                 const double t = std::clamp(along, 0.0, 1.0);
                 const double beside = glm::length(p - *from - t * way) - (first + t * (last - first));

@@ -15,8 +15,8 @@
 #include "geometry/parallel.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
-#include "mesh/linear_light.h"
 #include "photos/leaf_look.h"
+#include "textures/linear_light.h"
 
 namespace treerec {
 

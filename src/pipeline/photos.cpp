@@ -145,7 +145,7 @@ PhotoBark look_at_bark(const PhotosResult& result, size_t hold_out, Progress* pr
     }
 }
 
-// The points of leaves, without what grows around the foot, in the tree's frame.
+// The points of leaves, without what grows around the base, in the tree's frame.
 std::vector<DVec3> leaf_places(const Reconstruction& tree) {
     std::vector<Vec3> points;
     for (size_t i = 0; i < tree.wood.size(); i++)

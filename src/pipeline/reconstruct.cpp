@@ -36,7 +36,7 @@ constexpr double kLeastMeasured = 0.01;
 // Degrees: what photos tell is out by one or two, and a scene so near to an axis was levelled before.
 constexpr double kSameAxis = 2.0;
 
-constexpr double kBesideStem = 0.3;  // of its radius: bark is rough, and feet are wider
+constexpr double kBesideStem = 0.3;  // of its radius: bark is rough, and stem bases are wider
 
 constexpr double kFrondShare = 0.96;  // of how far fronds reach, slack and all: they arch
 
@@ -128,7 +128,7 @@ SkeletonResult skeletonize_wood(const Reconstruction& result, const WoodLeaf& to
                                 SubProgress& progress) {
     // Bushes around a stem of a plot may stand lower.
     const PickReport& pick = result.clean.pick;
-    if (!pick.trees.empty()) options.foot = result.cloud.frame.to_tree(pick.trees[pick.taken].foot);
+    if (!pick.trees.empty()) options.stem_base = result.cloud.frame.to_tree(pick.trees[pick.taken].foot);
     PointCloud followed;
     if (!told.wood_path.empty()) {
         followed = result.cloud;

@@ -47,7 +47,7 @@ struct Reconstruction {
     size_t points_read = 0;
     size_t leaf_points = 0;   // of the cloud
     std::string leaf_column;  // of the scan's file, where that told them; else empty
-    // By point of the cloud, 0 for leaves and for what grows around the foot; empty where all is wood.
+    // By point of the cloud, 0 for leaves and for what grows around the base; empty where all is wood.
     std::vector<uint8_t> wood;
     double spacing = 0.0;  // metres: what the skeletonizer thinned to
     // Of the voxel flood alone (skeleton/skeleton.h).

@@ -335,9 +335,11 @@ std::string report_json(const Reconstruction& result, const ReportDetails& detai
     json["scale_from_gps"] = details.sized_by_gps;
     json["origin"] = vector_json(result.tree.frame().origin);
     Json trees = Json::array();
-    for (const StandingTree& tree : result.clean.pick.trees)
-        trees.push_back(
-            {{"foot", vector_json(tree.foot)}, {"height_m", tree.height}, {"points", tree.points}});
+    for (const StandingTree& tree : result.clean.pick.trees) {
+        const Json base = vector_json(tree.foot);
+        // "foot" is the old word.
+        trees.push_back({{"base", base}, {"foot", base}, {"height_m", tree.height}, {"points", tree.points}});
+    }
     json["trees"] = trees;
     json["tree_taken"] = trees.empty() ? Json(nullptr) : Json(result.clean.pick.taken + 1);
     json["spacing_m"] = result.spacing;

@@ -51,7 +51,7 @@ struct ReportDetails {
 //   cameras told it; else 0), tilt_degrees (of the sky from the axis `up`), metres_per_unit, scale_guessed,
 //   scale_unknown (guessed, and the scan tells nothing of its scale), scale_from_marker (a printed marker set
 //   it), scale_from_gps (the photos' places did), origin [x y z in scan coordinates]
-//   trees [{foot [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
+//   trees [{base [x y z in scan coordinates], height_m, points}] (largest first; empty where the scan was
 //   taken for one tree), tree_taken (its number in this list, from 1), spacing_m
 //   completed_branches, completed_length_m (option complete: what was added afterwards)
 //   voxel_m, points_are "surface", "solid" or "surface, probably" (of a flood alone)

@@ -47,11 +47,11 @@ CrownOverlap measure_crown_overlap(const SketchedTree& sketched, const Sketch& s
     // The outline in metres, and its box.
     const double shown = sketch.canvas.y / kCanvasHeight;
     const double pixel = sketched.scale * shown;
-    const DVec2 foot(sketched.foot.x / shown, kCanvasHeight - sketched.foot.y / shown);
+    const DVec2 stem_base(sketched.stem_base.x / shown, kCanvasHeight - sketched.stem_base.y / shown);
     std::vector<DVec2> outline;
     DVec2 low(1e300), high(-1e300);
     for (const DVec2& p : sketched.understood.drawn.outline) {
-        outline.push_back((p - foot) * pixel);
+        outline.push_back((p - stem_base) * pixel);
         low = glm::min(low, outline.back());
         high = glm::max(high, outline.back());
     }
@@ -126,7 +126,8 @@ std::string sketch_report_json(const Sketch& sketch, const SketchedTree& sketche
     report["species"] = sketched.species;
     report["seed"] = sketch.seed;
     report["metres_per_pixel"] = number(sketched.scale);
-    report["foot"] = place(sketched.foot);
+    report["base"] = place(sketched.stem_base);
+    report["foot"] = report["base"];  // the old word
     Json strokes = Json::array();
     for (size_t i = 0; i < sketched.understood.strokes.size(); i++) {
         const StrokeReading& reading = sketched.understood.strokes[i];

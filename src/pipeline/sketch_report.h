@@ -25,7 +25,7 @@ CrownOverlap measure_crown_overlap(const SketchedTree& sketched, const Sketch& s
                                    const Progress* progress = nullptr);
 
 // JSON, UTF-8, numbers finite or null. Keys:
-//   format_version 1, version, species, seed, metres_per_pixel, foot [x y] (canvas pixels)
+//   format_version 1, version, species, seed, metres_per_pixel, base [x y] (canvas pixels)
 //   strokes [{stroke (from 1), role, repairs [name], attach [x y] (canvas pixels) or null, fault (or ""),
 //   left_out}], remarks [sentence]
 //   nodes, tips, height_m, crown_radius_m, crown_base_m, length_m

@@ -49,7 +49,7 @@ struct SkeletonOptions {
     double simplify_distance = 0.0;  // Douglas-Peucker tolerance; 0 automatic
     bool one_stem = false;           // a palm: what branches off its stem is left out
     bool trunk_alone = false;        // known to be a trunk without a crown: its sections are the tree
-    std::optional<DVec3> foot;       // where the stem stands, where that is known; metres, as the cloud
+    std::optional<DVec3> stem_base;  // where the stem stands, where that is known; metres, as the cloud
     double noise = 0.0;              // of the points, at least, where it is known (standard deviation)
     bool fit_radii = true;           // measure radii where the points allow it
     uint64_t seed = 1;               // of the robust fits

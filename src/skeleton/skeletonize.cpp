@@ -8,18 +8,7 @@ namespace treerec {
 
 namespace {
 
-void make_skeleton(SkeletonWork& work) {
-    sample_points(work);
-    if (take_stump(work)) return;
-    if (work.options.method == SkeletonMethod::kDelaunay) {
-        delaunay_skeleton(work.points(), work.cloud, work.options, work.result, work.clock, work.listener);
-        return;
-    }
-    if (work.floods()) {
-        flood_skeleton(work.points(), work.cloud, work.options, work.factor, work.result, work.clock,
-                       work.listener);
-        return;
-    }
+void geodesic_skeleton(SkeletonWork& work) {
     link_neighbours(work);
     find_paths(work);
     find_branches(work);
@@ -27,6 +16,19 @@ void make_skeleton(SkeletonWork& work) {
     find_twigs(work);
     refine_cylinders(work);
     simplify(work);
+}
+
+void make_skeleton(SkeletonWork& work) {
+    sample_points(work);
+    if (take_stump(work)) return;
+    switch (work.options.method) {
+        case SkeletonMethod::kGeodesic:
+            return geodesic_skeleton(work);
+        case SkeletonMethod::kDelaunay:
+            return delaunay_skeleton(work);
+        case SkeletonMethod::kFlood:
+            return flood_skeleton(work);
+    }
 }
 
 // All lengths back to those of the cloud that was enlarged, whose frame is given.
@@ -65,7 +67,7 @@ SkeletonResult skeletonize(const PointCloud& cloud, const SkeletonOptions& optio
     sized.minimum_branch *= factor;
     sized.simplify_distance *= factor;
     sized.noise *= factor;
-    if (sized.foot) *sized.foot *= factor;
+    if (sized.stem_base) *sized.stem_base *= factor;
     const PointCloud large = enlarged(cloud, factor);
     SkeletonWork work(large, sized, factor, listener);
     make_skeleton(work);

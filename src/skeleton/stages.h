@@ -1,5 +1,5 @@
-// The geodesic skeleton's stages, in the order that skeletonize() calls them, and what they hand on. Each
-// lies in the folder of its concept. Internal to skeleton/.
+// What all methods work on, how all begin and end, and the stages of the geodesic one, in the order that
+// skeletonize() calls them. Each lies in the folder of its concept. Internal to skeleton/.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include "progress.h"
 #include "scan/point_cloud.h"
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 #include "skeleton/branches/slices.h"
 #include "skeleton/cylinders/axis.h"
 #include "skeleton/cylinders/known_radii.h"
@@ -46,17 +46,21 @@ struct SkeletonWork {
     double extent = 0.0;  // to the point farthest from the root
     PathTree paths;
     // branches,
-    LimbOptions limb_options;
+    BranchOptions branch_options;
     AxisOptions axis_options;
     LocalScale scale;
     Slices slices;
-    std::vector<Limb> limbs;
+    std::vector<SkeletonBranch> branches;
     // cylinders, and twigs.
     std::vector<std::vector<Station>> axes;
     TwigOptions twig_options;
     PointPlaces places;  // of the thinned points
 
     const std::vector<Vec3>& points() const { return thinned.points; }
+    // Shorter ones are noise, metres; once the extent is known.
+    double least_branch() const {
+        return options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
+    }
     bool floods() const { return options.method == SkeletonMethod::kFlood; }
 };
 
@@ -77,7 +81,10 @@ void fit_cylinders(SkeletonWork& work);
 void find_twigs(SkeletonWork& work);
 // cylinders/: all points of all wood once more, each where it belongs.
 void refine_cylinders(SkeletonWork& work);
-// simplify/: axes become a Tree, in the cloud's frame.
+// simplify/: axes become a Tree.
 void simplify(SkeletonWork& work);
+// simplify/: the trunk is marked, the frame is the cloud's, and the root is at the origin, of the raw tree,
+// too. Where the root lay, metres of the cloud's frame.
+DVec3 finish(SkeletonWork& work);
 
 }  // namespace treerec

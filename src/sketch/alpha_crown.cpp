@@ -20,7 +20,7 @@ namespace treerec {
 
 #ifndef TREEREC_CGAL
 
-std::unique_ptr<const CrownBound> alpha_crown(const CrownSections&, const LimbCells&, size_t, uint64_t,
+std::unique_ptr<const CrownBound> alpha_crown(const CrownSections&, const AxisCells&, size_t, uint64_t,
                                               const Progress*) {
     throw Error(
         "This build was made without CGAL and has no alpha shapes; let sections bound the crown instead.");
@@ -84,10 +84,10 @@ class AlphaCrown : public CrownBound {
     explicit AlphaCrown(std::vector<std::vector<Triangle> > parts) : parts_(std::move(parts)) {}
 
     // The first place where the line meets the shape's surface, as the paper steps to it.
-    double reach(const DVec3& from, const DVec3& way, size_t limb, double step,
+    double reach(const DVec3& from, const DVec3& way, size_t axis, double step,
                  double margin) const override {
         double nearest = 0.0;
-        for (const Triangle& triangle : parts_[limb]) {
+        for (const Triangle& triangle : parts_[axis]) {
             const double at = hit(from, way, triangle);
             if (at > 0.0 && (nearest == 0.0 || at < nearest)) nearest = at;
         }
@@ -117,9 +117,9 @@ std::vector<Triangle> shape_of(const std::vector<Kernel::Point_3>& points) {
 
 }  // namespace
 
-std::unique_ptr<const CrownBound> alpha_crown(const CrownSections& crown, const LimbCells& cells,
-                                              size_t limbs, uint64_t seed, const Progress* progress) {
-    std::vector<std::vector<Kernel::Point_3> > points(limbs);
+std::unique_ptr<const CrownBound> alpha_crown(const CrownSections& crown, const AxisCells& cells, size_t axes,
+                                              uint64_t seed, const Progress* progress) {
+    std::vector<std::vector<Kernel::Point_3> > points(axes);
     Random random(hash_seed(seed, 21));
     const double depth = crown.reach();
     // As thick everywhere: those of the crown's box that lie in the crown.

@@ -1,4 +1,4 @@
-// Limbs and twigs into one tree.
+// Branches and twigs into one tree.
 #pragma once
 
 #include <optional>

@@ -21,11 +21,11 @@ constexpr double kLeafCover = 0.55;
 // The view's cells, of a leaf's length.
 constexpr double kCell = 0.5;
 constexpr size_t kMostCells = 300;  // along a side
-// Twigs for gaps that one place of a limb bears at most, and how long a place is, in shortest twigs: more
+// Twigs for gaps that one place of a branch bears at most, and how long a place is, in shortest twigs: more
 // would stand like a broom.
 constexpr int kMostAtAPlace = 3;
 constexpr double kPlace = 0.3;
-// Of the host, at the crown's foot, as foliage/snags.cpp has it.
+// Of the host, at the crown's base, as foliage/snags.cpp has it.
 constexpr double kLowSnagRadii = 12.0, kLowShare = 0.1;
 
 enum class View { kFront, kSide };
@@ -101,7 +101,7 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     const double bearing = rules.twig_length * shrunk(height) / growth;
 
     const auto joint_of = [&](const TwigPlace& place) {
-        return place_along(filling.limbs[place.limb].limb.points, place.along);
+        return place_along(filling.axes[place.axis].axis.points, place.along);
     };
     const auto mark = [&](Cover& cover, const TwigPlace& place) {
         const std::vector<std::optional<DVec3>> kept =
@@ -121,9 +121,9 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
     std::map<std::pair<size_t, int>, int> borne;
     // Short twigs low on stout wood are taken for dead ones (foliage/snags.h).
     const double low = crown.bottom() + kLowShare * (crown.top() - crown.bottom());
-    const auto bears_no_leaves = [&](const Limb& limb, double along, double length) {
-        const double radius = value_along(limb.points, limb.radii, along);
-        const bool is_low = place_along(limb.points, along).y < low;
+    const auto bears_no_leaves = [&](const SketchAxis& axis, double along, double length) {
+        const double radius = value_along(axis.points, axis.radii, along);
+        const bool is_low = place_along(axis.points, along).y < low;
         return is_low && radius > 2.0 * rules.maximum_radius && length < kLowSnagRadii * radius;
     };
     for (const View view : {View::kFront, View::kSide}) {
@@ -144,8 +144,8 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             // The nearest wood as one sees it, that is in the crown.
             TwigPlace place;
             double least = 1e300;
-            for (size_t l = 0; l < filling.limbs.size(); l++) {
-                const std::vector<DVec3>& points = filling.limbs[l].limb.points;
+            for (size_t l = 0; l < filling.axes.size(); l++) {
+                const std::vector<DVec3>& points = filling.axes[l].axis.points;
                 double passed = 0.0;
                 for (size_t k = 0; k + 1 < points.size(); k++) {
                     const DVec2 a = cover.seen(points[k]), b = cover.seen(points[k + 1]);
@@ -157,24 +157,24 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
                     const double along = passed + where * length;
                     passed += length;
                     if (square >= least || !crown.contains(p)) continue;
-                    if (bears_no_leaves(filling.limbs[l].limb, along, std::sqrt(square))) continue;
+                    if (bears_no_leaves(filling.axes[l].axis, along, std::sqrt(square))) continue;
                     const auto there = borne.find({l, place_of(along)});
                     if (there != borne.end() && there->second >= kMostAtAPlace) continue;
                     least = square;
-                    place.limb = l;
+                    place.axis = l;
                     place.along = along;
                 }
             }
             if (least >= 1e300) continue;
-            const Limb& limb = filling.limbs[place.limb].limb;
-            DVec3 from = place_along(limb.points, place.along);
+            const SketchAxis& axis = filling.axes[place.axis].axis;
+            DVec3 from = place_along(axis.points, place.along);
             if (species.own) {
-                // Lower on the limb, so that it leaves it at an angle of its kind and still gets there.
+                // Lower on the branch, so that it leaves it at an angle of its kind and still gets there.
                 const double off = species.angle_at(random.uniform()) * kPi / 180.0;
                 const double back = std::sqrt(least) * portable::cos(off) / portable::sin(off);
-                const double along = std::clamp(place.along - back, 0.0, length_of(limb.points));
-                const DVec3 lower = place_along(limb.points, along);
-                if (crown.contains(lower) && !bears_no_leaves(limb, along, std::sqrt(least))) {
+                const double along = std::clamp(place.along - back, 0.0, length_of(axis.points));
+                const DVec3 lower = place_along(axis.points, along);
+                if (crown.contains(lower) && !bears_no_leaves(axis, along, std::sqrt(least))) {
                     place.along = along;
                     from = lower;
                 }
@@ -189,16 +189,16 @@ void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecie
             const double room = glm::length(to - from) + 0.5 * leaf;
             place.way = normalized_or(to - from, DVec3(0.0, 1.0, 0.0));
             place.spin = random.uniform(0.0, 2.0 * kPi);
-            const double radius = value_along(limb.points, limb.radii, place.along);
+            const double radius = value_along(axis.points, axis.radii, place.along);
             const double shortest = 0.36 * growth * species.twigs.front().length;
             const double longest = 1.3 * growth * species.twigs.back().length;
             const auto chosen = choose_twig(species, std::clamp(room, shortest, longest), radius, growth,
-                                            true, hash_seed(limb.seed, 50000 + filling.twigs.size()));
+                                            true, hash_seed(axis.seed, 50000 + filling.twigs.size()));
             if (!chosen) continue;
             place.twig = chosen->twig;
             place.scale = chosen->scale;
             filling.twigs.push_back(place);
-            borne[{place.limb, place_of(place.along)}]++;
+            borne[{place.axis, place_of(place.along)}]++;
             mark(cover, place);
             all += wood_of(place);
         }

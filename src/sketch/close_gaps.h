@@ -10,7 +10,7 @@
 
 namespace treerec {
 
-// Adds twigs, from the limb nearest to each, to the parts of the crown's front view, and then of its side
+// Adds twigs, from the branch nearest to each, to the parts of the crown's front view, and then of its side
 // view, that no leafy twig is seen in. rules: of the species' leaves. height: the tree's, metres. most_wood:
 // metres of all twigs, beyond which none is added.
 void close_gaps(Filling& filling, const CrownSections& crown, const SketchSpecies& species,

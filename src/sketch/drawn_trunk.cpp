@@ -50,7 +50,7 @@ DrawnLine middle_of_rows(const std::vector<Row>& rows, double bottom, double ste
     return middle;
 }
 
-// A slanting foot or top cuts off corners: rows there are as wide as the first whole one.
+// A slanting base or top cuts off corners: rows there are as wide as the first whole one.
 void widen_ends(std::vector<Row>& rows) {
     std::vector<double> widths;
     for (const Row& row : rows)
@@ -137,10 +137,10 @@ DrawnLine middle_of_outline(const FlatLine& around) {
 FlatLine make_trunk(const FlatLine& outline, double x, double lowest) {
     const FlatBox box = line_box(outline);
     const double height = box.size().y;
-    // The canvas ends at 0. A crown that comes down to it stands on its trunk's foot.
-    double foot = std::min(lowest, std::max(0.0, box.low.y - 0.25 * height));
-    foot = std::min(foot, box.low.y);
-    return fill_line({DVec2(x, foot), DVec2(x, box.low.y + 0.8 * height)},
+    // The canvas ends at 0. A crown that comes down to it stands on its trunk's base.
+    double stem_base = std::min(lowest, std::max(0.0, box.low.y - 0.25 * height));
+    stem_base = std::min(stem_base, box.low.y);
+    return fill_line({DVec2(x, stem_base), DVec2(x, box.low.y + 0.8 * height)},
                      std::max(kMostSpacing, height / kMostRows), kMostSpacing, nullptr);
 }
 

@@ -9,10 +9,10 @@
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
 #include "sketch/alpha_crown.h"
+#include "sketch/axis_cells.h"
 #include "sketch/close_gaps.h"
 #include "sketch/crown_leaves.h"
 #include "sketch/lift.h"
-#include "sketch/limb_cells.h"
 #include "tree/branches.h"
 
 namespace treerec {
@@ -47,7 +47,7 @@ struct Filler {
     double margin;
     double step;
     double spacing;
-    std::vector<size_t> cell_of;  // by filled limb
+    std::vector<size_t> cell_of;  // by filled branch
     Filling filling = {};
 
     bool printed() const { return options.depth == SketchDepth::kPaper; }
@@ -66,49 +66,49 @@ struct Filler {
 
     void add_branch(const CrownBound& bound, size_t parent, double along, const DVec3& way, double room,
                     int depth) {
-        const Limb& host = filling.limbs[parent].limb;
-        FilledLimb branch;
+        const SketchAxis& host = filling.axes[parent].axis;
+        FilledAxis branch;
         branch.parent = static_cast<int32_t>(parent);
-        branch.limb.along = along;
-        branch.limb.seed = hash_seed(host.seed, 7000 + static_cast<uint64_t>(filling.limbs.size()));
+        branch.axis.along = along;
+        branch.axis.seed = hash_seed(host.seed, 7000 + static_cast<uint64_t>(filling.axes.size()));
         DVec3 at = place_along(host.points, along);
         DVec3 direction = way;
-        branch.limb.points.push_back(at);
+        branch.axis.points.push_back(at);
         for (int i = 0; i < kBranchSteps; i++) {
             const DVec3 next = at + direction * (kBranchShare * room / kBranchSteps);
             if (!crown.contains(next, margin)) break;
-            branch.limb.points.push_back(at = next);
+            branch.axis.points.push_back(at = next);
             direction = glm::normalize(direction + DVec3(0.0, kUpwards / kBranchSteps, 0.0));
         }
-        if (branch.limb.points.size() < 3) return;
+        if (branch.axis.points.size() < 3) return;
         const double radius = kBranchThickness * value_along(host.points, host.radii, along);
-        branch.limb.radii =
-            taper ? taper->branches.radii_along(branch.limb.points, 1.0, std::max(radius, kLeastRadius))
-                  : tapered(branch.limb.points, radius, kLeastRadius);
+        branch.axis.radii =
+            taper ? taper->branches.radii_along(branch.axis.points, 1.0, std::max(radius, kLeastRadius))
+                  : tapered(branch.axis.points, radius, kLeastRadius);
         const size_t cell = cell_of[parent];
-        filling.limbs.push_back(std::move(branch));
+        filling.axes.push_back(std::move(branch));
         cell_of.push_back(cell);
-        fill(bound, filling.limbs.size() - 1, 0.0, depth + 1);
+        fill(bound, filling.axes.size() - 1, 0.0, depth + 1);
     }
 
-    // Twigs on the limb from `begin` metres on.
+    // Twigs on the branch from `begin` metres on.
     void fill(const CrownBound& bound, size_t index, double begin, int depth) {
         if (progress) progress->check();
-        const Limb limb = filling.limbs[index].limb;  // the list grows
-        const double length = length_of(limb.points);
-        const DVec3 axis =
-            normalized_or(limb.points.back() - place_along(limb.points, begin), DVec3(0, 1, 0));
-        const DMat3 frame = frame_about(axis);
+        const SketchAxis axis = filling.axes[index].axis;  // the list grows
+        const double length = length_of(axis.points);
+        const DVec3 direction =
+            normalized_or(axis.points.back() - place_along(axis.points, begin), DVec3(0, 1, 0));
+        const DMat3 frame = frame_about(direction);
         const double bare = begin > 0.0 || printed() ? begin : kBare * length;
         const int several = at_a_place();
         const auto places =
             static_cast<size_t>(std::max(1.0, std::floor((length - bare) / (spacing * several) + 0.5)));
-        Random random(hash_seed(limb.seed, 11));
+        Random random(hash_seed(axis.seed, 11));
         const double first = random.uniform(0.0, 2.0 * kPi);
         for (size_t i = 0; i < places && options.density > 0.0; i++) {
             const double group = (length - bare) / static_cast<double>(places);
             const double along = bare + group * (static_cast<double>(i) + random.uniform(0.15, 0.85));
-            const DMat3 here = species.own ? frame_about(direction_along(limb.points, along)) : frame;
+            const DMat3 here = species.own ? frame_about(direction_along(axis.points, along)) : frame;
             for (int k = 0; k < several; k++) {
                 const double off = species.angle_at(random.uniform()) * kPi / 180.0;
                 const double roll = printed() ? random.uniform(0.0, 2.0 * kPi)
@@ -120,26 +120,27 @@ struct Filler {
                 add(bound, index, along, way, random.uniform(0.0, 2.0 * kPi), depth);
             }
         }
-        // The limb itself goes on in a twig.
+        // The branch itself goes on in a twig.
         if (!printed() && options.density > 0.0) {
-            const DVec3 last = limb.points.back() - limb.points[limb.points.size() - 2];
-            add(bound, index, length, normalized_or(last, axis), random.uniform(0.0, 2.0 * kPi), kDeepest);
+            const DVec3 last = axis.points.back() - axis.points[axis.points.size() - 2];
+            add(bound, index, length, normalized_or(last, direction), random.uniform(0.0, 2.0 * kPi),
+                kDeepest);
         }
     }
 
     void add(const CrownBound& bound, size_t index, double along, const DVec3& way, double spin, int depth) {
         if (filling.twigs.size() >= kMostTwigs) return;
-        const Limb& limb = filling.limbs[index].limb;
-        const double room = bound.reach(place_along(limb.points, along), way, cell_of[index], step, margin);
+        const SketchAxis& axis = filling.axes[index].axis;
+        const double room = bound.reach(place_along(axis.points, along), way, cell_of[index], step, margin);
         if (!(room > 0.0)) return;
         const double longest = kMostScale * growth * species.twigs.back().length;
         if (!printed() && room > longest && depth < kDeepest) {
             add_branch(bound, index, along, way, room, depth);
             return;
         }
-        const double radius = value_along(limb.points, limb.radii, along);
+        const double radius = value_along(axis.points, axis.radii, along);
         const auto chosen = choose_twig(species, printed() ? room : std::min(room, longest), radius, growth,
-                                        !printed(), hash_seed(limb.seed, 40000 + filling.twigs.size()));
+                                        !printed(), hash_seed(axis.seed, 40000 + filling.twigs.size()));
         if (chosen)
             filling.twigs.push_back({index, along, way, chosen->twig, chosen->scale, spin});
         else
@@ -147,16 +148,16 @@ struct Filler {
     }
 };
 
-// The trunk above its lowest branch, or in the crown, is a limb of its own: metres along it where that
+// The trunk above its lowest branch, or in the crown, is a branch of its own: metres along it where that
 // begins.
-double leader_begin(const Limbs& limbs, const CrownSections& crown) {
-    const double length = length_of(limbs.trunk.points);
+double leader_begin(const SketchAxes& axes, const CrownSections& crown) {
+    const double length = length_of(axes.trunk.points);
     double begin = length;
-    for (const Limb& branch : limbs.branches)
+    for (const SketchAxis& branch : axes.branches)
         if (branch.parent < 0) begin = std::min(begin, branch.along);
-    if (!limbs.branches.empty()) return begin;
+    if (!axes.branches.empty()) return begin;
     for (double along = 0.0; along < length; along += 0.01 * length)
-        if (place_along(limbs.trunk.points, along).y >= crown.bottom()) return along;
+        if (place_along(axes.trunk.points, along).y >= crown.bottom()) return along;
     return length;
 }
 
@@ -180,7 +181,7 @@ void thin_out(Filling& filling, const SketchSpecies& species, const CrownSection
     double all = 0.0;
     for (const TwigPlace& place : filling.twigs)
         all += kept_wood(species.twigs[place.twig].scion, place,
-                         place_along(filling.limbs[place.limb].limb.points, place.along), crown, margin);
+                         place_along(filling.axes[place.axis].axis.points, place.along), crown, margin);
     if (all <= most) return;
     std::vector<TwigPlace> kept;
     double due = 0.0;
@@ -195,7 +196,7 @@ void thin_out(Filling& filling, const SketchSpecies& species, const CrownSection
 
 }  // namespace
 
-Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
+Filling fill_crown(const SketchAxes& axes, const CrownSections& crown, const SketchSpecies& species,
                    double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
                    const Progress* progress) {
     const bool printed = options.depth == SketchDepth::kPaper;
@@ -210,7 +211,7 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
     const double own_step = growth * std::min(species.internode, middle);
     Filler filler{crown,
                   species,
-                  limbs.taper,
+                  axes.taper,
                   options,
                   progress,
                   growth,
@@ -220,23 +221,23 @@ Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchS
                           : std::max({kSpacing * growth * middle, own_step,
                                       kShareSpacing * portable::cbrt(crown.volume() / count)}),
                   {}};
-    filler.filling.limbs.push_back({limbs.trunk, -1});
+    filler.filling.axes.push_back({axes.trunk, -1});
     filler.cell_of.push_back(0);
-    const double begin = leader_begin(limbs, crown);
-    std::vector<std::vector<DVec3>> lines{line_from(limbs.trunk.points, begin)};
-    for (const Limb& branch : limbs.branches) {
+    const double begin = leader_begin(axes, crown);
+    std::vector<std::vector<DVec3>> lines{line_from(axes.trunk.points, begin)};
+    for (const SketchAxis& branch : axes.branches) {
         // The trunk is the first of these.
-        filler.filling.limbs.push_back({branch, branch.parent + 1});
+        filler.filling.axes.push_back({branch, branch.parent + 1});
         filler.cell_of.push_back(lines.size());
         lines.push_back(branch.points);
     }
     if (lines[0].size() < 2) lines[0].push_back(lines[0][0] + DVec3(0.0, 1e-6, 0.0));
-    const LimbCells cells(crown, lines);
+    const AxisCells cells(crown, lines);
     std::unique_ptr<const CrownBound> alpha;
     if (options.crown == SketchCrown::kAlpha) alpha = alpha_crown(crown, cells, lines.size(), seed, progress);
     const CrownBound* const bound = alpha ? alpha.get() : &cells;
-    const size_t first_order = filler.filling.limbs.size();
-    if (begin < length_of(limbs.trunk.points)) filler.fill(*bound, 0, begin, 0);
+    const size_t first_order = filler.filling.axes.size();
+    if (begin < length_of(axes.trunk.points)) filler.fill(*bound, 0, begin, 0);
     for (size_t i = 1; i < first_order; i++)
         filler.fill(*bound, i, 0.0, 0);
     if (!printed) thin_out(filler.filling, species, crown, filler.margin, kEven * wanted);

@@ -1,4 +1,4 @@
-// Twigs on the limbs, as long as the crown has room (Ma and Liu 2020, 4.2).
+// Twigs on the branches, as long as the crown has room (Ma and Liu 2020, 4.2).
 #pragma once
 
 #include <cstdint>
@@ -7,31 +7,31 @@
 
 #include "progress.h"
 #include "sketch/crown_sections.h"
-#include "sketch/limbs.h"
 #include "sketch/sketch.h"
+#include "sketch/sketch_axes.h"
 #include "sketch/species.h"
 #include "sketch/twig_place.h"
 
 namespace treerec {
 
-// A limb that is ready to become wood: the trunk first, then those that grow from it or from another.
-struct FilledLimb {
-    Limb limb;
+// An axis that is ready to become wood: the trunk first, then those that grow from it or from another.
+struct FilledAxis {
+    SketchAxis axis;
     int32_t parent = -1;  // place in the list; -1: the trunk
 };
 
 struct Filling {
-    std::vector<FilledLimb> limbs;
+    std::vector<FilledAxis> axes;
     std::vector<TwigPlace> twigs;
     size_t bare = 0;  // places in the crown that no twig is short enough for
 };
 
-// kSections (default): twigs stand evenly around each limb, by the species' arrangement and angles off
+// kSections (default): twigs stand evenly around each branch, by the species' arrangement and angles off
 //     its direction; a place whose room is longer than any twig gets a branch with twigs of its own. Then
-//     what the front view would still see through gets a twig from the limb nearest to it.
+//     what the front view would still see through gets a twig from the branch nearest to it.
 // As printed (options.depth is kPaper): one twig at a random node of each group of nodes, in a random
 //     direction of that range, by equation 4; where none fits the nearest is scaled by .7 to 1.3, else none.
-Filling fill_crown(const Limbs& limbs, const CrownSections& crown, const SketchSpecies& species,
+Filling fill_crown(const SketchAxes& axes, const CrownSections& crown, const SketchSpecies& species,
                    double height, double metres_per_pixel, uint64_t seed, const SketchOptions& options,
                    const Progress* progress);
 

@@ -28,9 +28,9 @@ constexpr double kThinnestBranch = 0.25, kThickestBranch = 0.75;
 // snags, which bear no leaves.
 constexpr double kSlender = 0.12;
 
-// Metres, at the foot, where none was drawn.
-double usual_radius(const CrownSections& crown, double foot) {
-    const double height = crown.top() - foot;
+// Metres, at the base, where none was drawn.
+double usual_radius(const CrownSections& crown, double stem_base) {
+    const double height = crown.top() - stem_base;
     const double slender = std::min(crown.reach() / (kSlender * height), 1.0);
     return height / 40.0 * slender * slender;
 }
@@ -50,7 +50,7 @@ std::vector<size_t> joints_of(const DrawnTree& drawn) {
 
 // Gives each point of the branch its depth: its base's, and more in proportion to the way along it, `tip` at
 // the tip.
-void deepen(Limb& branch, double tip) {
+void deepen(SketchAxis& branch, double tip) {
     const double length = length_of(branch.points);
     double along = 0.0;
     DVec3 before = branch.points[0];
@@ -63,7 +63,7 @@ void deepen(Limb& branch, double tip) {
 
 // How deep the tip may lie so that no point of the branch leaves the crown. Where it is outside anyway, as
 // below the crown, nothing bounds it.
-double deepest_tip(const Limb& branch, const CrownSections& crown) {
+double deepest_tip(const SketchAxis& branch, const CrownSections& crown) {
     const double length = length_of(branch.points);
     double most = kMostDepth * length;
     double along = 0.0;
@@ -77,7 +77,7 @@ double deepest_tip(const Limb& branch, const CrownSections& crown) {
     return most;
 }
 
-void lift_truly(Limb& branch, const CrownSections& crown) {
+void lift_truly(SketchAxis& branch, const CrownSections& crown) {
     Random random(branch.seed);
     const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
     deepen(branch, side * random.uniform(kShallowest, kDeepest) * deepest_tip(branch, crown));
@@ -117,88 +117,89 @@ std::vector<double> printed_turns(size_t count, uint64_t seed, std::vector<std::
 }
 
 // The line with few points, in the plane z = 0.
-Limb flat_limb(const DrawnLine& line, const Sketch& sketch, const CanvasPlace& place) {
+SketchAxis flat_branch(const DrawnLine& line, const Sketch& sketch, const CanvasPlace& place) {
     const std::vector<size_t> own =
         split_long_steps(line.points, simplify_line(line.points, {}, kTrueness), kLongestStep);
-    Limb limb;
+    SketchAxis axis;
     for (const size_t i : own)
-        limb.points.emplace_back(place.metres(line.points[i]), 0.0);
-    limb.stroke = static_cast<int32_t>(line.stroke);
-    limb.seed = hash_seed(sketch.seed, sketch.strokes[line.stroke].id);
-    return limb;
+        axis.points.emplace_back(place.metres(line.points[i]), 0.0);
+    axis.stroke = static_cast<int32_t>(line.stroke);
+    axis.seed = hash_seed(sketch.seed, sketch.strokes[line.stroke].id);
+    return axis;
 }
 
 }  // namespace
 
-std::vector<double> radii_of(const Limb& branch, const Limbs& limbs) {
-    const Limb& host = branch.parent < 0 ? limbs.trunk : limbs.branches[static_cast<size_t>(branch.parent)];
+std::vector<double> radii_of(const SketchAxis& branch, const SketchAxes& axes) {
+    const SketchAxis& host =
+        branch.parent < 0 ? axes.trunk : axes.branches[static_cast<size_t>(branch.parent)];
     const double there = value_along(host.points, host.radii, branch.along);
-    if (limbs.taper)
-        return limbs.taper->branches.radii_along(branch.points, 1.0,
-                                                 std::max(kThickestBranch * there, kLeastRadius));
-    const double fair = limbs.trunk.radii[0] * length_of(branch.points) / length_of(limbs.trunk.points);
+    if (axes.taper)
+        return axes.taper->branches.radii_along(branch.points, 1.0,
+                                                std::max(kThickestBranch * there, kLeastRadius));
+    const double fair = axes.trunk.radii[0] * length_of(branch.points) / length_of(axes.trunk.points);
     return tapered(branch.points, std::clamp(fair, kThinnestBranch * there, kThickestBranch * there),
                    kLeastRadius);
 }
 
-Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place, const CrownSections& crown,
-           const SketchOptions& options, const std::optional<WoodTaper>& taper,
-           std::vector<std::string>& remarks) {
-    Limbs limbs;
-    limbs.taper = taper;
+SketchAxes lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& place,
+                const CrownSections& crown, const SketchOptions& options,
+                const std::optional<WoodTaper>& taper, std::vector<std::string>& remarks) {
+    SketchAxes axes;
+    axes.taper = taper;
     const std::vector<DVec2>& line = drawn.trunk.points;
     const std::vector<double>& radii = drawn.trunk.radii;
     const std::vector<size_t> joints = joints_of(drawn);
     const std::vector<size_t> kept =
         split_long_steps(line, simplify_line(line, joints, kTrueness), kLongestStep);
     for (const size_t i : kept)
-        limbs.trunk.points.emplace_back(place.metres(line[i]), 0.0);
-    limbs.trunk.stroke = static_cast<int32_t>(drawn.trunk.stroke);
-    limbs.trunk.seed = hash_seed(sketch.seed, 0);
-    const double foot = options.trunk_radius > 0.0 ? options.trunk_radius
-                        : !radii.empty()           ? radii[0] * place.scale
-                        : taper                    ? taper->foot
-                                                   : usual_radius(crown, limbs.trunk.points[0].y);
-    const double least = std::max(foot / 10.0, kLeastRadius);
-    limbs.trunk.radii = taper ? taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius)
-                              : tapered(limbs.trunk.points, foot, least);
+        axes.trunk.points.emplace_back(place.metres(line[i]), 0.0);
+    axes.trunk.stroke = static_cast<int32_t>(drawn.trunk.stroke);
+    axes.trunk.seed = hash_seed(sketch.seed, 0);
+    const double stem_base = options.trunk_radius > 0.0 ? options.trunk_radius
+                             : !radii.empty()           ? radii[0] * place.scale
+                             : taper                    ? taper->stem_base
+                                                        : usual_radius(crown, axes.trunk.points[0].y);
+    const double least = std::max(stem_base / 10.0, kLeastRadius);
+    axes.trunk.radii = taper ? taper->trunk_radii(axes.trunk.points, stem_base, kLeastRadius)
+                             : tapered(axes.trunk.points, stem_base, least);
     if (!radii.empty()) {
-        // As drawn, in proportion to the foot's, and no thicker above.
-        double before = foot;
+        // As drawn, in proportion to the base's, and no thicker above.
+        double before = stem_base;
         for (size_t i = 0; i < kept.size(); i++) {
-            const double own = radii[kept[i]] / radii[0] * foot;
-            before = limbs.trunk.radii[i] = std::clamp(own, least, std::max(before, least));
+            const double own = radii[kept[i]] / radii[0] * stem_base;
+            before = axes.trunk.radii[i] = std::clamp(own, least, std::max(before, least));
         }
     }
 
     for (size_t b = 0; b < drawn.branches.size(); b++) {
-        Limb branch = flat_limb(drawn.branches[b], sketch, place);
+        SketchAxis branch = flat_branch(drawn.branches[b], sketch, place);
         branch.points[0] = DVec3(place.metres(line[joints[b]]), 0.0);
         for (size_t i = 0; i + 1 < kept.size() && kept[i] < joints[b]; i++)
-            branch.along += glm::length(limbs.trunk.points[i + 1] - limbs.trunk.points[i]);
-        limbs.branches.push_back(std::move(branch));
+            branch.along += glm::length(axes.trunk.points[i + 1] - axes.trunk.points[i]);
+        axes.branches.push_back(std::move(branch));
     }
     // Of the second order: while their parents are flat, too, one finds where they grow. What lifts a branch
     // leaves the shares of its length as they are.
-    const size_t first_order = limbs.branches.size();
+    const size_t first_order = axes.branches.size();
     std::vector<double> shares;
     for (const DrawnLine& side : drawn.side_branches) {
-        Limb branch = flat_limb(side, sketch, place);
+        SketchAxis branch = flat_branch(side, sketch, place);
         branch.parent = static_cast<int32_t>(*side.parent);
-        const std::vector<DVec3>& on = limbs.branches[*side.parent].points;
+        const std::vector<DVec3>& on = axes.branches[*side.parent].points;
         branch.along = nearest_along(on, branch.points[0]);
         shares.push_back(branch.along / length_of(on));
         branch.points[0] = place_along(on, branch.along);
-        limbs.branches.push_back(std::move(branch));
+        axes.branches.push_back(std::move(branch));
     }
     const bool printed = options.depth == SketchDepth::kPaper;
     const std::vector<double> turns =
         printed ? printed_turns(first_order, sketch.seed, remarks) : std::vector<double>();
-    for (size_t i = 0; i < limbs.branches.size(); i++) {
-        Limb& branch = limbs.branches[i];
+    for (size_t i = 0; i < axes.branches.size(); i++) {
+        SketchAxis& branch = axes.branches[i];
         if (i >= first_order) {
             const auto parent = static_cast<size_t>(branch.parent);
-            const std::vector<DVec3>& on = limbs.branches[parent].points;
+            const std::vector<DVec3>& on = axes.branches[parent].points;
             branch.along = shares[i - first_order] * length_of(on);
             if (printed)  // with what it grows from
                 turn(branch.points, on[0], turns[parent]);
@@ -208,9 +209,9 @@ Limbs lift(const DrawnTree& drawn, const Sketch& sketch, const CanvasPlace& plac
             turn(branch.points, DVec3(branch.points[0]), turns[i]);
         }
         if (!printed) lift_truly(branch, crown);
-        branch.radii = radii_of(branch, limbs);
+        branch.radii = radii_of(branch, axes);
     }
-    return limbs;
+    return axes;
 }
 
 }  // namespace treerec

@@ -21,8 +21,8 @@ constexpr double kSmallRing = 0.12;  // of the drawing's height: an apple, a hol
 // Strokes that go around the crown together: none bends less, and two meet within so much of both lengths.
 constexpr double kStraight = 0.92, kMeet = 0.06, kChainRoundness = 0.5;
 constexpr size_t kMostArcs = 40;
-constexpr double kLeastRing = 0.02;                     // of the whole drawing's hull: less is a sun
-constexpr double kGroundZone = 0.06, kFeetZone = 0.12;  // of the drawing's height, above its lowest point
+constexpr double kLeastRing = 0.02;                         // of the whole drawing's hull: less is a sun
+constexpr double kGroundZone = 0.06, kStemBaseZone = 0.12;  // of the drawing's height, above its lowest point
 
 struct Shape {
     double length = 0.0;
@@ -324,7 +324,7 @@ class Recogniser {
 
     // A trunk's three sides are no arc of a crown.
     bool stands_around(size_t i) const {
-        return is_around(i) && shapes_[i].box.low.y < whole_.box.low.y + kFeetZone * whole_.box.size().y;
+        return is_around(i) && shapes_[i].box.low.y < whole_.box.low.y + kStemBaseZone * whole_.box.size().y;
     }
 
     // lines_.size(): none stands.
@@ -373,20 +373,21 @@ class Recogniser {
         const double low = std::max(one.low.y, other.low.y), high = std::min(one.high.y, other.high.y);
         const double tall = std::max(one.size().y, other.size().y), common = high - low;
         if (common < (told ? 0.3 : 0.4) * tall || common <= 0.0) return false;
-        if (!told && low - std::min(one.low.y, other.low.y) > kFeetZone * whole_.box.size().y) return false;
+        if (!told && low - std::min(one.low.y, other.low.y) > kStemBaseZone * whole_.box.size().y)
+            return false;
         if (one.size().x > 0.8 * one.size().y || other.size().x > 0.8 * other.size().y) return false;
         // Between them at eight heights; they neither cross nor part.
-        double foot = 0.0;
+        double stem_base = 0.0;
         for (int k = 0; k < 8; k++) {
             const double y = low + (0.05 + 0.9 * k / 7.0) * common;
             const double between = x_at(lines_[b], y) - x_at(lines_[a], y);
-            if (k == 0) foot = between;
-            if (std::abs(between) < (told ? 1.0 : 3.0) || between * foot < 0.0) return false;
-            if (std::abs(between) > (told ? 2.5 : 1.5) * std::abs(foot) + 4.0) return false;
+            if (k == 0) stem_base = between;
+            if (std::abs(between) < (told ? 1.0 : 3.0) || between * stem_base < 0.0) return false;
+            if (std::abs(between) > (told ? 2.5 : 1.5) * std::abs(stem_base) + 4.0) return false;
         }
         // Both of them below a crown, and alone there, are a stout, short trunk.
         const bool stout = told || (high < lowest_of_crown() + 0.2 * common && common > 0.8 * tall);
-        return std::abs(foot) < (stout ? 1.0 : 0.5) * common;
+        return std::abs(stem_base) < (stout ? 1.0 : 0.5) * common;
     }
 
     // The mean of where a line crosses this height.

@@ -31,7 +31,7 @@ enum class SketchCrown : uint8_t {
 struct SketchOptions {
     SketchDepth depth = SketchDepth::kTrue;
     SketchCrown crown = SketchCrown::kSections;
-    // Metres at the foot; 0: as drawn with two lines, else height / 40, less in a slender crown.
+    // Metres at the base; 0: as drawn with two lines, else height / 40, less in a slender crown.
     double trunk_radius = 0.0;
     double density = 1.0;  // of twigs, 0..4
     // Of the leaves that are to fill the crown; nothing: those of the preset of the sketch's species.
@@ -39,17 +39,17 @@ struct SketchOptions {
 };
 
 struct SketchedTree {
-    Tree tree;  // metres, the trunk's foot at the origin, Y up, the canvas faces +Z
+    Tree tree;  // metres, the trunk's base at the origin, Y up, the canvas faces +Z
     UnderstoodSketch understood;
     std::vector<std::string> remarks;  // about the whole, understood.remarks first
     // By node id: the stroke (place in Sketch::strokes) that the node was drawn by, or -1 (twigs, and what
     // the drawing does not show).
     std::vector<int32_t> stroke_of_node;
-    // A point of the sketch's canvas (x, y) lies at ((x - foot.x) * scale, (foot.y - y) * scale) in x and y.
-    DVec2 foot{0.0};
+    // A point of the sketch's canvas (x, y) lies at ((x - base.x) * scale, (base.y - y) * scale) in x and y.
+    DVec2 stem_base{0.0};
     double scale = 0.01;      // metres a pixel of the sketch's canvas
     std::string species;      // the preset of its leaves and bark; unless the twigs are own ones, theirs, too
-    double crown_base = 0.0;  // metres above the foot: below there is only the trunk
+    double crown_base = 0.0;  // metres above the base: below there is only the trunk
 };
 
 // The same sketch and options give the same tree on every machine. Throws Error where understand_sketch()

@@ -16,7 +16,7 @@ namespace treerec {
 
 namespace {
 
-constexpr double kThickest = 0.2;  // of a tree's height: a trunk's radius at the foot
+constexpr double kThickest = 0.2;  // of a tree's height: a trunk's radius at the base
 constexpr double kMostDensity = 4.0;
 
 void check_options(const SketchOptions& options, double height) {
@@ -54,13 +54,13 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     out.species = species.name;
     const DrawnTree& drawn = out.understood.drawn;
 
-    const DVec2 foot = drawn.trunk.points[0];
-    const double pixels = highest_of(drawn) - foot.y;
+    const DVec2 stem_base = drawn.trunk.points[0];
+    const double pixels = highest_of(drawn) - stem_base.y;
     if (!(pixels > 1.0))
-        throw Error("Nothing is drawn above the trunk's foot; draw the tree from the ground up.");
-    const CanvasPlace place{foot, height / pixels};
+        throw Error("Nothing is drawn above the trunk's base; draw the tree from the ground up.");
+    const CanvasPlace place{stem_base, height / pixels};
     const double shown = sketch.canvas.y / kCanvasHeight;
-    out.foot = DVec2(foot.x, kCanvasHeight - foot.y) * shown;
+    out.stem_base = DVec2(stem_base.x, kCanvasHeight - stem_base.y) * shown;
     out.scale = place.scale / shown;
 
     std::vector<DVec2> outline;
@@ -71,14 +71,14 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     out.crown_base = crown.bottom();
     std::optional<WoodTaper> taper;
     if (species.taper) taper = species.taper->at_height(height);
-    Limbs limbs = lift(drawn, sketch, place, crown, options, taper, out.remarks);
+    SketchAxes axes = lift(drawn, sketch, place, crown, options, taper, out.remarks);
     if (!printed) {
-        extend_trunk(limbs, crown, sketch.seed);
-        add_unseen_branches(limbs, crown, sketch.seed);
+        extend_trunk(axes, crown, sketch.seed);
+        add_unseen_branches(axes, crown, sketch.seed);
     }
     if (progress) progress->check();
     const Filling filling =
-        fill_crown(limbs, crown, species, height, place.scale, sketch.seed, options, progress);
+        fill_crown(axes, crown, species, height, place.scale, sketch.seed, options, progress);
     // As printed, twigs keep their lengths, which are those of grown trees.
     if (printed && filling.bare > filling.twigs.size())
         out.remarks.push_back(

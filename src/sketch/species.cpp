@@ -8,7 +8,7 @@
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "lsystem/lstring.h"
-#include "sketch/limbs.h"
+#include "sketch/sketch_axes.h"
 
 namespace treerec {
 
@@ -52,7 +52,7 @@ WoodTaper WoodTaper::at_height(double metres) const {
     const double times = metres / height;
     WoodTaper scaled = *this;
     scaled.height = metres;
-    scaled.foot *= times;
+    scaled.stem_base *= times;
     // r(l) becomes times r(l / times).
     scaled.branches.intercept += (1.0 - branches.slope) * portable::log(times);
     scaled.branches.least *= times;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "foliage/leaf_rules.h"
-#include "sketch/limb_statistics.h"
+#include "sketch/branch_statistics.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -30,13 +30,13 @@ enum class TwigArrangement : uint8_t {
 // How thick wood is, as it was measured on a tree.
 struct WoodTaper {
     double height = 0.0;             // metres, of that tree
-    double foot = 0.0;               // metres: the trunk's radius at its foot
-    std::array<double, 11> trunk{};  // over the foot's, at 0, 0.1 .. 1 of its length
+    double stem_base = 0.0;          // metres: the trunk's radius at its base
+    std::array<double, 11> trunk{};  // over the base's, at 0, 0.1 .. 1 of its length
     RadiusLaw branches;
 
     // The same of a tree of the same shape that is so high.
     WoodTaper at_height(double metres) const;
-    // At each point of a trunk that is `foot` thick there; at least `least`. Metres.
+    // At each point of a trunk that is `stem_base` thick there; at least `least`. Metres.
     std::vector<double> trunk_radii(const std::vector<DVec3>& points, double base, double least) const;
 };
 
@@ -47,9 +47,9 @@ struct SketchSpecies {
     TwigArrangement arrangement = TwigArrangement::kAlternate;
     std::vector<SpeciesTwig> twigs;  // the shortest first
     LeafRules leaves;
-    // Degrees off the limb, ascending and in equal shares of the twigs; by Ma and Liu 2020, 4.2, step 2.
+    // Degrees off the branch, ascending and in equal shares of the twigs; by Ma and Liu 2020, 4.2, step 2.
     std::vector<double> angles{30.0, 70.0};
-    // Whether angles are those off the limb where the twig stands, and not off its whole course.
+    // Whether angles are those off the branch where the twig stands, and not off its whole course.
     bool own = false;
     double internode = 0.0;          // metres from twig to twig at least; 0: as the crown has room
     std::optional<WoodTaper> taper;  // nothing: equation 2

@@ -45,7 +45,7 @@ struct Stroke {
 struct Sketch {
     DVec2 canvas{kCanvasHeight, kCanvasHeight};  // pixels, both above 0
     std::vector<Stroke> strokes;
-    double height = 0.0;  // metres of the tree, from the trunk's foot to the top; 0: the species' usual
+    double height = 0.0;  // metres of the tree, from the trunk's base to the top; 0: the species' usual
     std::string species;  // sketch_species(); empty: maple
     // Twigs of one's own in place of the species', of which only leaves and bark are left, by any leaf
     // preset.

@@ -10,10 +10,10 @@
 
 namespace treerec {
 
-// A twig of the species at a place on a limb.
+// A twig of the species at a place on a branch.
 struct TwigPlace {
-    size_t limb = 0;     // place among the filled limbs
-    double along = 0.0;  // metres from the limb's tail
+    size_t axis = 0;     // place among the filled branches
+    double along = 0.0;  // metres from the branch's tail
     DVec3 way{0.0};      // unit: where the twig goes
     size_t twig = 0;     // place in SketchSpecies::twigs
     double scale = 1.0;

@@ -32,7 +32,7 @@ struct TwigStock {
 TwigStock stock_of_twigs(const std::vector<std::string>& strings, const std::string& title);
 
 // From a tree, as one that was scanned: up to four well-shaped branches of each of three sizes, and, as
-// LimbStatistics measures them, the angles and internodes of its twigs and how thick its trunk and branches
+// BranchStatistics measures them, the angles and internodes of its twigs and how thick its trunk and branches
 // are. Twigs are as long as those of sketch_species() on a tree of that height, as far as the tree has such.
 // Linear in its nodes, but for sorting. Throws Error where it has no side branches.
 TwigStock stock_of_tree(const Tree& tree, const std::string& title);
@@ -43,8 +43,8 @@ SketchSpecies species_of(const TwigStock& stock, const std::string& preset);
 
 // One line of JSON, UTF-8, and back to the last bit:
 //   {"title": "...", "height": m, "arrangement": "alternate", "angles": [degrees], "internode": m,
-//    "taper": {"height": m, "foot": m, "trunk": [11 shares], "intercept", "slope", "profile": [11 shares],
-//    "least": m}, "twigs": ["L-string", ...]}
+//    "taper": {"height": m, "base": m ("foot" in older ones), "trunk": [11 shares], "intercept", "slope",
+//    "profile": [11 shares], "least": m}, "twigs": ["L-string", ...]}
 // All but twigs may be missing. Reading throws Error, of `who`.
 std::string twig_stock_json(const TwigStock& stock);
 TwigStock parse_twig_stock(std::string_view json, const std::string& who = "The twigs");

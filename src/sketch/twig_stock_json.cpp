@@ -80,7 +80,8 @@ class StockReader {
     WoodTaper taper_of(const Json& json) const {
         WoodTaper taper;
         taper.height = number(json, "height", -1.0, 0.001, 200.0);
-        taper.foot = number(json, "foot", -1.0, 1e-6, 0.2 * taper.height);
+        taper.stem_base =
+            number(json, json.contains("base") ? "base" : "foot", -1.0, 1e-6, 0.2 * taper.height);
         taper.branches.known = true;
         taper.branches.intercept = number(json, "intercept", -1e9, -100.0, 100.0);
         taper.branches.slope = number(json, "slope", -1.0, 0.0, 10.0);
@@ -133,7 +134,7 @@ std::string twig_stock_json(const TwigStock& stock) {
     if (stock.taper) {
         const RadiusLaw& law = stock.taper->branches;
         json["taper"] = {{"height", stock.taper->height},
-                         {"foot", stock.taper->foot},
+                         {"base", stock.taper->stem_base},
                          {"trunk", stock.taper->trunk},
                          {"intercept", law.intercept},
                          {"slope", law.slope},

@@ -168,7 +168,7 @@ struct Standing {
 };
 
 // How the side branches that are no shorter than a twig stand; on the trunk, too, where `trunk` is set.
-Standing standing_of(const LimbStatistics& statistics, double shortest, bool trunk) {
+Standing standing_of(const BranchStatistics& statistics, double shortest, bool trunk) {
     Standing standing;
     std::vector<std::vector<double>> places;
     const std::vector<Branch>& branches = statistics.list().branches;
@@ -200,7 +200,7 @@ Standing standing_of(const LimbStatistics& statistics, double shortest, bool tru
 TwigStock stock_of_tree(const Tree& tree, const std::string& title) {
     if (tree.empty()) throw Error("There is no tree to take twigs of.");
     const double height = tree.bounds().max.y - tree.node(tree.root()).position.y;
-    const LimbStatistics statistics(tree);
+    const BranchStatistics statistics(tree);
     const BranchList& list = statistics.list();
     if (list.branches.size() < 2 || !(height > 0.0))
         throw Error("The tree has no side branches to take twigs of.");
@@ -245,7 +245,7 @@ TwigStock stock_of_tree(const Tree& tree, const std::string& title) {
 
     WoodTaper taper;
     taper.height = height;
-    taper.foot = std::min(tree.node(tree.root()).radius, kThickest * height);
+    taper.stem_base = std::min(tree.node(tree.root()).radius, kThickest * height);
     taper.trunk = statistics.profile(0);
     for (size_t i = 1; i < taper.trunk.size(); i++)
         taper.trunk[i] = std::min(taper.trunk[i], taper.trunk[i - 1]);

@@ -187,7 +187,7 @@ class Understanding {
                           box.high.x - 0.25 * box.size().x);
     }
 
-    // A flat line about the trunk's foot.
+    // A flat line about the trunk's base.
     bool is_ground(size_t stroke) const {
         const FlatBox box = line_box(lines_[stroke]);
         return sketch_.strokes[stroke].role == StrokeRole::kAuto && box.size().x > 4.0 * box.size().y &&

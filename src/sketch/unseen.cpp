@@ -16,7 +16,7 @@ namespace {
 constexpr double kReachedShare = 0.55, kExtendedShare = 0.88;
 constexpr double kExtensionSteps = 8.0;
 constexpr double kLeastExtension = 0.08;  // of the crown's height
-// Of the trunk's radius at its foot: how thick it may end, and how thick one ends that goes on.
+// Of the trunk's radius at its base: how thick it may end, and how thick one ends that goes on.
 constexpr double kThinEnd = 0.15, kTipShare = 0.05;
 // Of the room around it: twigs that reach no farther than twelve radii of what they stand on would be snags,
 // which bear no leaves.
@@ -51,12 +51,12 @@ struct Stand {
     double height;   // of its base
 };
 
-double azimuth_of(const Limb& branch) {
+double azimuth_of(const SketchAxis& branch) {
     const DVec3 way = branch.points.back() - branch.points.front();
     return portable::atan2(way.z, way.x);
 }
 
-Profile profile_of(const Limb& branch) {
+Profile profile_of(const SketchAxis& branch) {
     const DVec3 way = branch.points.back() - branch.points.front();
     const double flat = portable::hypot(way.x, way.z);
     const DVec3 out = flat > 1e-9 ? DVec3(way.x / flat, 0.0, way.z / flat) : DVec3(1.0, 0.0, 0.0);
@@ -110,37 +110,37 @@ bool fits(const std::vector<DVec3>& points, const CrownSections& crown, const DV
     return inside;
 }
 
-void taper_end(Limbs& limbs) {
-    std::vector<double>& radii = limbs.trunk.radii;
-    const double length = length_of(limbs.trunk.points);
+void taper_end(SketchAxes& axes) {
+    std::vector<double>& radii = axes.trunk.radii;
+    const double length = length_of(axes.trunk.points);
     const double tip = std::max(kTipShare * radii[0], kLeastRadius);
     double along = 0.0;
     for (size_t i = 1; i < radii.size(); i++) {
-        along += glm::length(limbs.trunk.points[i] - limbs.trunk.points[i - 1]);
+        along += glm::length(axes.trunk.points[i] - axes.trunk.points[i - 1]);
         const double left = std::clamp((1.0 - along / length) / kTaperedEnd, 0.0, 1.0);
         radii[i] = std::min(radii[i - 1], std::max(radii[i] * left, tip));
     }
-    for (Limb& branch : limbs.branches)
-        branch.radii = radii_of(branch, limbs);
+    for (SketchAxis& branch : axes.branches)
+        branch.radii = radii_of(branch, axes);
 }
 
 }  // namespace
 
-void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
+void extend_trunk(SketchAxes& axes, const CrownSections& crown, uint64_t seed) {
     const double height = crown.top() - crown.bottom();
-    double highest = limbs.trunk.points.back().y;
-    for (const Limb& branch : limbs.branches)
+    double highest = axes.trunk.points.back().y;
+    for (const SketchAxis& branch : axes.branches)
         for (const DVec3& p : branch.points)
             highest = std::max(highest, p.y);
     const bool reaches = highest >= crown.bottom() + kReachedShare * height;
-    const double foot = limbs.trunk.radii[0];
-    const double last = limbs.trunk.radii.back();
-    if (reaches && last <= kThinEnd * foot) return;
-    const DVec3 from = limbs.trunk.points.back();
+    const double stem_base = axes.trunk.radii[0];
+    const double last = axes.trunk.radii.back();
+    if (reaches && last <= kThinEnd * stem_base) return;
+    const DVec3 from = axes.trunk.points.back();
     const double to_height = crown.bottom() + kExtendedShare * height;
     // What was drawn into the crown's top, two lines wide, has its thickness there; all of it tapers.
     if (from.y > to_height - kLeastExtension * height) {
-        if (last > kThinEnd * foot) taper_end(limbs);
+        if (last > kThinEnd * stem_base) taper_end(axes);
         return;
     }
     const auto sections = crown.at(to_height);
@@ -155,50 +155,50 @@ void extend_trunk(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
     }
     Random random(hash_seed(seed, 1));
     const double bend = random.uniform(-0.03, 0.03) * (to_height - from.y);
-    const size_t drawn = limbs.trunk.points.size();
+    const size_t drawn = axes.trunk.points.size();
     for (double i = 1.0; i <= kExtensionSteps; i += 1.0) {
         const double part = i / kExtensionSteps;
-        limbs.trunk.points.emplace_back(from.x + (to_x - from.x) * part, from.y + (to_height - from.y) * part,
-                                        bend * portable::sin(kPi * part));
+        axes.trunk.points.emplace_back(from.x + (to_x - from.x) * part, from.y + (to_height - from.y) * part,
+                                       bend * portable::sin(kPi * part));
     }
-    const double tip = std::max(kTipShare * foot, kLeastRadius);
-    if (limbs.taper) {
-        limbs.trunk.radii = limbs.taper->trunk_radii(limbs.trunk.points, foot, kLeastRadius);
-    } else if (last <= kThinEnd * foot) {
-        limbs.trunk.radii = tapered(limbs.trunk.points, foot, tip);
+    const double tip = std::max(kTipShare * stem_base, kLeastRadius);
+    if (axes.taper) {
+        axes.trunk.radii = axes.taper->trunk_radii(axes.trunk.points, stem_base, kLeastRadius);
+    } else if (last <= kThinEnd * stem_base) {
+        axes.trunk.radii = tapered(axes.trunk.points, stem_base, tip);
     } else {
         // As thick as drawn, and from there on it goes to nothing.
-        while (limbs.trunk.radii.size() < limbs.trunk.points.size()) {
-            const double part = static_cast<double>(limbs.trunk.radii.size() - drawn + 1) / kExtensionSteps;
-            const DVec3& at = limbs.trunk.points[limbs.trunk.radii.size()];
+        while (axes.trunk.radii.size() < axes.trunk.points.size()) {
+            const double part = static_cast<double>(axes.trunk.radii.size() - drawn + 1) / kExtensionSteps;
+            const DVec3& at = axes.trunk.points[axes.trunk.radii.size()];
             const double room = crown.half_depth(at.x, at.y);
             const double own = last * (1.0 - part);
-            limbs.trunk.radii.push_back(
+            axes.trunk.radii.push_back(
                 std::max(room < 0.0 ? own : std::min(own, kThickestInCrown * room), tip));
         }
     }
-    for (Limb& branch : limbs.branches)
-        branch.radii = radii_of(branch, limbs);
+    for (SketchAxis& branch : axes.branches)
+        branch.radii = radii_of(branch, axes);
 }
 
-void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed) {
+void add_unseen_branches(SketchAxes& axes, const CrownSections& crown, uint64_t seed) {
     // Those of the second order come last.
     size_t drawn = 0;
-    while (drawn < limbs.branches.size() && limbs.branches[drawn].parent < 0)
+    while (drawn < axes.branches.size() && axes.branches[drawn].parent < 0)
         drawn++;
-    const double trunk_length = length_of(limbs.trunk.points);
+    const double trunk_length = length_of(axes.trunk.points);
     const double height = crown.top() - crown.bottom();
     // The part of the trunk that bears them.
     double lowest = trunk_length, highest = 0.0;
     for (size_t b = 0; b < drawn; b++) {
-        lowest = std::min(lowest, limbs.branches[b].along);
-        highest = std::max(highest, limbs.branches[b].along);
+        lowest = std::min(lowest, axes.branches[b].along);
+        highest = std::max(highest, axes.branches[b].along);
     }
     size_t count = std::max(kFewestUnseen, static_cast<size_t>(std::ceil(kUnseenShare * drawn)));
     if (drawn < 2) {
         double in = 0.0;
         for (double along = 0.0; along < trunk_length; along += 0.01 * trunk_length) {
-            if (place_along(limbs.trunk.points, along).y >= crown.bottom()) break;
+            if (place_along(axes.trunk.points, along).y >= crown.bottom()) break;
             in = along;
         }
         const double begin = in + kLowest * (trunk_length - in), end = in + kHighest * (trunk_length - in);
@@ -208,17 +208,17 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
     }
     const DVec3 middle(0.5 * (crown.left() + crown.right()), 0.5 * (crown.bottom() + crown.top()), 0.0);
     std::vector<Stand> stands;
-    for (const Limb& branch : limbs.branches)
+    for (const SketchAxis& branch : axes.branches)
         stands.push_back({azimuth_of(branch), branch.points[0].y});
     for (size_t i = 0; i < count; i++) {
         const uint64_t own = hash_seed(seed, 1000 + i);
         Random random(own);
         const double share =
             (static_cast<double>(i) + random.uniform(0.25, 0.75)) / static_cast<double>(count);
-        Limb branch;
+        SketchAxis branch;
         branch.along = lowest + (highest - lowest) * share;
         branch.seed = hash_seed(own, 1);
-        const DVec3 base = place_along(limbs.trunk.points, branch.along);
+        const DVec3 base = place_along(axes.trunk.points, branch.along);
         // To where there is most room and the crown is: beside a leaning trunk it is not all around.
         std::vector<std::pair<double, double>> directions;  // room, azimuth
         const double begin = random.uniform(0.0, 2.0 * kPi / kDirections);
@@ -234,11 +234,11 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
         }
         std::stable_sort(directions.begin(), directions.end(),
                          [](const auto& a, const auto& b) { return a.first > b.first; });
-        const Limb* like = nullptr;
+        const SketchAxis* like = nullptr;
         for (size_t b = 0; b < drawn; b++)
             if (!like ||
-                std::abs(limbs.branches[b].along - branch.along) < std::abs(like->along - branch.along))
-                like = &limbs.branches[b];
+                std::abs(axes.branches[b].along - branch.along) < std::abs(like->along - branch.along))
+                like = &axes.branches[b];
         Profile profile = like ? profile_of(*like) : risen(0.4 * height);
         const double wider = random.uniform(0.88, 1.12), higher = random.uniform(0.92, 1.08);
         for (DVec2& p : profile.points)
@@ -254,8 +254,8 @@ void add_unseen_branches(Limbs& limbs, const CrownSections& crown, uint64_t seed
             }
         }
         if (branch.points.empty()) continue;
-        branch.radii = radii_of(branch, limbs);
-        limbs.branches.push_back(std::move(branch));
+        branch.radii = radii_of(branch, axes);
+        axes.branches.push_back(std::move(branch));
     }
 }
 

@@ -15,7 +15,7 @@ namespace treerec {
 namespace {
 
 constexpr double kGoldenAngle = 137.50776405003785;  // degrees
-constexpr double kTurnSpread = 0.35;                 // of a limb's turn off the trunk, either way
+constexpr double kTurnSpread = 0.35;                 // of a branch's turn off the trunk, either way
 
 double lerp(double a, double b, double t) {
     return a + (b - a) * t;
@@ -80,7 +80,7 @@ struct Bud {
     double length;
     int order;
     int32_t parent_axis;
-    bool leader = false;  // a limb that the trunk splits into: side branches as the trunk's
+    bool leader = false;  // a branch that the trunk splits into: side branches as the trunk's
 };
 
 class Grower {
@@ -124,7 +124,7 @@ class Grower {
                 portable::sin(angle) * portable::sin(to)};
     }
 
-    // Several stems from the root, each with branches like a limb's.
+    // Several stems from the root, each with branches like a branch's.
     void sprout_stems(Random& random) {
         const double turn = random.uniform(0.0, 360.0);
         for (int i = 0; i < rules_.stems; i++) {
@@ -150,7 +150,8 @@ class Grower {
             const double along = static_cast<double>(i) / steps;
             drift = 0.75 * drift + glm::radians(habit.sway) * std::sqrt(step) * 0.6 * random.direction();
             double lift = lerp(habit.lift, habit.tip_lift, along);
-            // Limbs first leave the trunk's way and then bend up; the trunk itself returns to the vertical.
+            // Branches first leave the trunk's way and then bend up; the trunk itself returns to the
+            // vertical.
             const DVec3 sky(0.0, lift, 0.0);
             heading = glm::normalize(heading + drift + step * (sky - glm::dot(sky, heading) * heading));
             DVec3 next = position + step * heading;
@@ -178,7 +179,7 @@ class Grower {
         if (bud.order < kMaximumOrder && habit.whorl > 0) sprout(bud, habit, places, axis, random);
     }
 
-    // The trunk of a decurrent tree ends here in several limbs.
+    // The trunk of a decurrent tree ends here in several branches.
     void split(const Place& top, int32_t axis, Random& random) {
         const double turn = random.uniform(0.0, 360.0);
         const double reach = height_ * (1.0 - rules_.split);
@@ -188,7 +189,7 @@ class Grower {
                                  random.uniform(1.0 - kTurnSpread, 1.0 + kTurnSpread);
             const double azimuth = turn + 360.0 * i / rules_.leaders + random.uniform(-20.0, 20.0);
             const double length = reach * (first ? 1.0 : random.uniform(0.72, 0.95));
-            // A fork of four limbs in one point is rare in nature: they leave over the last metre.
+            // A fork of four branches in one point is rare in nature: they leave over the last metre.
             NodeId node = top.node;
             for (int down = 0; down < 3 * i && tree_.node(node).parent != kNoNode; down++)
                 node = tree_.node(node).parent;
@@ -202,7 +203,7 @@ class Grower {
         const double grown = bud.length * static_cast<double>(places.size()) /
                              std::max(2.0, std::round(bud.length / habit.step));
         double azimuth = random.uniform(0.0, 360.0);
-        // A limb's first part is bare like a branch's, not like a trunk's.
+        // A branch's first part is bare like a branch's, not like a trunk's.
         const double bare = bud.leader ? 0.14 : habit.bare;
         double distance = bare * bud.length;
         while (distance < 0.97 * grown) {

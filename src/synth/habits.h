@@ -33,9 +33,9 @@ struct HabitRules {
     int stems;                      // from one root
     double spread;                  // degrees off the vertical, of several stems
     double least_lean, most_lean;   // degrees, of the trunk
-    int leaders;                    // limbs that the trunk splits into; 1: it goes through to the top
+    int leaders;                    // branches that the trunk splits into; 1: it goes through to the top
     double split;                   // at this share of the height
-    double first_turn, other_turn;  // degrees by which the limbs turn off, on average
+    double first_turn, other_turn;  // degrees by which the branches turn off, on average
     // Length of side branches along the trunk: share of the longest, from the first to the top.
     double profile_base, profile_middle, profile_top;
     std::array<OrderHabit, kMaximumOrder + 1> orders;

@@ -19,7 +19,7 @@ struct VirtualScanOptions {
     double occlusion = 0.0;    // 0..0.95: share of each station's view hidden by things in front of the tree
     double leaves = 0.0;       // 0..1: 0 a winter tree, 1 full foliage
     int fronds = 0;            // of a palm's crown, at the top; always there, whatever `leaves` says
-    int buttresses = 0;        // planks of wood around the foot, not part of the tree
+    int buttresses = 0;        // planks of wood around the base, not part of the tree
     double beam_exit = 0.004;  // diameter of the beam where it leaves the scanner
     double beam_divergence = 0.00025;  // growth of that diameter per metre
     double mixed = 0.3;    // of the beams split by an edge, the share that reports a range in between

@@ -117,8 +117,8 @@ void add_buttresses(const Tree& tree, int count, uint64_t seed, std::vector<Surf
         for (int k = 1; k <= kRays; k++) {
             const double share = static_cast<double>(k) / kRays;
             const DVec3 up = root.position + share * height * DVec3(0.0, 1.0, 0.0);
-            const DVec3 foot = root.position + share * reach * outwards;
-            surfaces.push_back({up, foot, 0.03, 0.03, tree.root()});
+            const DVec3 middle = root.position + share * reach * outwards;
+            surfaces.push_back({up, middle, 0.03, 0.03, tree.root()});
         }
     }
 }

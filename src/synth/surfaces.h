@@ -31,7 +31,7 @@ void add_leaves(const Tree& tree, double share, uint64_t seed, std::vector<Surfa
 // A palm's crown: `count` arching fronds around the highest node, a rachis with strips on both sides each.
 void add_fronds(const Tree& tree, int count, uint64_t seed, std::vector<Surface>& surfaces);
 
-// `count` planks of wood around the foot of the trunk, about as high as a person. They belong to the root.
+// `count` planks of wood around the base of the trunk, about as high as a person. They belong to the root.
 void add_buttresses(const Tree& tree, int count, uint64_t seed, std::vector<Surface>& surfaces);
 
 }  // namespace treerec

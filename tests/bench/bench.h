@@ -75,6 +75,9 @@ void bench_pairs(const std::string& photos, const std::string& model);
 // Limbs removed from grown trees of each habit and drawn anew from random cameras, with the points of the
 // limb and without: how near they come to it. With repetitions set, limb by limb, too.
 void bench_limbs(const Settings& settings);
+// Plots of grown trees whose crowns touch or grow through each other: stems found, and points given to the
+// right tree. With repetitions set, plot by plot, too.
+void bench_plots(const Settings& settings);
 // Strokes to trees of every species: time, and how well crowns fill their outlines. repetitions: sketches.
 void bench_sketches(const Settings& settings);
 

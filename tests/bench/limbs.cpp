@@ -1,7 +1,7 @@
 // Limbs drawn over scans: how near they come to the ones that were there.
 #include <cstdio>
 
-#include "../unit/limb_trials.h"
+#include "../unit/branch_trials.h"
 #include "bench.h"
 #include "error.h"
 
@@ -9,7 +9,7 @@ namespace treerec::bench {
 
 namespace {
 
-using namespace limb_trials;
+using namespace branch_trials;
 
 void print_row(const char* name, const std::vector<Figures>& shown, const std::vector<Figures>& unseen,
                size_t refused) {
@@ -69,8 +69,8 @@ void bench_kind(const Settings& settings, bool reconstructed) {
             const auto trial = make_trial(habit, static_cast<uint64_t>(seed), 3.0, 60000, reconstructed);
             if (!trial) continue;
             try {
-                const Figures a = judge(*trial, draw_limb(trial->tree, &trial->cloud, trial->stroke));
-                const Figures b = judge(*trial, draw_limb(trial->tree, &trial->cloud_cut, trial->stroke));
+                const Figures a = judge(*trial, sketch_branch(trial->tree, &trial->cloud, trial->stroke));
+                const Figures b = judge(*trial, sketch_branch(trial->tree, &trial->cloud_cut, trial->stroke));
                 shown.push_back(a);
                 unseen.push_back(b);
                 if (settings.repetitions > 0)

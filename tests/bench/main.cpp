@@ -35,6 +35,7 @@ const char* const kUsage =
     "step\n"
     "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
     "scans\n"
+    "       bench --plots                      stems and points of plots of 2 to 12 grown trees\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
     "       bench --variants [SCAN…|SKELETON…] new individuals of a tree, with bark, in a second\n"
     "       bench --photos FOLDER… [-- ARG…]   photos matched by sift, pyrlk and both; ARG: of 'treerec "
@@ -44,9 +45,9 @@ const char* const kUsage =
     "                                          photos, judged by their COLMAP model\n"
     "       bench --leaf-inputs FOLDER [--weights FOLDER] [SCAN…]  what fit_leaves.py fits to\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth and --limbs), --labelled (of --synth: with the truth "
-    "about\n"
-    "         leaves in the scans), --most-points N (of --scaling),\n"
+    "options: --repetitions N, --seeds N (of --synth, --limbs and --plots), --labelled (of --synth: with "
+    "the\n"
+    "         truth about leaves in the scans), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
     "         --models FOLDER (of --scans: its tree files STEM.txt, another program's, below ours),\n"
     "         --program TREEREC, --sample SCAN, --table FILE (as ./dev sets them)\n";
@@ -82,7 +83,7 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
             word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
-            word == "--help" || word == "--leaf-inputs") {
+            word == "--plots" || word == "--leaf-inputs" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -160,6 +161,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--limbs") {
         bench_limbs(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--plots") {
+        bench_plots(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--strings") {

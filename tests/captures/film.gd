@@ -57,7 +57,7 @@ func _scan_and_tree() -> void:
 		await _keep(1)
 
 
-# The one that stands nearest, at its foot, then the one in the middle, higher up.
+# The one that stands nearest, at its base, then the one in the middle, higher up.
 func _felling() -> void:
 	await _keep(3)
 	await _cut(3, 0.08)

@@ -21,7 +21,7 @@ var _folder: String
 var _count: int = 0
 var _sketch: TreeSketch
 var _scale: float = 1.0
-var _foot: Vector2
+var _base: Vector2
 var _stage: Stage = Stage.new(_PART * _SUPERSAMPLING, 200.0)
 var _paper: SubViewport = SubViewport.new()
 
@@ -118,14 +118,14 @@ func _draw(points: int) -> void:
 func _read_place(maker: TreeReconstructor) -> void:
 	var report: Dictionary = maker.get_report()
 	_scale = report["metres_per_pixel"]
-	_foot = Vector2(report["foot"][0], report["foot"][1])
+	_base = Vector2(report["base"][0], report["base"][1])
 
 
 # As large as it was drawn, and where it was drawn: the tree stands under the pen.
 func _look(turn: float) -> void:
 	var size: float = _scale * _sketch.canvas_size.y
 	_stage.camera.size = size
-	var off: Vector2 = (0.5 * _sketch.canvas_size - _foot) * _scale
+	var off: Vector2 = (0.5 * _sketch.canvas_size - _base) * _scale
 	var middle: Vector3 = Vector3(off.x, -off.y, 0.0)
 	_stage.camera.look_at_from_position(
 		middle + 100.0 * Vector3(0.0, 0.1, 1.0).normalized(), middle

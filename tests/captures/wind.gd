@@ -13,8 +13,8 @@ const _CHANNELS: Array[TreeWind.Channel] = [
 	TreeWind.Channel.PHASE,
 	TreeWind.Channel.OCCLUSION,
 	TreeWind.Channel.LEVEL,
-	TreeWind.Channel.LIMB,
-	TreeWind.Channel.BOUGH,
+	TreeWind.Channel.PRIMARY_BRANCH,
+	TreeWind.Channel.SECONDARY_BRANCH,
 	TreeWind.Channel.MOTION,
 ]
 

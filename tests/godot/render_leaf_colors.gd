@@ -44,7 +44,7 @@ func _open_flat(made: TreeReconstruction) -> TreeInstance3D:
 	return instance
 
 
-# The mean of what a part of the picture shows of leaves, as light; from its top, 0, to its foot, 1.
+# The mean of what a part of the picture shows of leaves, as light; from its top, 0, to its base, 1.
 func _light(picture: Image, from: float = 0.0, to: float = 1.0) -> Vector3:
 	var box: Rect2i = Rect2i(SIZE, Vector2i.ZERO)
 	for y: int in SIZE.y:

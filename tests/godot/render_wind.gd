@@ -266,7 +266,7 @@ func test_a_baked_tree_follows_the_project_if_told_to() -> void:
 func test_every_channel_can_be_looked_at() -> void:
 	await _stage(grown_tree(2))
 	var seen: Array[Image] = [await _settled()]
-	for channel: int in range(1, TreeWind.Channel.size()):
+	for channel: int in range(1, TreeWind.Channel.MOTION + 1):
 		TreeWind.show_channel(_instance, channel as TreeWind.Channel)
 		seen.append(await _picture())
 		for other: int in channel:

@@ -126,21 +126,21 @@ func write_scan(file_name: String, points_per_metre: int = 2500) -> String:
 	var random: RandomNumberGenerator = RandomNumberGenerator.new()
 	random.seed = 11
 	var lines: PackedStringArray = []
-	var limbs: Array[Array] = [
+	var branches: Array[Array] = [
 		[Vector3(0, 0, 0), Vector3(0.05, 0, 2.2), 0.08, 0.06],
 		[Vector3(0.05, 0, 2.2), Vector3(0.7, 0.1, 3.4), 0.045, 0.02],
 		[Vector3(0.05, 0, 2.2), Vector3(-0.6, 0.3, 3.5), 0.045, 0.02],
 		[Vector3(-0.28, 0.15, 2.85), Vector3(-0.3, -0.5, 3.5), 0.02, 0.012],
 		[Vector3(0.4, 0.05, 2.85), Vector3(0.4, 0.7, 3.4), 0.02, 0.012],
 	]
-	for limb: Array in limbs:
-		var from: Vector3 = limb[0]
-		var to: Vector3 = limb[1]
+	for branch: Array in branches:
+		var from: Vector3 = branch[0]
+		var to: Vector3 = branch[1]
 		var along: Vector3 = (to - from).normalized()
 		var side: Vector3 = along.cross(Vector3(0.9, 0.2, 0.1)).normalized()
 		for i: int in int(from.distance_to(to) * points_per_metre):
 			var t: float = random.randf()
-			var radius: float = lerpf(limb[2], limb[3], t)
+			var radius: float = lerpf(branch[2], branch[3], t)
 			var place: Vector3 = from.lerp(to, t)
 			place += side.rotated(along, random.randf() * TAU) * (radius + random.randfn() * 0.001)
 			lines.append("%.5f %.5f %.5f" % [place.x, place.y, place.z])

@@ -121,7 +121,7 @@ func test_a_felled_tree_falls() -> void:
 	instance.free()
 
 
-# A trunk with two limbs side by side, level, at 1.5 m.
+# A trunk with two branches side by side, level, at 1.5 m.
 func _rails() -> TreeReconstruction:
 	var nodes: Array[Array] = [[-1, 0.0, 0.0, 0.0, 0.12, NODE_TRUNK | NODE_MEASURED]]
 	for i: int in range(1, 6):
@@ -170,19 +170,19 @@ func _ground() -> StaticBody3D:
 	return ground
 
 
-func test_a_ball_rests_on_limbs_of_each_kind() -> void:
+func test_a_ball_rests_on_branches_of_each_kind() -> void:
 	for kind: TreeInstance3D.CollisionKind in TreeInstance3D.CollisionKind.values():
 		var instance: TreeInstance3D = await _instance(_rails())
 		instance.collision_kind = kind
 		await _settle(instance)
 		var ball: RigidBody3D = _ball(Vector3(0.7, 2.0, 0.0), 0.15)
-		var limb: Object = await _hit(instance, Vector3(1.2, 3, 0.11), Vector3(1.2, 0.5, 0.11))
+		var branch: Object = await _hit(instance, Vector3(1.2, 3, 0.11), Vector3(1.2, 0.5, 0.11))
 		await _simulate(1.5)
 		if kind == TreeInstance3D.CollisionKind.TRUNK_ONLY:
-			check(limb == null, "A ray hit a limb that is not there.")
+			check(branch == null, "A ray hit a branch that is not there.")
 			check(ball.position.y < 1.0, "The ball hangs at %s." % ball.position)
 		else:
-			check(limb is StaticBody3D, "Kind %d: the ray hit %s." % [kind, limb])
+			check(branch is StaticBody3D, "Kind %d: the ray hit %s." % [kind, branch])
 			check(absf(ball.position.y - 1.65) < 0.1, "Kind %d: %s" % [kind, ball.position])
 		ball.free()
 		instance.free()

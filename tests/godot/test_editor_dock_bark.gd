@@ -154,7 +154,7 @@ func test_a_recipe_keeps_what_the_dock_does_not_know() -> void:
 	check_equal(recipe.get_text(), text.replace("along=1", "along=1.5"), "the text that was edited")
 
 
-# Of the trunk up to its first limb, with a bump 0.6 m up towards -Z.
+# Of the trunk up to its first branch, with a bump 0.6 m up towards -Z.
 func _lumpy_points() -> PackedVector3Array:
 	var points: PackedVector3Array = []
 	for row: int in 64:

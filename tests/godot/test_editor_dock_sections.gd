@@ -220,9 +220,9 @@ func test_leaf_rules_of_wood_are_told() -> void:
 	_begin(grown_tree(2))
 	var shown: Leaves = _dock.sections[&"leaf_rule"] as Leaves
 	shown.folded = false
-	var limb: int = _session.tree.get_leaves()[0]
-	_session.run("Leaves", "leaves where=below:%d rule=maple" % limb)
-	_session.select(PackedInt32Array([limb]))
+	var side_branch: int = _session.tree.get_leaves()[0]
+	_session.run("Leaves", "leaves where=below:%d rule=maple" % side_branch)
+	_session.select(PackedInt32Array([side_branch]))
 	_frame()
 	check(shown._rules.visible and shown._rules.text.contains("maple: "), shown._rules.text)
 	check(

@@ -67,9 +67,12 @@ func test_the_bark_under_the_mouse_is_found() -> void:
 			"%s and %s" % [found[0], place]
 		)
 	check(tool.pick_place(_camera, Vector2(3, 3)).is_empty(), "The sky has bark.")
-	# A limb.
-	var limb: Dictionary = tool.pick_place(_camera, _at(13))
-	check(not limb.is_empty() and limb.node != _of.get_root(), "The limb is not found: %s" % limb)
+	# A branch.
+	var branch: Dictionary = tool.pick_place(_camera, _at(13))
+	check(
+		not branch.is_empty() and branch.node != _of.get_root(),
+		"The branch is not found: %s" % branch
+	)
 	_end()
 
 

@@ -135,7 +135,7 @@ func test_what_is_folded_away() -> void:
 	await _wait()
 	var tree_made: TreeReconstruction = _drawn.reconstruction
 	check_near(
-		tree_made.get_node_radius(tree_made.get_root()), 0.3, 0.001, "the radius at the foot"
+		tree_made.get_node_radius(tree_made.get_root()), 0.3, 0.001, "the radius at the base"
 	)
 	_panel.options.more.depth.select(1)
 	_panel.options.more.depth.item_selected.emit(1)

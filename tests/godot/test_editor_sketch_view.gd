@@ -169,7 +169,7 @@ func test_what_is_drawn_comes_back_from_any_camera() -> void:
 	for i: int in 400:
 		var size: Vector2 = Vector2(random.randi_range(200, 2500), random.randi_range(200, 1600))
 		_viewport.size = Vector2i(size)
-		var foot: Vector3 = (
+		var stem_base: Vector3 = (
 			Vector3(
 				random.randf_range(-1, 1),
 				random.randf_range(-0.05, 0.05),
@@ -182,7 +182,7 @@ func test_what_is_drawn_comes_back_from_any_camera() -> void:
 			Basis.from_euler(
 				Vector3(random.randf_range(-1.0, 1.0), random.randf_range(-PI, PI), 0.0)
 			),
-			foot
+			stem_base
 		)
 		_camera.translate_object_local(Vector3(0.0, 0.0, away))
 		match random.randi_range(0, 2):
@@ -196,10 +196,10 @@ func test_what_is_drawn_comes_back_from_any_camera() -> void:
 				_camera.set_frustum(random.randf_range(0.01, 0.1), off * 0.05, 0.05, 500.0)
 		if ViewPlane.is_steep(_camera.global_transform):
 			continue
-		var frame: Transform3D = ViewPlane.facing(_camera.global_transform, foot)
+		var frame: Transform3D = ViewPlane.facing(_camera.global_transform, stem_base)
 		check(frame.basis.y == Vector3.UP, "The sheet isn't upright.")
 		check(
-			frame.basis.z.dot(_camera.global_position - foot) > 0.0,
+			frame.basis.z.dot(_camera.global_position - stem_base) > 0.0,
 			"The sheet turns its back to the camera."
 		)
 		var plane: ViewPlane = ViewPlane.new(
@@ -267,9 +267,9 @@ func test_the_tree_stands_where_its_strokes_were_drawn() -> void:
 	)
 	check(_error_of(drawn) < 0.5, "A stroke is seen %.2f pixels off." % _error_of(drawn))
 	var frame: Transform3D = _added.global_transform
-	var foot: Vector2 = _camera.unproject_position(frame.origin)
-	check(foot.distance_to(Vector2(600, 640)) < 3.0, "The foot is seen at %s." % foot)
-	check(absf(frame.origin.y) < 0.02, "The foot is %.3f m above the ground." % frame.origin.y)
+	var stem_base: Vector2 = _camera.unproject_position(frame.origin)
+	check(stem_base.distance_to(Vector2(600, 640)) < 3.0, "The base is seen at %s." % stem_base)
+	check(absf(frame.origin.y) < 0.02, "The base is %.3f m above the ground." % frame.origin.y)
 	var back: Vector3 = _camera.global_basis.z
 	back.y = 0.0
 	check(frame.basis.z.angle_to(back) < 1e-3, "The tree doesn't face the camera.")
@@ -286,7 +286,7 @@ func test_the_tree_stands_where_its_strokes_were_drawn() -> void:
 	)
 	var plane: ViewPlane = _panel.view.plane_of(_panel.get_sketch())
 	var from: Vector2 = plane.to_screen(
-		_camera, SIZE, plane.foot + (Vector2(0.0, -1.5) / plane.pixel)
+		_camera, SIZE, plane.stem_base + (Vector2(0.0, -1.5) / plane.pixel)
 	)
 	var more: PackedVector2Array = await _draw([from, from + Vector2(60.0, -90.0)])
 	check_equal(_panel.get_sketch().strokes.size(), 5, "strokes")
@@ -311,16 +311,16 @@ func test_a_crown_that_is_drawn_first_comes_to_the_ground_with_its_trunk() -> vo
 	drawn.append(await _draw([Vector2(600, 660), Vector2(604, 480), Vector2(600, 260)]))
 	check(_error_of(drawn) < 0.5, "A stroke is seen %.2f pixels off." % _error_of(drawn))
 	if _holds(_added != null and _added.is_inside_tree(), "No tree stands in the scene."):
-		var foot: Vector3 = _added.global_position
-		check(absf(foot.y) < 0.02, "The foot is %.3f m above the ground." % foot.y)
+		var stem_base: Vector3 = _added.global_position
+		check(absf(stem_base.y) < 0.02, "The base is %.3f m above the ground." % stem_base.y)
 		check(
-			_camera.unproject_position(foot).distance_to(Vector2(600, 660)) < 3.0,
+			_camera.unproject_position(stem_base).distance_to(Vector2(600, 660)) < 3.0,
 			"It is elsewhere."
 		)
 	_shut()
 
 
-func test_over_a_scan_the_sheet_goes_through_its_foot() -> void:
+func test_over_a_scan_the_sheet_goes_through_its_base() -> void:
 	var scanned: TreeReconstruction = TreeReconstructor.new().sketch_tree(TestSketch.small_sketch())
 	scanned.provenance = {"source": "res://a_scan.ply"}
 	await _open(scanned)
@@ -330,7 +330,7 @@ func test_over_a_scan_the_sheet_goes_through_its_foot() -> void:
 	await _draw(_outline(at + Vector2(20.0, -240.0), Vector2(90.0, 110.0)))
 	if _holds(_added != null and _added.is_inside_tree(), "No tree stands in the scene."):
 		var off: Vector3 = _added.global_transform.affine_inverse() * _scene.global_position
-		check(absf(off.z) < 1e-3, "The scan's foot is %.3f m off the sheet." % off.z)
+		check(absf(off.z) < 1e-3, "The scan's base is %.3f m off the sheet." % off.z)
 		check(_panel.view.get_over() == _scene, "The scan is forgotten.")
 		check(
 			is_same((_scene as TreeInstance3D).reconstruction, scanned),
@@ -339,7 +339,7 @@ func test_over_a_scan_the_sheet_goes_through_its_foot() -> void:
 	_shut()
 
 
-func test_a_height_that_is_told_scales_the_tree_about_its_foot() -> void:
+func test_a_height_that_is_told_scales_the_tree_about_its_base() -> void:
 	await _open()
 	await _draw([Vector2(600, 640), Vector2(604, 480), Vector2(600, 240)])
 	await _draw(_outline(Vector2(600, 310), Vector2(190, 150)))
@@ -356,7 +356,7 @@ func test_a_height_that_is_told_scales_the_tree_about_its_foot() -> void:
 		absf(after.pixel / before.pixel - 2.0) < 0.02,
 		"It is %.3f times as large." % (after.pixel / before.pixel)
 	)
-	check(_added.global_transform.is_equal_approx(frame), "Its foot moved.")
+	check(_added.global_transform.is_equal_approx(frame), "Its base moved.")
 	_shut()
 
 

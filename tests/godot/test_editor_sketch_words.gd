@@ -12,7 +12,7 @@ const TestSketch := preload("./test_sketch.gd")
 
 const _DOMAIN: StringName = &"tree_reconstruction_sketch_test"
 const _LANGUAGES: PackedStringArray = ["ja", "zh_CN", "zh_TW"]
-const _FOOT: Vector2 = Vector2(500.0, 960.0)
+const _BASE: Vector2 = Vector2(500.0, 960.0)
 const _TOP: Vector2 = Vector2(505.0, 260.0)
 const _HEAD: String = '{"format": "treerec sketch", "version": 1, '
 
@@ -24,7 +24,7 @@ var _heard: PackedStringArray = []
 
 func test_faults_and_remarks_are_translated() -> void:
 	var crown: PackedVector2Array = _circle(Vector2(500.0, 350.0), 290.0)
-	var trunk: PackedVector2Array = _line(_FOOT, _TOP)
+	var trunk: PackedVector2Array = _line(_BASE, _TOP)
 	var left: PackedVector2Array = _line(Vector2(502.0, 540.0), Vector2(320.0, 330.0))
 	var twig: PackedVector2Array = _line(Vector2(411.0, 435.0), Vector2(310.0, 430.0))
 	var twig_of_twig: PackedVector2Array = _line(Vector2(360.0, 432.0), Vector2(330.0, 500.0))
@@ -38,9 +38,9 @@ func test_faults_and_remarks_are_translated() -> void:
 	var ground: PackedVector2Array = _line(Vector2(200.0, 968.0), Vector2(800.0, 962.0))
 	var far: PackedVector2Array = _line(Vector2(650.0, 500.0), Vector2(740.0, 320.0))
 	var short_one: PackedVector2Array = _line(Vector2(720.0, 420.0), Vector2(735.0, 405.0))
-	var lollipop: PackedVector2Array = _line(_FOOT, Vector2(500.0, 600.0))
+	var lollipop: PackedVector2Array = _line(_BASE, Vector2(500.0, 600.0))
 	lollipop.append_array(_circle(Vector2(500.0, 350.0), 250.0, PI))
-	var low_trunk: PackedVector2Array = _line(_FOOT, Vector2(500.0, 800.0))
+	var low_trunk: PackedVector2Array = _line(_BASE, Vector2(500.0, 800.0))
 	var outline: int = TreeSketch.ROLE_OUTLINE
 	var stem: int = TreeSketch.ROLE_TRUNK
 
@@ -52,14 +52,14 @@ func test_faults_and_remarks_are_translated() -> void:
 		"a second outline": [crown, trunk, left, _circle(Vector2(900.0, 880.0), 75.0)],
 		"is a small ring": [crown, trunk, left, _circle(Vector2(900.0, 930.0), 40.0)],
 		"runs to and fro": [[there_and_back, outline], trunk, left],
-		"outline encloses nothing": [[_line(_FOOT, _TOP), outline], trunk, left],
+		"outline encloses nothing": [[_line(_BASE, _TOP), outline], trunk, left],
 		"looks like the ground": [crown, trunk, left, ground],
 		"a branch of a branch": [crown, trunk, left, twig, twig_of_twig],
 		"is short and begins": [crown, trunk, left, short_one],
 		"begins far from": [crown, trunk, left, far],
 		"goes right through": [crown, trunk, _line(Vector2(320.0, 420.0), Vector2(660.0, 460.0))],
 		"This branch leaves": [crown, trunk, _line(Vector2(502.0, 500.0), Vector2(900.0, 700.0))],
-		"The trunk leaves": [crown, _line(_FOOT, Vector2(500.0, 20.0)), left],
+		"The trunk leaves": [crown, _line(_BASE, Vector2(500.0, 20.0)), left],
 		"ends below the crown": [crown, low_trunk],
 		"in one stroke": [lollipop],
 		"No trunk was drawn": [crown],
@@ -72,7 +72,7 @@ func test_faults_and_remarks_are_translated() -> void:
 		_check_heard(part)
 	var wide: TreeSketch = _sketch_of([crown, trunk])
 	for i: int in 16:
-		var base: Vector2 = _FOOT.lerp(_TOP, 0.5 + 0.03 * i)
+		var base: Vector2 = _BASE.lerp(_TOP, 0.5 + 0.03 * i)
 		wide.add_stroke(_line(base, base + Vector2(150.0 if i % 2 == 0 else -150.0, -60.0)))
 	wide.depth = TreeSketch.DEPTH_PAPER
 	var paper: TreeReconstructor = TreeReconstructor.new()
@@ -100,9 +100,9 @@ func test_why_there_is_no_tree_is_translated() -> void:
 	for i: int in 1000:
 		sketches["strokes; at most"].add_stroke(PackedVector2Array([Vector2(i, 1.0)]))
 	sketches["100 times as long"].canvas_size = Vector2(1.0, 1000.0)
-	sketches["more than 100 canvases"].add_stroke(_line(_FOOT, Vector2(1e6, 0.0)))
+	sketches["more than 100 canvases"].add_stroke(_line(_BASE, Vector2(1e6, 0.0)))
 	sketches["a pressure that is not"].add_stroke(
-		PackedVector2Array([_FOOT, _TOP]), PackedFloat32Array([0.5, 2.0])
+		PackedVector2Array([_BASE, _TOP]), PackedFloat32Array([0.5, 2.0])
 	)
 	for part: String in sketches:
 		var worker: TreeReconstructor = TreeReconstructor.new()
@@ -204,7 +204,7 @@ func test_the_window_speaks_the_editor_s_language() -> void:
 	var shown: Dictionary[String, TreeSketch] = {
 		"これは点にすぎません。線を描いてください。": TestSketch.small_sketch(),
 		"幹が描かれていないため、まっすぐな幹を作りました。": _sketch_of([_circle(Vector2(500.0, 350.0), 290.0)]),
-		"地面から上へ幹を、そして枝を何本かと樹冠の輪郭を。": _sketch_of([PackedVector2Array([_FOOT])]),
+		"地面から上へ幹を、そして枝を何本かと樹冠の輪郭を。": _sketch_of([PackedVector2Array([_BASE])]),
 	}
 	shown.values()[0].add_stroke(PackedVector2Array([Vector2(600.0, 600.0)]))
 	for sentence: String in shown:

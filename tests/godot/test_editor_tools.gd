@@ -51,9 +51,9 @@ func test_what_is_nothing_is_left_to_the_editor() -> void:
 		_session.choose(id)
 		await _frame()
 		_hover(sky)
-		# A line may begin anywhere; a box too, and the Select tool hands a click on. So does Draw a Limb,
-		# whose stroke may begin beside the wood.
-		if id not in [&"slice", &"select", &"limb"]:
+		# A line may begin anywhere; a box too, and the Select tool hands a click on. So does Draw a
+		# Branch, whose stroke may begin beside the wood.
+		if id not in [&"slice", &"select", &"draw_branch"]:
 			check(not _click(sky), "%s takes a click on nothing." % id)
 		check(not _wheel(sky, MOUSE_BUTTON_WHEEL_UP), "%s takes the wheel." % id)
 		check(not _button(sky, true, MOUSE_BUTTON_RIGHT), "%s takes the right button." % id)

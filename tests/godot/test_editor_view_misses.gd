@@ -11,10 +11,10 @@ func test_a_click_on_nothing_is_the_editors() -> void:
 	check_equal(_given_back.size(), 2, "events given back")
 	check(_given_back[0].is_pressed() and not _given_back[1].is_pressed(), "In a wrong order.")
 	check_equal(_session.selection, PackedInt32Array([0]), "the selection")
-	# A press beside the tree's foot is for the arrows that move the node.
-	var foot: Vector2 = _session.picker.project_place(_camera, Vector3.ZERO)
+	# A press beside the tree's base is for the arrows that move the node.
+	var base: Vector2 = _session.picker.project_place(_camera, Vector3.ZERO)
 	check_equal(
-		_router.input(_camera, _button(foot + Vector2(60, 0), true)), PASS, "beside the foot"
+		_router.input(_camera, _button(base + Vector2(60, 0), true)), PASS, "beside the base"
 	)
 	# With Alt it may be a move of the camera.
 	var orbiting: InputEventMouseButton = _button(_nothing(), true)
@@ -34,7 +34,7 @@ func test_the_key_f_looks_at_the_selected_wood_or_at_the_tree() -> void:
 	_open(grown_tree(3, 20))
 	var asked: Array[StringName] = []
 	_router.asked.connect(func(action: StringName) -> void: asked.append(action))
-	# The editor would look at the tree's foot.
+	# The editor would look at the tree's base.
 	for selected: PackedInt32Array in [PackedInt32Array(), PackedInt32Array([2])]:
 		for editing: bool in [true, false]:
 			_session.select(selected)
@@ -80,7 +80,7 @@ func test_a_near_miss_leaves_neither_the_tool_nor_the_tree() -> void:
 		check_equal(_session.tool, _session.tools[id], "the tool after it")
 		check_equal(_session.selection, selected, "%s: the selection" % id)
 		check_equal(_undo.get_history_count(), count, "%s: steps" % id)
-		if id in [&"select", &"slice", &"limb"]:
+		if id in [&"select", &"slice", &"draw_branch"]:
 			# Their drags begin beside the tree.
 			continue
 		# Nor does a drag become the editor's box, wherever it begins.

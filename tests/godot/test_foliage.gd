@@ -137,7 +137,7 @@ static func _leaf_places(made: TreeReconstruction) -> PackedVector3Array:
 	return places
 
 
-# Brown wood as in write_scan(), green leaves around its upper limbs, as x y z r g b.
+# Brown wood as in write_scan(), green leaves around its upper branches, as x y z r g b.
 func _write_leafy_scan() -> String:
 	var wood: String = FileAccess.get_file_as_string(write_scan("wood.xyz"))
 	var lines: PackedStringArray = []

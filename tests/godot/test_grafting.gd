@@ -194,10 +194,10 @@ func test_the_papers_algorithms_by_name() -> void:
 		return
 	var end: int = twig.get_result_nodes()[0]
 	check_near(made.get_node_radius(end), 0.8 * made.get_node_radius(node), 1e-9, "its radius")
-	var foot: Vector3 = made.get_node_position(node)
+	var base: Vector3 = made.get_node_position(node)
 	check_near(
-		made.get_node_position(end).distance_to(foot),
-		0.6 * made.get_node_position(next).distance_to(foot),
+		made.get_node_position(end).distance_to(base),
+		0.6 * made.get_node_position(next).distance_to(base),
 		1e-5,
 		"its length"
 	)

@@ -4,17 +4,17 @@ extends "./suite.gd"
 const RECIPE: String = "edges longest=0.08\nburl along=0.8 around=0 radius=0.3 growth=0.9\n"
 
 
-## A trunk as thick as an arm is long, with two limbs and a thin branch that stays a tube.
+## A trunk as thick as an arm is long, with two branches and a thin branch that stays a tube.
 static func stout() -> TreeReconstruction:
 	var nodes: Array[Array] = [[-1, 0.0, 0.0, 0.0, 0.16, NODE_TRUNK]]
 	for i: int in range(1, 11):
 		nodes.append([i - 1, 0.01 * i, 0.2 * i, 0.0, 0.16 - 0.008 * i, NODE_TRUNK])
-	for limb: int in 2:
-		var way: float = 1.0 - 2.0 * limb
+	for branch: int in 2:
+		var way: float = 1.0 - 2.0 * branch
 		for i: int in range(1, 5):
-			var parent: int = 5 + 3 * limb if i == 1 else nodes.size() - 1
+			var parent: int = 5 + 3 * branch if i == 1 else nodes.size() - 1
 			nodes.append(
-				[parent, 0.06 + 0.18 * way * i, 1.0 + 0.6 * limb + 0.12 * i, 0.05 * i, 0.07, 0]
+				[parent, 0.06 + 0.18 * way * i, 1.0 + 0.6 * branch + 0.12 * i, 0.05 * i, 0.07, 0]
 			)
 	nodes.append([7, 0.07, 1.5, 0.4, 0.006, 0])
 	var made: TreeReconstruction = TreeReconstruction.new()
@@ -30,7 +30,7 @@ func _grown(of: TreeReconstruction, recipe: String = RECIPE) -> TreeReconstructi
 	return made
 
 
-# How far from the trunk's foot the bark of a level reaches along +X at a height.
+# How far from the trunk's base the bark of a level reaches along +X at a height.
 static func _reach(of: TreeReconstruction, height: float, level: int = 0) -> float:
 	var arrays: Array = of.build_mesh_arrays(level)
 	var places: PackedVector3Array = arrays[Mesh.ARRAY_VERTEX]
@@ -109,7 +109,7 @@ func test_an_edit_of_covered_wood_shows_tubes_until_it_is_undone() -> void:
 	check(not made.is_bark_stale(), "A thin branch's end has made it stale.")
 	made.revert_edit(thin)
 	var edit: TreeEdit = made.edit("cut node=13")
-	check(made.is_bark_stale(), "A limb's end has not made it stale.")
+	check(made.is_bark_stale(), "A branch's end has not made it stale.")
 	var bare: TreeReconstruction = made.duplicate() as TreeReconstruction
 	bare.grown_bark = []
 	check(not bare.has_grown_bark() and not bare.is_bark_stale(), "Without bark it is stale.")

@@ -8,28 +8,28 @@ const LIMIT_FRAMES: int = 2000
 const FLOATS_PER_LEAF: int = 20
 
 
-# A maple with a limb of pine and a bare one.
+# A maple with a branch of pine and a bare one.
 func _mixed(random_seed: int = 3, count: int = 600) -> TreeReconstruction:
 	var made: TreeReconstruction = grown_tree(random_seed, count)
 	made.leaf_rule = LeafRule.from_preset("maple")
-	var limbs: PackedInt32Array = _limbs(made)
-	check(made.edit("leaves where=below:%d rule=pine" % limbs[0]) != null, "No pine.")
-	check(made.edit("leaves where=below:%d rule=none" % limbs[1]) != null, "No bare limb.")
+	var branches: PackedInt32Array = _branches(made)
+	check(made.edit("leaves where=below:%d rule=pine" % branches[0]) != null, "No pine.")
+	check(made.edit("leaves where=below:%d rule=none" % branches[1]) != null, "No bare branch.")
 	return made
 
 
 # Nodes of branches that grow from the trunk, those that bear most first.
-func _limbs(made: TreeReconstruction) -> PackedInt32Array:
+func _branches(made: TreeReconstruction) -> PackedInt32Array:
 	var found: Array = []
 	for id: int in made.select_nodes("order:1"):
 		if made.get_node_order(made.get_node_parent(id)) == 0:
 			found.append([-made.select_nodes("below:%d" % id).size(), id])
 	found.sort()
-	var limbs: PackedInt32Array = []
+	var branches: PackedInt32Array = []
 	for entry: Array in found:
-		limbs.append(entry[1])
-	check(limbs.size() >= 2, "It has %d limbs." % limbs.size())
-	return limbs
+		branches.append(entry[1])
+	check(branches.size() >= 2, "It has %d branches." % branches.size())
+	return branches
 
 
 func _rules(made: TreeReconstruction) -> PackedStringArray:
@@ -70,7 +70,7 @@ func test_wood_has_leaves_of_its_own() -> void:
 		var parts: Array[Dictionary] = made.build_foliage(level)
 		check(not parts[0].leaves.is_empty(), "No maple leaves at level %d." % level)
 		check(not parts[1].leaves.is_empty(), "No pine leaves at level %d." % level)
-		check(parts[2].leaves.is_empty(), "The bare limb has leaves.")
+		check(parts[2].leaves.is_empty(), "The bare branch has leaves.")
 		check_equal(parts[0].leaves, made.build_leaf_buffer(level), "the tree's own leaves")
 		var joined: Array[Dictionary] = made.build_joined_foliage(level)
 		var built: Dictionary = made.build_levels([level])[0]
@@ -87,8 +87,8 @@ func test_they_are_saved_undone_and_replayed() -> void:
 	var bare: TreeReconstruction = grown_tree(3, 600)
 	var before: Dictionary = bare.skeleton
 	check_equal(before.format_version, 1, "the format of a tree without rules")
-	var limb: int = _limbs(bare)[0]
-	var edit: TreeEdit = bare.edit('leaves where=below:%d rule="pine  leaf_size=0.30"' % limb)
+	var branch: int = _branches(bare)[0]
+	var edit: TreeEdit = bare.edit('leaves where=below:%d rule="pine  leaf_size=0.30"' % branch)
 	var after: Dictionary = bare.skeleton
 	check_equal(after.format_version, TreeReconstruction.FORMAT_VERSION, "the format with rules")
 	check_equal(bare.revert_edit(edit), OK, "undoing")
@@ -260,10 +260,10 @@ func test_removed_and_felled_wood_keeps_its_kind() -> void:
 	var made: TreeReconstruction = _mixed()
 	made.seed = 77
 	var whole: TreeReconstruction = made.duplicate() as TreeReconstruction
-	var limb: int = _limbs(made)[0]
-	var edit: TreeEdit = made.edit("cut node=%d" % limb)
+	var branch: int = _branches(made)[0]
+	var edit: TreeEdit = made.edit("cut node=%d" % branch)
 	var piece: TreeReconstruction = edit.get_removed_wood()[0]
-	check_equal(_rules(piece), PackedStringArray(["pine"]), "the rules of the limb")
+	check_equal(_rules(piece), PackedStringArray(["pine"]), "the rules of the branch")
 	check_equal(piece.leaf_rule, made.leaf_rule, "the tree's rule")
 	check_equal(piece.seed, 77, "the seed")
 	# So does wood of a tree without a rule: it was an oak's.
@@ -271,7 +271,7 @@ func test_removed_and_felled_wood_keeps_its_kind() -> void:
 	oak.leaf_preset = "oak"
 	oak.leaf_size = 0.5
 	oak.foliage_followed = false
-	piece = oak.edit("cut node=%d" % limb).get_removed_wood()[0]
+	piece = oak.edit("cut node=%d" % branch).get_removed_wood()[0]
 	check_equal(piece.leaf_preset, "oak", "the preset")
 	check_equal(piece.leaf_size, 0.5, "the size")
 	check(not piece.foliage_followed, "It follows the scan's leaves.")
@@ -280,9 +280,9 @@ func test_removed_and_felled_wood_keeps_its_kind() -> void:
 	instance.reconstruction = whole
 	tree.root.add_child(instance)
 	await _settle(instance)
-	var body: RigidBody3D = instance.fell(limb)
+	var body: RigidBody3D = instance.fell(branch)
 	var fallen: TreeInstance3D = body.get_child(0) as TreeInstance3D
-	check_equal(_rules(fallen.reconstruction), PackedStringArray(["pine"]), "the fallen limb's")
+	check_equal(_rules(fallen.reconstruction), PackedStringArray(["pine"]), "the fallen branch's")
 	check(not "pine" in _rules(instance.reconstruction), "Needles stay on the stump.")
 	check_equal(fallen.reconstruction.get_leaf_kinds()[1].look, "pine", "its look")
 	body.free()
@@ -294,15 +294,15 @@ func test_an_impostor_knows_of_them() -> void:
 	var fingerprint: int = TreeImpostor.fingerprint_of(made)
 	made.leaf_rule.season = 0.5
 	check_equal(TreeImpostor.fingerprint_of(made), fingerprint, "late in summer")
-	made.edit("leaves where=below:%d rule=birch" % _limbs(made)[0])
+	made.edit("leaves where=below:%d rule=birch" % _branches(made)[0])
 	check(TreeImpostor.fingerprint_of(made) != fingerprint, "It is of a tree with other leaves.")
 
 
 func test_the_tool_gives_them_to_the_selected_wood() -> void:
 	_begin(grown_tree(17, 400), &"select")
-	var limb: int = _limbs(_made)[0]
-	var above: PackedInt32Array = _made.select_nodes("below:%d" % limb)
-	_session.select([limb])
+	var branch: int = _branches(_made)[0]
+	var above: PackedInt32Array = _made.select_nodes("below:%d" % branch)
+	_session.select([branch])
 	_session.choose(&"leaf_rule")
 	var tool: RefCounted = _session.tool
 	var strip: Control = tool.call(&"make_settings")
@@ -310,7 +310,7 @@ func test_the_tool_gives_them_to_the_selected_wood() -> void:
 	check(tool.call(&"is_of_wood"), "It is not for the selected wood.")
 	tool.call(&"choose_preset", "birch")
 	await _frame()
-	check_equal(_made.count_leaf_rules(above), {"birch": above.size()}, "the limb's leaves")
+	check_equal(_made.count_leaf_rules(above), {"birch": above.size()}, "the branch's leaves")
 	check(_made.leaf_rule == null, "The tree's own rule changed.")
 	check_equal(_undo.get_history_count(), 1, "steps")
 	# A slider makes one step, when it has come to rest.

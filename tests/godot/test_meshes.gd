@@ -9,7 +9,7 @@ func test_bark_is_sound() -> void:
 		var made: TreeReconstruction = grown_tree(random_seed, 20 + random_seed * 15)
 		var mesh: ArrayMesh = made.build_mesh()
 		check_equal(mesh.get_surface_count(), 1, "the number of surfaces")
-		# The flare of a trunk's foot is wider than its root.
+		# The flare of a trunk's base is wider than its root.
 		check(
 			made.get_aabb().grow(0.03).encloses(mesh.get_aabb()),
 			"The bark %s leaves the tree %s." % [mesh.get_aabb(), made.get_aabb()]

@@ -62,10 +62,10 @@ func test_what_is_drawn_is_every_tree_once_per_level() -> void:
 			drawn, forest.get_tree_count() if level == 0 else 0, "trees of level %d" % level
 		)
 	for id: int in forest.get_tree_count():
-		var foot: Vector3 = forest.get_tree_transform(id).origin
+		var base: Vector3 = forest.get_tree_transform(id).origin
 		var around: int = 0
 		for part: MultiMeshInstance3D in _parts(forest):
-			around += 1 if part.custom_aabb.has_point(foot + Vector3.UP) else 0
+			around += 1 if part.custom_aabb.has_point(base + Vector3.UP) else 0
 		check(around > 0, "Tree %d is in no box." % id)
 	_clear()
 

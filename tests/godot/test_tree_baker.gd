@@ -142,10 +142,12 @@ func test_all_leaves_are_there() -> void:
 		check_near(arrays[Mesh.ARRAY_CUSTOM0][at + 3], custom[0], 1e-3, "the phase")
 		var along: PackedFloat32Array = arrays[Mesh.ARRAY_CUSTOM1]
 		check_near(along[at + 1], frame.basis.y.normalized().y, 1e-3, "its way")
-		check_equal(along[at + 3], custom[1], "the wind code of its limb")
+		check_equal(along[at + 3], custom[1], "the wind code of its primary branch")
 		check_equal(arrays[Mesh.ARRAY_CUSTOM2][at + 3], custom[2], "the hue")
 		check_equal(
-			arrays[Mesh.ARRAY_CUSTOM3][leaf * each], custom[3], "the wind code of its bough"
+			arrays[Mesh.ARRAY_CUSTOM3][leaf * each],
+			custom[3],
+			"the wind code of its secondary branch"
 		)
 
 

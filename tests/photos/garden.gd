@@ -12,7 +12,7 @@ extends SceneTree
 ## each, white on black, whatever stands before it. --leaf-tint is what the oak's leaves are
 ## multiplied by, as colors are stored.
 ## With --marker, a printed marker whose black square is so many metres wide leans on a board near
-## the tree's foot.
+## the tree's base.
 ## With --film, FOLDER/film/walk.mp4 is a phone's film of so many frames of one walk, by ffmpeg, and
 ## cameras.json has the camera in the middle of each frame's exposure, by its time in the film. The
 ## frames are those of a walk of a minute, played faster: their blur, shake and exposure are its.

@@ -123,13 +123,13 @@ def share_near(points, others, extra):
 
 
 def diameter_at(nodes, height):
-    """Of the thickest wood that crosses this height above the foot."""
-    foot = min(place[2] for _, place, _ in nodes)
+    """Of the thickest wood that crosses this height above the base."""
+    base = min(place[2] for _, place, _ in nodes)
     best = 0.0
     for parent, place, radius in nodes:
         if parent < 0:
             continue
-        low, high = nodes[parent][1][2] - foot, place[2] - foot
+        low, high = nodes[parent][1][2] - base, place[2] - base
         if min(low, high) <= height <= max(low, high):
             t = 0.5 if high == low else (height - low) / (high - low)
             best = max(best, 2 * (nodes[parent][2] + t * (radius - nodes[parent][2])))

@@ -111,26 +111,26 @@ class Scribbler {
     // From the crown down to the ground: a line, two of them, a box, or one line around three sides.
     void trunk(double top) {
         const double x = crown_middle_.x + from(-0.04, 0.04);
-        const double foot = std::min(0.97, crown_middle_.y + crown_radii_.y + from(0.18, 0.35));
-        doodle_.foot = DVec2(x, foot);
+        const double ground = std::min(0.97, crown_middle_.y + crown_radii_.y + from(0.18, 0.35));
+        doodle_.stem_base = DVec2(x, ground);
         const double half = from(0.02, 0.055), flare = from(0.0, 0.03);
         const double up = top + from(-0.05, 0.02);
         const uint32_t way = random_.below(10);
         if (way < 3) {
-            add(stroke({x, foot}, {x + from(-0.02, 0.02), chance(0.4) ? crown_middle_.y : up}));
+            add(stroke({x, ground}, {x + from(-0.02, 0.02), chance(0.4) ? crown_middle_.y : up}));
         } else if (way < 7) {
-            add(stroke({x - half - flare, foot}, {x - half, up}));
-            add(stroke({x + half + flare, foot + from(-0.01, 0.01)}, {x + half, up + from(-0.02, 0.02)}));
+            add(stroke({x - half - flare, ground}, {x - half, up}));
+            add(stroke({x + half + flare, ground + from(-0.01, 0.01)}, {x + half, up + from(-0.02, 0.02)}));
         } else if (way < 9) {
             // Three sides in one stroke, open above.
-            Line line = stroke({x - half, up}, {x - half - flare, foot}, 0.02);
-            append(line, stroke(line.back(), {x + half + flare, foot}, 0.02));
+            Line line = stroke({x - half, up}, {x - half - flare, ground}, 0.02);
+            append(line, stroke(line.back(), {x + half + flare, ground}, 0.02));
             append(line, stroke(line.back(), {x + half, up}, 0.02));
             add(line);
         } else {
-            add(box({x - half, foot}, {x + half, up}));
+            add(box({x - half, ground}, {x + half, up}));
         }
-        if (chance(0.15)) roots(x, foot);
+        if (chance(0.15)) roots(x, ground);
     }
 
     Line box(const DVec2& low, const DVec2& high) {
@@ -140,9 +140,9 @@ class Scribbler {
         return line;
     }
 
-    void roots(double x, double foot) {
+    void roots(double x, double ground) {
         for (const double side : {-1.0, 1.0})
-            add(stroke({x + side * 0.03, foot}, {x + side * from(0.08, 0.14), foot + 0.02}, 0.15));
+            add(stroke({x + side * 0.03, ground}, {x + side * from(0.08, 0.14), ground + 0.02}, 0.15));
     }
 
     void branches_within() {
@@ -236,23 +236,23 @@ class Scribbler {
     }
 
     void bare_tree() {
-        const DVec2 foot(0.5, from(0.9, 0.97));
+        const DVec2 ground(0.5, from(0.9, 0.97));
         if (chance(0.35)) {
             // A stem with twigs on both sides.
             const double top = from(0.08, 0.2);
-            add(stroke(foot, {0.5 + from(-0.03, 0.03), top}, 0.03));
+            add(stroke(ground, {0.5 + from(-0.03, 0.03), top}, 0.03));
             reach_.push_back({0.5, top});
             const uint32_t count = 4 + random_.below(6);
             for (uint32_t i = 0; i < count; i++) {
                 const double share = 0.35 + 0.55 * i / count, side = i % 2 == 0 ? 1.0 : -1.0;
-                const DVec2 base(0.5, foot.y + (top - foot.y) * share);
+                const DVec2 base(0.5, ground.y + (top - ground.y) * share);
                 const DVec2 tip = base + from(0.14, 0.26) * (1.2 - share) * around(side * from(0.6, 1.2));
                 add(stroke(base, tip, 0.06));
                 reach_.insert(reach_.end(), {base, tip});
             }
         } else {
             deepest_ = 1 + static_cast<int>(random_.below(2));
-            fork(foot, from(-0.08, 0.08), from(0.26, 0.36), deepest_);
+            fork(ground, from(-0.08, 0.08), from(0.26, 0.36), deepest_);
         }
         DVec2 low = reach_[0], high = reach_[0];
         for (const DVec2& p : reach_) {
@@ -260,14 +260,14 @@ class Scribbler {
             high = glm::max(high, p);
         }
         crown_at(0.5 * (low + high), 0.5 * (high - low));
-        doodle_.foot = foot;
+        doodle_.stem_base = ground;
     }
 
     // Up the trunk, around the crown and down again, or down the same line.
     void one_stroke_tree() {
         crown_at({0.5, from(0.3, 0.38)}, {from(0.18, 0.32), from(0.18, 0.28)});
-        const double foot = from(0.85, 0.97), half = chance(0.3) ? 0.0 : from(0.02, 0.05);
-        doodle_.foot = DVec2(0.5, foot);
+        const double ground = from(0.85, 0.97), half = chance(0.3) ? 0.0 : from(0.02, 0.05);
+        doodle_.stem_base = DVec2(0.5, ground);
         const double open = half > 0.0 ? portable::atan2(half, crown_radii_.x) : 0.02;
         const int bumps = chance(0.5) ? 6 + static_cast<int>(random_.below(6)) : 0;
         Line crown;
@@ -277,9 +277,9 @@ class Scribbler {
                 bumps == 0 ? 1.0 : 1.0 + 0.2 * (std::abs(portable::sin(0.5 * bumps * angle)) - 0.6);
             crown.push_back(crown_middle_ + crown_radii_ * out * around(angle));
         }
-        Line line = stroke({0.5 - half - 0.01, foot}, crown.front(), 0.01);
+        Line line = stroke({0.5 - half - 0.01, ground}, crown.front(), 0.01);
         append(line, crown);
-        if (half > 0.0) append(line, stroke(line.back(), {0.5 + half + 0.01, foot}, 0.01));
+        if (half > 0.0) append(line, stroke(line.back(), {0.5 + half + 0.01, ground}, 0.01));
         add(line);
     }
 
@@ -328,11 +328,11 @@ class Scribbler {
     }
 
     void palm() {
-        const DVec2 foot(from(0.4, 0.6), 0.95), top(0.5 + from(-0.08, 0.08), from(0.28, 0.36));
-        Line stem = stroke(foot, top, 0.1);
+        const DVec2 ground(from(0.4, 0.6), 0.95), top(0.5 + from(-0.08, 0.08), from(0.28, 0.36));
+        Line stem = stroke(ground, top, 0.1);
         add(stem);
         for (DVec2& p : stem)
-            p += DVec2(0.05 - 0.02 * (foot.y - p.y), 0.0);
+            p += DVec2(0.05 - 0.02 * (ground.y - p.y), 0.0);
         if (chance(0.4)) add(stem);
         DVec2 low = top, high = top;
         const uint32_t count = 4 + random_.below(4);
@@ -348,12 +348,12 @@ class Scribbler {
             high = glm::max(high, tip);
         }
         crown_at(0.5 * (low + high), 0.5 * (high - low));
-        doodle_.foot = foot;
+        doodle_.stem_base = ground;
     }
 
     // What stands around and on a tree.
     void add_beside() {
-        const double ground = doodle_.foot.y;
+        const double ground = doodle_.stem_base.y;
         if (chance(0.4))
             add(stroke({from(0.02, 0.2), ground + 0.01}, {from(0.8, 0.98), ground + 0.01}, 0.02));
         if (chance(0.25)) {
@@ -362,7 +362,8 @@ class Scribbler {
                 add(ring(crown_middle_ + crown_radii_ * from(0.1, 0.6) * around(from(0.0, 6.28)),
                          DVec2(from(0.012, 0.03))));
         }
-        if (chance(0.15)) add(ring({doodle_.foot.x, ground - from(0.06, 0.12)}, {0.012, from(0.012, 0.025)}));
+        if (chance(0.15))
+            add(ring({doodle_.stem_base.x, ground - from(0.06, 0.12)}, {0.012, from(0.012, 0.025)}));
         if (chance(0.2)) {
             Line grass;
             for (int i = 0; i <= 12; i++)
@@ -480,7 +481,7 @@ class Scribbler {
         sketch.number_strokes();
         doodle_.crown_low = placed(doodle_.crown_low);
         doodle_.crown_high = placed(doodle_.crown_high);
-        doodle_.foot = placed(doodle_.foot);
+        doodle_.stem_base = placed(doodle_.stem_base);
     }
 
     Random random_;

@@ -21,7 +21,7 @@ struct Doodle {
     // Where its crown is and where its trunk stands, pixels of the sketch's canvas, y down; of tree-like
     // ones.
     DVec2 crown_low{0.0}, crown_high{0.0};
-    DVec2 foot{0.0};
+    DVec2 stem_base{0.0};
 };
 
 // The same seed gives the same doodle. About one in seven is nothing like a tree.

@@ -24,7 +24,7 @@ DVec2 turned(const DVec2& v, double radians) {
 // The strokes as they are meant: pixels of a canvas 1,000 high, y up.
 struct Drawing {
     FlatLine trunk;
-    double radius = 0.0;             // at its foot, where it is drawn with two lines
+    double radius = 0.0;             // at its base, where it is drawn with two lines
     std::vector<FlatLine> branches;  // from the trunk
     std::vector<FlatLine> sides;     // from branches
     FlatLine outline;                // closed
@@ -179,8 +179,8 @@ Drawing draw_tree(uint64_t seed, Random& random) {
 }
 
 double trunk_radius(const Drawing& drawing, const DVec2& p) {
-    const double foot = drawing.trunk.front().y, top = drawing.trunk.back().y;
-    return drawing.radius * (1.0 - 0.75 * (p.y - foot) / std::max(1.0, top - foot));
+    const double stem_base = drawing.trunk.front().y, top = drawing.trunk.back().y;
+    return drawing.radius * (1.0 - 0.75 * (p.y - stem_base) / std::max(1.0, top - stem_base));
 }
 
 FlatLine spoilt(FlatLine line, Mess mess, Random& random) {

@@ -96,7 +96,7 @@ void draw_doodle(Image& sheet, const DVec2& corner, const Doodle& doodle, uint64
         outline.push_back(at(DVec2(p.x, kCanvasHeight - p.y) * pixel, kSize));
     outline.push_back(outline[0]);
     const auto seen = [&](const DVec3& p) {
-        return at(DVec2(made.foot.x + p.x / made.scale, made.foot.y - p.y / made.scale), kSize);
+        return at(DVec2(made.stem_base.x + p.x / made.scale, made.stem_base.y - p.y / made.scale), kSize);
     };
     for (const bool twigs : {true, false})
         for (const NodeId id : made.tree.depth_first()) {

@@ -115,7 +115,7 @@ def find_words():
 
 def sentences():
     """The entries of PATTERNS: what the library says."""
-    for path in (SENTENCES, *(SENTENCES.with_name(name + "_sentences.gd") for name in ("twig", "sketch", "limb", "growth", "skeleton"))):
+    for path in (SENTENCES, *(SENTENCES.with_name(name + "_sentences.gd") for name in ("twig", "sketch", "branch", "growth", "skeleton"))):
         source = without_comments(path.read_text(encoding="utf-8"))
         table = source[source.index("const PATTERNS") :]
         table = table[table.index("[") + 1 : table.index("\n]\n")]

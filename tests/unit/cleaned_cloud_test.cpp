@@ -69,7 +69,7 @@ TEST(CleanedCloud, IsReadAsItWasWritten) {
 
 class OfATree : public test::Cli {
   protected:
-    static constexpr double kFoot = 0.3048;  // the scan's unit
+    static constexpr double kBase = 0.3048;  // the scan's unit
 
     // A leafy birch on a map, in feet, Z up, with normals, dust, and ground beside it.
     void SetUp() override {
@@ -89,7 +89,7 @@ class OfATree : public test::Cli {
         for (size_t i = 0; i < scan.size(); i++)
             scan.normals.emplace_back(random.direction());
         scan.frame.up = UpAxis::kZ;
-        scan.frame.metres_per_unit = kFoot;
+        scan.frame.metres_per_unit = kBase;
         scan.frame.origin = DVec3(1455123.4, 5812345.67, 312.3);
         write_cloud(path("scan.ply"), scan);
         scan_ = read_cloud(path("scan.ply"));
@@ -120,7 +120,7 @@ TEST_F(OfATree, TheProgramWritesWhatItKept) {
     ASSERT_EQ(made.code, 0) << made.error;
     EXPECT_NE(made.out.find("wrote out/clean.ply"), std::string::npos) << made.out;
     ReconstructOptions options;
-    options.orient.metres_per_unit = kFoot;
+    options.orient.metres_per_unit = kBase;
     Reconstruction result = reconstruct_tree(path("scan.ply"), options);
     ASSERT_LT(result.cloud.size() + 6000, scan_.size()) << "the ground is still there";
     const PointCloud cloud = read_cloud(path("out/clean.ply"));
@@ -189,7 +189,7 @@ TEST_F(OfATree, CanBeCancelled) {
     Stop stop;
     ScanFrame frame;
     frame.up = UpAxis::kZ;
-    frame.metres_per_unit = kFoot;
+    frame.metres_per_unit = kBase;
     frame.origin = DVec3(1455123.4, 5812345.67, 312.3);
     EXPECT_THROW(save_cleaned_scan(path("out/clean.ply"), path("scan.ply"), {}, frame, {}, &stop), Cancelled);
     EXPECT_EQ(get("out/clean.ply"), "mine");

@@ -140,22 +140,22 @@ TEST_F(Cli, TakesTheTreeThatIsAskedFor) {
         }
     }
     put("s.xyz", text);
-    const auto foot_of = [&](const std::string& options) {
+    const auto base_of = [&](const std::string& options) {
         const Outcome outcome =
             run("reconstruct s.xyz -o out/a.txt --report out/a.json --scale 1 --up z --quiet " + options);
         EXPECT_EQ(outcome.code, 0) << outcome.error;
         return nlohmann::json::parse(get("out/a.json"));
     };
-    const auto largest = foot_of("");
+    const auto largest = base_of("");
     ASSERT_EQ(largest["trees"].size(), 3u);
     EXPECT_EQ(largest["tree_taken"], 1);
     EXPECT_NEAR(largest["origin"][0].get<double>(), 12.0, 0.5);
-    EXPECT_NEAR(foot_of("--tree 3")["origin"][0].get<double>(), 24.0, 0.5);
-    const auto nearest = foot_of("--tree-at 1,-0.5,0");
+    EXPECT_NEAR(base_of("--tree 3")["origin"][0].get<double>(), 24.0, 0.5);
+    const auto nearest = base_of("--tree-at 1,-0.5,0");
     EXPECT_NEAR(nearest["origin"][0].get<double>(), 0.0, 0.5);
     EXPECT_EQ(nearest["options"]["tree_at"][1], -0.5);
     EXPECT_EQ(run("reconstruct s.xyz -o out/b.txt --tree 9").code, 1);
-    const auto one = foot_of("--one-tree");
+    const auto one = base_of("--one-tree");
     EXPECT_TRUE(one["trees"].empty());
     EXPECT_TRUE(one["tree_taken"].is_null());
 }

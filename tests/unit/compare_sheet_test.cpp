@@ -59,7 +59,7 @@ TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
                 const uint8_t* plain = sheet.at(x, row * kHeight + y);
                 ASSERT_TRUE(plain[0] == 0 && plain[2] == 200) << x << " " << y;
                 const uint8_t* drawn = sheet.at(kWidth + x, row * kHeight + y);
-                // 10 pixels wide and 80 high; its upper end is round, and its foot flat.
+                // 10 pixels wide and 80 high; its upper end is round, and its base flat.
                 const double beside = std::abs(x + 0.5 - kWidth / 2.0), below = y + 0.5 - kHeight / 2.0;
                 if (beside < 4.0 && std::abs(below) < 40.0) {
                     ASSERT_GT(drawn[0], 180) << x << " " << y;
@@ -70,7 +70,7 @@ TEST_F(CompareSheet, ShowsTheWoodWhereTheCameraSeesIt) {
 }
 
 // However short the pieces are that a stout trunk begins with.
-TEST_F(CompareSheet, AFootOfShortPiecesIsFlatToo) {
+TEST_F(CompareSheet, ABaseOfShortPiecesIsFlatToo) {
     ScanFrame frame = tree_.frame();
     tree_ = Tree();
     tree_.set_frame(frame);

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "geometry/vec.h"
-#include "mesh/texture_noise.h"
+#include "textures/texture_noise.h"
 
 namespace treerec::test {
 

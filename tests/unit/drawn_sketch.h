@@ -121,11 +121,11 @@ inline DrawnStrokes random_drawing(Random& random, double size, double gap, bool
                                              DVec2(std::sin(angle), -std::cos(angle)));
     }
     const double top = middle.y - 0.6 * radii.y, below = middle.y + 0.75 * radii.y;
-    const double foot = crossed ? 0.95 * size : below;
+    const double base = crossed ? 0.95 * size : below;
     const double bend = size * random.uniform(-0.02, 0.02);
     const auto trunk_at = [&](double y) { return DVec2(middle.x + bend * std::sin(6.0 * y / size), y); };
     for (int i = 0; i <= 60; i++)
-        drawn.trunk.push_back(trunk_at(foot + (top - foot) * i / 60.0));
+        drawn.trunk.push_back(trunk_at(base + (top - base) * i / 60.0));
     for (int i = 0; i < branches; i++) {
         // From below to above, left and right in turn.
         const double room = (below - top) * 0.85 / branches;

@@ -87,13 +87,13 @@ TEST(EditGraftCollide, ABarWhereTheGraftGoesIsFoundAndAvoided) {
     Tree scion;
     scion.add_root({0, 0, 0}, 0.05);
     scion.add_child(0, {0, 0.5, 0}, 0.04);
-    const NodeId limb = scion.add_child(1, {0.5, 0.5, 0}, 0.03);
+    const NodeId branch = scion.add_child(1, {0.5, 0.5, 0}, 0.03);
     Tree hit = tree;
     GraftOptions options;
     const GraftResult first = graft(hit, host, scion, options);
     ASSERT_EQ(first.collisions.size(), 1u);
     EXPECT_EQ(first.collisions[0].other, bar);
-    EXPECT_EQ(first.collisions[0].grafted, first.added[static_cast<size_t>(limb - 1)]);
+    EXPECT_EQ(first.collisions[0].grafted, first.added[static_cast<size_t>(branch - 1)]);
     EXPECT_NEAR(first.collisions[0].place.y, 1.5, 1e-9);
     EXPECT_GT(first.collisions[0].depth, 0.05);
     // The check of what stands finds the same.

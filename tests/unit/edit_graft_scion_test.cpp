@@ -98,16 +98,16 @@ TEST(EditGraftScion, TurnsBetweenAnyDirections) {
 
 TEST(EditGraftScion, ASideBranchStartsAsThickAsItself) {
     Tree tree;
-    const NodeId foot = tree.add_root({0, 0, 0}, 0.2);
-    const NodeId fork = tree.add_child(foot, {0, 1, 0}, 0.18);
+    const NodeId base = tree.add_root({0, 0, 0}, 0.2);
+    const NodeId fork = tree.add_child(base, {0, 1, 0}, 0.18);
     const NodeId top = tree.add_child(fork, {0, 2, 0}, 0.15);
     const NodeId side = tree.add_child(fork, {1, 1, 0}, 0.03);
-    const Tree limb = take_scion(tree, side);
-    EXPECT_EQ(limb.node(limb.root()).radius, 0.03);
-    EXPECT_LT(glm::length(scion_direction(limb) - DVec3(1, 0, 0)), 1e-12);
+    const Tree branch = take_scion(tree, side);
+    EXPECT_EQ(branch.node(branch.root()).radius, 0.03);
+    EXPECT_LT(glm::length(scion_direction(branch) - DVec3(1, 0, 0)), 1e-12);
     EXPECT_EQ(take_scion(tree, top).node(0).radius, 0.18);
-    EXPECT_EQ(take_scion(tree, foot).size(), tree.size());
-    EXPECT_DOUBLE_EQ(scion_length(take_scion(tree, foot)), 2.0);
+    EXPECT_EQ(take_scion(tree, base).size(), tree.size());
+    EXPECT_DOUBLE_EQ(scion_length(take_scion(tree, base)), 2.0);
 }
 
 TEST(EditGraftScion, RefusesWhatIsNone) {

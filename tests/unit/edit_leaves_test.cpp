@@ -38,7 +38,7 @@ std::map<std::string, double> wood_by_rule(const Tree& tree) {
 }
 
 // A node with much above it, but not the trunk.
-NodeId limb_of(const Tree& tree, Random& random) {
+NodeId branch_of(const Tree& tree, Random& random) {
     const BranchList list = list_branches(tree);
     for (;;) {
         const Branch& branch = list.branches[random.below(static_cast<uint32_t>(list.branches.size()))];
@@ -52,10 +52,10 @@ TEST(LeavesCommand, SetsExactlyWhatWasAskedFor) {
         Random random(seed);
         Tree tree = random_tree(seed, 300);
         const Tree before = tree;
-        const NodeId limb = limb_of(tree, random);
-        const Edit edit =
-            perform(tree, "leaves where=below:" + std::to_string(limb) + " rule=\"pine  leaf_size=0.40\"");
-        const std::vector<NodeId> above = tree.depth_first(limb);
+        const NodeId side_branch = branch_of(tree, random);
+        const Edit edit = perform(
+            tree, "leaves where=below:" + std::to_string(side_branch) + " rule=\"pine  leaf_size=0.40\"");
+        const std::vector<NodeId> above = tree.depth_first(side_branch);
         EXPECT_EQ(edit.outcome.nodes.size(), above.size());
         EXPECT_EQ(tree.leaf_rules(), std::vector<std::string>{"pine leaf_size=0.4"});
         for (const NodeId id : tree.depth_first())
@@ -97,8 +97,9 @@ TEST(LeavesCommand, OtherEditsOfTreesWithRulesAreSoundAndUndo) {
         Random random(seed);
         Tree tree = random_tree(seed, 200);
         for (const char* rule : {"oak", "pine leaf_size=0.3", "droop=50", "none"})
-            perform(tree, "leaves where=below:" + std::to_string(limb_of(tree, random)) + ",leaves&height:" +
-                              number_text(random.uniform(3.0, 12.0)) + ".. rule=\"" + rule + "\"");
+            perform(tree, "leaves where=below:" + std::to_string(branch_of(tree, random)) +
+                              ",leaves&height:" + number_text(random.uniform(3.0, 12.0)) + ".. rule=\"" +
+                              rule + "\"");
         edit_at_random(tree, seed, 60, tally);
         if (HasFatalFailure()) FAIL() << "seed " << seed;
     }
@@ -111,11 +112,12 @@ TEST(LeavesCommand, TheLogSaysItAll) {
         Tree tree = start;
         EditLog log;
         for (int i = 0; i < 12; i++) {
-            const std::string limb = std::to_string(limb_of(tree, random));
+            const std::string side_branch = std::to_string(branch_of(tree, random));
             const char* rules[] = {"oak", "maple leaf_size=0.2 curl=30", "droop=70", "default"};
-            log.add(perform(tree, i % 3 == 2 ? "graft node=" + limb + " twig=oak seed=" + std::to_string(i)
-                                             : "leaves where=below:" + limb + " rule=\"" +
-                                                   rules[random.below(4)] + "\""));
+            log.add(perform(tree, i % 3 == 2
+                                      ? "graft node=" + side_branch + " twig=oak seed=" + std::to_string(i)
+                                      : "leaves where=below:" + side_branch + " rule=\"" +
+                                            rules[random.below(4)] + "\""));
         }
         Tree again = start;
         run_script(again, log.text());
@@ -127,11 +129,11 @@ TEST(LeavesCommand, RemovedWoodKeepsItsRules) {
     for (uint64_t seed = 1; seed <= cases(30); seed++) {
         Random random(seed);
         Tree tree = random_tree(seed, 300);
-        const std::string limb = std::to_string(limb_of(tree, random));
+        const std::string side_branch = std::to_string(branch_of(tree, random));
         perform(tree, "leaves where=leaves rule=oak");
-        perform(tree, "leaves where=below:" + limb + "&leaves rule=\"maple droop=5\"");
+        perform(tree, "leaves where=below:" + side_branch + "&leaves rule=\"maple droop=5\"");
         const Tree before = tree;
-        EditOutcome outcome = perform(tree, "cut node=" + limb).outcome;
+        EditOutcome outcome = perform(tree, "cut node=" + side_branch).outcome;
         // Rules may have other numbers in a later edit of the same step.
         perform(tree, "leaves where=all rule=birch");
         outcome.removed.append(perform(tree, "prune_order order=1").outcome.removed);
@@ -154,10 +156,10 @@ TEST(LeavesCommand, RemovedWoodKeepsItsRules) {
 TEST(LeavesCommand, GraftsOfTheLibraryTakeTheHostsLeavesAndCopiesKeepTheirOwn) {
     Tree tree = random_tree(3, 300);
     Random random(3);
-    const NodeId from = limb_of(tree, random);
+    const NodeId from = branch_of(tree, random);
     NodeId onto = from;
     while (onto == from)
-        onto = limb_of(tree, random);
+        onto = branch_of(tree, random);
     perform(tree, "leaves where=" + std::to_string(onto) + " rule=oak");
     perform(tree, "leaves where=below:" + std::to_string(from) + " rule=pine");
     const std::string node = " node=" + std::to_string(onto);
@@ -169,10 +171,10 @@ TEST(LeavesCommand, GraftsOfTheLibraryTakeTheHostsLeavesAndCopiesKeepTheirOwn) {
     perform(tree, "leaves where=below:" + std::to_string(from) + " rule=default");
     for (const NodeId id : perform(tree, "graft from=" + std::to_string(from) + node).outcome.nodes)
         EXPECT_EQ(rule_of(tree, id), "");
-    const NodeId limb = from;
-    perform(tree, "leaves where=below:" + std::to_string(limb) + " rule=birch");
+    const NodeId side_branch = from;
+    perform(tree, "leaves where=below:" + std::to_string(side_branch) + " rule=birch");
     for (const NodeId id :
-         perform(tree, "lstring node=" + std::to_string(limb) + " string=F(0.3)[+F(0.2)]F(0.3)")
+         perform(tree, "lstring node=" + std::to_string(side_branch) + " string=F(0.3)[+F(0.2)]F(0.3)")
              .outcome.nodes)
         EXPECT_EQ(rule_of(tree, id), "birch");
 }
@@ -183,8 +185,8 @@ TEST(LeavesCommand, VariantsKeepTheRulesWhereTheyAre) {
         options.seed = seed;
         Tree tree = grow_tree(options);
         Random random(seed);
-        const NodeId limb = limb_of(tree, random);
-        perform(tree, "leaves where=below:" + std::to_string(limb) + " rule=pine");
+        const NodeId side_branch = branch_of(tree, random);
+        perform(tree, "leaves where=below:" + std::to_string(side_branch) + " rule=pine");
         const double share = wood_by_rule(tree)["pine"];
         const VariantMaker maker(tree);
         EXPECT_TRUE(identical(maker.make(1, 0.0).tree, tree));
@@ -192,7 +194,7 @@ TEST(LeavesCommand, VariantsKeepTheRulesWhereTheyAre) {
             const Tree made = maker.make(variant, 0.7).tree;
             ASSERT_EQ(made.check(), std::nullopt);
             EXPECT_EQ(made.leaf_rules(), tree.leaf_rules());
-            // One limb has them, with about as much wood.
+            // One branch has them, with about as much wood.
             EXPECT_GT(wood_by_rule(made)["pine"], 0.4 * share);
             EXPECT_LT(wood_by_rule(made)["pine"], 2.5 * share);
             int begins = 0;

@@ -79,8 +79,8 @@ TEST(VaryAge, YoungerIsSmallerThinnerAndBearsLess) {
                 if (habit != Habit::kPalm) {
                     EXPECT_GE(thinnest(variant), 0.4 * thinnest(tree)) << age;
                 }
-                const double foot = variant.node(variant.root()).radius / tree.node(tree.root()).radius;
-                EXPECT_NEAR(foot, std::pow(size, maker.allometry()), 0.3 * foot) << age;
+                const double base = variant.node(variant.root()).radius / tree.node(tree.root()).radius;
+                EXPECT_NEAR(base, std::pow(size, maker.allometry()), 0.3 * base) << age;
                 height = now.height;
                 length = now.total_length;
                 nodes = now.nodes;

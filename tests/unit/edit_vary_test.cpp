@@ -101,10 +101,10 @@ Angles angles_of(const Tree& tree, int order) {
     std::vector<double> angles;
     for (const Branch& branch : list.branches) {
         if (branch.order != order || tree.node(branch.attach).parent == kNoNode) continue;
-        const DVec3 foot = tree.node(branch.attach).position;
-        const DVec3 axis = foot - tree.node(tree.node(branch.attach).parent).position;
+        const DVec3 base = tree.node(branch.attach).position;
+        const DVec3 axis = base - tree.node(tree.node(branch.attach).parent).position;
         const auto nodes = list.nodes_of(branch);
-        const DVec3 way = tree.node(nodes[nodes.size() / 2]).position - foot;
+        const DVec3 way = tree.node(nodes[nodes.size() / 2]).position - base;
         if (glm::length(way) == 0.0 || glm::length(axis) == 0.0) continue;
         angles.push_back(
             std::acos(std::clamp(glm::dot(glm::normalize(axis), glm::normalize(way)), -1.0, 1.0)) * 180.0 /

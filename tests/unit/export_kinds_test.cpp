@@ -118,7 +118,7 @@ TEST_F(ExportKinds, ObjHasThemToo) {
         EXPECT_NE(model.find("usemtl " + line), std::string::npos) << name;
         EXPECT_NE(materials.find("newmtl " + line), std::string::npos) << name;
     }
-    EXPECT_EQ(model.find("usemtl leaves_5"), std::string::npos) << "a bare limb has no leaves";
+    EXPECT_EQ(model.find("usemtl leaves_5"), std::string::npos) << "a bare branch has no leaves";
     for (const char* picture : {"tree_leaf_albedo.png", "tree_leaf_albedo_2.png", "tree_leaf_normal_3.png"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / picture)) << picture;
     // Every index is one of a vertex.

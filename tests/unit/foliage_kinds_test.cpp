@@ -188,12 +188,12 @@ TEST(LeafKinds, AllAreInEveryLevelAndInTheBudget) {
     Tree tree = random_tree(5, 1500);
     const BranchList list = list_branches(tree);
     for (const Branch& branch : list.branches) {
-        const std::vector<NodeId> limb = tree.depth_first(list.nodes[branch.begin]);
+        const std::vector<NodeId> side_branch = tree.depth_first(list.nodes[branch.begin]);
         constexpr const char* kRules[] = {"pine", "maple leaf_size=0.2", "birch form=simple leaf_size=0.05"};
         const size_t next = tree.leaf_rules().size();
-        if (branch.order != 1 || limb.size() < 50 || next == std::size(kRules)) continue;
+        if (branch.order != 1 || side_branch.size() < 50 || next == std::size(kRules)) continue;
         const uint8_t number = tree.name_leaf_rule(kRules[next]);
-        for (const NodeId id : limb)
+        for (const NodeId id : side_branch)
             tree.set_leaf_rule(id, number);
     }
     ASSERT_EQ(tree.leaf_rules().size(), 3U);

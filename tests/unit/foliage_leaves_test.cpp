@@ -102,12 +102,12 @@ TEST(Leaves, SnagsOnAStoutTrunkBearNone) {
     const NodeId snag = tree.add_child(low, {0.4, 1.2, 0}, 0.01);
     const NodeId on_snag = tree.add_child(snag, {0.5, 1.5, 0}, 0.01);
     const NodeId also_on_snag = tree.add_child(snag, {0.5, 1.2, 0.2}, 0.01);
-    const NodeId limb = tree.add_child(low, {-1.5, 1.5, 0}, 0.01);
+    const NodeId side_branch = tree.add_child(low, {-1.5, 1.5, 0}, 0.01);
     const NodeId twig = tree.add_child(tree.node(at).parent, {0.3, 9.1, 0}, 0.01);
     const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), 1);
     EXPECT_FALSE(bears_leaf_at(leaves, tree.node(on_snag).position));
     EXPECT_FALSE(bears_leaf_at(leaves, tree.node(also_on_snag).position));
-    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(limb).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(side_branch).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(twig).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(at).position));
 }
@@ -132,7 +132,7 @@ Tree stem_with_a_crown(std::vector<NodeId>& stem) {
 TEST(Leaves, WaterShootsBelowTheCrownBearNone) {
     std::vector<NodeId> stem;
     Tree tree = stem_with_a_crown(stem);
-    // The same shoot of 0.8 m, longer than a snag: at the foot, and in the crown.
+    // The same shoot of 0.8 m, longer than a snag: at the base, and in the crown.
     const auto shoot = [&](NodeId at) {
         const DVec3 from = tree.node(at).position;
         const NodeId knee = tree.add_child(at, from + DVec3(0.5, 0.1, 0.1), 0.006);
@@ -140,14 +140,14 @@ TEST(Leaves, WaterShootsBelowTheCrownBearNone) {
         return std::make_pair(tree.add_child(knee, from + DVec3(0.75, 0.25, 0.1), 0.004), side);
     };
     const auto low = shoot(stem[1]), high = shoot(stem[12]);
-    // A low limb that reaches far is no shoot.
-    const NodeId limb = tree.add_child(stem[2], {-2.0, 1.4, 0}, 0.02);
+    // A low branch that reaches far is no shoot.
+    const NodeId side_branch = tree.add_child(stem[2], {-2.0, 1.4, 0}, 0.02);
     const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("generic"), 1);
     EXPECT_FALSE(bears_leaf_at(leaves, tree.node(low.first).position));
     EXPECT_FALSE(bears_leaf_at(leaves, tree.node(low.second).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(high.first).position));
     EXPECT_TRUE(bears_leaf_at(leaves, tree.node(high.second).position));
-    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(limb).position));
+    EXPECT_TRUE(bears_leaf_at(leaves, tree.node(side_branch).position));
 }
 
 TEST(Leaves, TwigsThatHugTheBarkBearNone) {
@@ -196,7 +196,7 @@ TEST(Leaves, PruningOneBranchLeavesTheOthersAlone) {
             cut = tip;
         }
     ASSERT_NE(cut, kNoNode);
-    const Vec3 gone(tree.node(cut).position), foot(tree.node(tree.node(cut).parent).position);
+    const Vec3 gone(tree.node(cut).position), base(tree.node(tree.node(cut).parent).position);
     tree.remove_subtree(cut);
     const std::vector<LeafPlacement> after = place_leaves(tree, rules, 5);
     const auto key = [](const LeafPlacement& leaf) {
@@ -205,10 +205,10 @@ TEST(Leaves, PruningOneBranchLeavesTheOthersAlone) {
     std::map<std::tuple<float, float, float>, LeafPlacement> kept;
     for (const LeafPlacement& leaf : after)
         kept[key(leaf)] = leaf;
-    const float reach = 2.0f * glm::distance(gone, foot) + 0.7f;
+    const float reach = 2.0f * glm::distance(gone, base) + 0.7f;
     size_t compared = 0;
     for (const LeafPlacement& leaf : before) {
-        if (glm::distance(leaf.position, foot) < reach) continue;
+        if (glm::distance(leaf.position, base) < reach) continue;
         const auto same = kept.find(key(leaf));
         ASSERT_NE(same, kept.end());
         ASSERT_EQ(same->second.size, leaf.size);

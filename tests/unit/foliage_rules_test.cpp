@@ -206,7 +206,7 @@ TEST(LeafRules, DensityFollowsHeightRadiusAndOrder) {
     rules.by_height = {0.5f};
     EXPECT_LT(place_leaves(tree, rules, 5).size(), all.size());
     rules.by_height.clear();
-    // By order: none on the trunk and the limbs.
+    // By order: none on the trunk and the branches.
     rules.by_order = {0.0f, 0.0f, 1.0f};
     const BranchList list = list_branches(tree);
     std::set<std::array<float, 3>> ends;

@@ -121,7 +121,7 @@ TEST(GrowthBark, FollowsACrookedTrunkToItsEnd) {
     }
 }
 
-TEST(GrowthBark, EndsShortlyBelowTheFootAndBeyondACut) {
+TEST(GrowthBark, EndsShortlyBelowTheBaseAndBeyondACut) {
     for (const double radius : {0.12, 0.6}) {
         const Tree tree = cylinder(radius, 5.0 * radius);
         const double longest = std::max(0.04, 0.2 * radius);

@@ -54,13 +54,13 @@ std::pair<double, double> wood(const GrownBark& bark) {
     return {sum, sum > 0.0 ? height / sum : 0.0};
 }
 
-// A trunk with a limb, a burl and a hollow.
+// A trunk with a branch, a burl and a hollow.
 const GrownBark& lumpy() {
     static const GrownBark bark = [] {
         Tree tree = test::cylinder(0.15, 1.6);
-        NodeId limb = 5;
+        NodeId side_branch = 5;
         for (int i = 1; i <= 6; i++)
-            limb = tree.add_child(limb, DVec3(0.12 * i, 0.8 + 0.1 * i, 0.0), 0.07 - 0.004 * i);
+            side_branch = tree.add_child(side_branch, DVec3(0.12 * i, 0.8 + 0.1 * i, 0.0), 0.07 - 0.004 * i);
         return grow_bark(tree, read_growth_recipe(tree,
                                                   "edges longest=0.045\nburl along=1.2 around=180 radius=0.2 "
                                                   "growth=0.6\nhollow along=0.5 around=90 width=0.1 "

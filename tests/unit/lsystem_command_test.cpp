@@ -73,12 +73,12 @@ TEST(LStringCommand, AnglesAreRelativeToTheWoodBelow) {
 TEST(LStringCommand, TheRootIsTheWholeTree) {
     Tree tree = test::random_tree(3, 100);
     tree.rebase({1, 0, 1});
-    const DVec3 foot = tree.node(tree.root()).position;
+    const DVec3 base = tree.node(tree.root()).position;
     perform(tree, command(tree.root(), "!(0.5)F(1)[+(90)F(1)]F(1)"));
     ASSERT_EQ(tree.size(), 4u);
-    EXPECT_EQ(tree.node(tree.root()).position, foot);
+    EXPECT_EQ(tree.node(tree.root()).position, base);
     EXPECT_EQ(tree.node(tree.root()).radius, 0.5);
-    EXPECT_LT(glm::distance(tree.bounds().max, foot + DVec3(0.5, 2.5, 0.5)), 1e-9);
+    EXPECT_LT(glm::distance(tree.bounds().max, base + DVec3(0.5, 2.5, 0.5)), 1e-9);
 }
 
 TEST(LStringCommand, MistakesChangeNothing) {

@@ -25,9 +25,9 @@ TEST(Polygons, HaveTheirCornersOnACircle) {
     }
 }
 
-// A limb that leaves a stem along the stem's way, and so starts thin within it, keeps the smooth bends of its
-// own thickness.
-TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
+// A branch that leaves a stem along the stem's way, and so starts thin within it, keeps the smooth bends of
+// its own thickness.
+TEST(BranchTubes, ABranchThatStartsThinBendsAsSmoothlyAsItIsThick) {
     Tree tree;
     NodeId at = tree.add_root({0, 0, 0}, 0.03, kTrunkFlag);
     NodeId fork = kNoNode;
@@ -36,11 +36,11 @@ TEST(BranchTubes, ALimbThatStartsThinBendsAsSmoothlyAsItIsThick) {
         if (i == 4) fork = at;
     }
     // Half a circle of 10 cm, tangent to the stem.
-    NodeId limb = fork;
+    NodeId branch = fork;
     for (int i = 1; i <= 40; i++) {
         const double angle = kPi * i / 40.0;
-        limb =
-            tree.add_child(limb, DVec3(0.1 - 0.1 * std::cos(angle), 1.0 + 0.1 * std::sin(angle), 0.0), 0.024);
+        branch = tree.add_child(branch, DVec3(0.1 - 0.1 * std::cos(angle), 1.0 + 0.1 * std::sin(angle), 0.0),
+                                0.024);
     }
     const Mesh mesh = build_branch_tubes(tree);
     std::vector<DVec3> centres;
@@ -81,7 +81,7 @@ TEST(BranchTubes, AStoutTrunkBendsWithoutCorners) {
             DVec3 sum(0.0);
             while (end < mesh.positions.size() && mesh.uvs[end].y == mesh.uvs[v].y)
                 sum += DVec3(mesh.positions[end++]);
-            // The foot below the ground and the cut at the end are no part of the bend.
+            // The base below the ground and the cut at the end are no part of the bend.
             const DVec3 centre = (sum - DVec3(mesh.positions[end - 1])) / std::max<double>(1.0, end - v - 1);
             if (end - v > 3 && mesh.positions[v].y > 0.5 * radius) centres.push_back(centre);
             v = end;
@@ -96,13 +96,13 @@ TEST(BranchTubes, AStoutTrunkBendsWithoutCorners) {
 }
 
 // Where a trunk widens into its roots, its bark runs on down, and does not wind about it.
-TEST(BranchTubes, TheBarkOfAFootDoesNotSlant) {
-    for (const double foot : {0.17, 0.2, 0.25}) {
+TEST(BranchTubes, TheBarkOfABaseDoesNotSlant) {
+    for (const double base : {0.17, 0.2, 0.25}) {
         Tree tree;
-        NodeId at = tree.add_root({0, 0, 0}, foot, kTrunkFlag);
+        NodeId at = tree.add_root({0, 0, 0}, base, kTrunkFlag);
         for (int i = 1; i <= 40; i++) {
             const double y = 0.1 * i, left = std::max(0.0, 1.0 - y / 0.4);
-            at = tree.add_child(at, {0, y, 0}, 0.16 - 0.01 * y + (foot - 0.16) * left, kTrunkFlag);
+            at = tree.add_child(at, {0, y, 0}, 0.16 - 0.01 * y + (base - 0.16) * left, kTrunkFlag);
         }
         const TubeOptions options;
         const Mesh mesh = build_branch_tubes(tree, options);
@@ -196,7 +196,7 @@ double left_out(const std::vector<double>& radii, double apart, double from) {
     return most;
 }
 
-// A foot gets thinner fast at first and then ever more slowly, and a trunk at once above a fork; from ring to
+// A base gets thinner fast at first and then ever more slowly, and a trunk at once above a fork; from ring to
 // ring it is a cone.
 TEST(BranchTubes, AStoutTrunkIsAsThickAsItWasMeasured) {
     for (const double radius : {0.06, 0.15, 0.4}) {
@@ -204,13 +204,13 @@ TEST(BranchTubes, AStoutTrunkIsAsThickAsItWasMeasured) {
             std::vector<double> flare;
             for (int i = 0; i <= 80; i++)
                 flare.push_back(radius * (1.0 - 0.002 * i + 0.9 * std::exp(-0.05 * i / reach)));
-            EXPECT_LT(left_out(flare, 0.05, 0.0), 0.07) << radius << ", a foot of " << reach << " m";
+            EXPECT_LT(left_out(flare, 0.05, 0.0), 0.07) << radius << ", a base of " << reach << " m";
         }
         for (const double above : {0.85, 0.75, 0.65}) {
             std::vector<double> forked;
             for (int i = 0; i <= 80; i++)
                 forked.push_back(radius * (1.0 - 0.002 * i) * (i > 40 ? above : 1.0));
-            // It has no foot, and is given one.
+            // It has no base, and is given one.
             EXPECT_LT(left_out(forked, 0.5 * radius, 2.0 * radius), 0.07)
                 << radius << ", above a fork " << above;
         }

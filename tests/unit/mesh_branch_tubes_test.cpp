@@ -321,7 +321,7 @@ TEST(BranchTubes, WindChannelsMeanWhatTheDesignSays) {
     for (const TubeRange& tube : tubes_of(mesh)) {
         float tip = 0.0f;
         for (uint32_t v = tube.first_vertex; v < tube.end_vertex; v++) {
-            // The foot of a collar has its parent's phase.
+            // The base of a collar has its parent's phase.
             if (mesh.colors[v].g > 0.0f) {
                 ASSERT_EQ(mesh.colors[v].b, mesh.colors[tube.end_vertex - 1].b);
             }
@@ -365,7 +365,7 @@ TEST(BranchTubes, CoarserLevelsCostLessAndKeepTheTrunk) {
     }
 }
 
-// A trunk of 4 m that leans by `lean` metres per metre, with a limb.
+// A trunk of 4 m that leans by `lean` metres per metre, with a branch.
 Tree leaning_trunk(double lean, double radius, bool marked) {
     Tree tree;
     const uint8_t flags = marked ? kTrunkFlag : 0;
@@ -397,7 +397,7 @@ TEST(BranchTubes, ATrunkIsCutLevelBelowTheGround) {
                     const double wide = glm::length(off - axis * glm::dot(off, axis)) / radius;  // flared
                     EXPECT_GE(wide, 0.97);
                     EXPECT_LE(wide, 1.5);
-                    EXPECT_GE(mesh.radii[v], radius * 0.8);  // a foot stretches its bark
+                    EXPECT_GE(mesh.radii[v], radius * 0.8);  // a base stretches its bark
                     EXPECT_LE(mesh.radii[v], radius * 1.33);
                     corners++;
                 }
@@ -414,7 +414,7 @@ TEST(BranchTubes, ATrunkIsCutLevelBelowTheGround) {
         }
 }
 
-TEST(BranchTubes, ASpurAtTheFootDoesNotTurnTheTrunkOver) {
+TEST(BranchTubes, ASpurAtTheBaseDoesNotTurnTheTrunkOver) {
     Tree tree;
     NodeId at = tree.add_root({0.1, 0, 0}, 0.2, kTrunkFlag);
     for (int i = 0; i < 20; i++)
@@ -432,7 +432,7 @@ TEST(BranchTubes, RadiiAreThoseOfTheDrawnWood) {
     ASSERT_EQ(mesh.radii.size(), mesh.positions.size());
     size_t checked = 0;
     for (const TubeRange& tube : tubes_of(mesh)) {
-        // Its foot is cut level.
+        // Its base is cut level.
         if (mesh.custom0[tube.first_vertex].w == 0.0f || has_collar(mesh, tube)) continue;
         uint32_t v = tube.first_vertex;
         for (const DrawnRing& ring : rings_of(mesh, tube)) {

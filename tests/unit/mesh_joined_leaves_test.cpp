@@ -38,7 +38,7 @@ TEST(JoinedLeaves, SayOfEachVertexWhatTheBufferSaysOfItsLeaf) {
                 ASSERT_EQ(joined.mesh.colors[v].a, b[15]);
                 ASSERT_EQ(joined.lengthwise[v], Vec4(leaves[i].y, b[17]));
                 ASSERT_EQ(joined.across[v], Vec4(leaves[i].x, b[18]));
-                ASSERT_EQ(joined.bough[v], b[19]);
+                ASSERT_EQ(joined.secondary[v], b[19]);
             }
             for (size_t k = 0; k < card.indices.size(); k++)
                 ASSERT_EQ(joined.mesh.indices[i * card.indices.size() + k], i * corners + card.indices[k]);

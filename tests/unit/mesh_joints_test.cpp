@@ -205,15 +205,15 @@ TEST(Joints, NormalsLookOutOfTheirFaces) {
     }
 }
 
-// On the foot of a collar the bark looks as the parent's beside it: the same picture, light and normal.
-TEST(Joints, TheFootContinuesTheParentsBark) {
+// On the base of a collar the bark looks as the parent's beside it: the same picture, light and normal.
+TEST(Joints, TheBaseContinuesTheParentsBark) {
     for (const Sample& sample : all_samples()) {
         SCOPED_TRACE(sample.name);
         const TubeOptions options;
         const Mesh mesh = build_branch_tubes(sample.tree, options);
         const std::vector<TubeRange> tubes = tubes_of(mesh);
         const std::vector<Box> boxes = boxes_of(mesh, tubes);
-        size_t feet = 0, stout = 0, collars = 0, jumps = 0, kinks = 0, shades = 0;
+        size_t bases = 0, stout = 0, collars = 0, jumps = 0, kinks = 0, shades = 0;
         for (const TubeRange& tube : tubes) {
             if (mesh.custom0[tube.first_vertex].w == 0.0f || start_radius(mesh, tube) < kStout) continue;
             stout++;
@@ -260,7 +260,7 @@ TEST(Joints, TheFootContinuesTheParentsBark) {
                     }
                 }
                 if (best > 0.02) continue;
-                feet++;
+                bases++;
                 // Beyond the parent's seam the picture goes on, a round of it further.
                 const double round = 2.0 * kPi * std::abs(mesh.radii[v]) / options.bark_width;
                 double around = std::abs(uv.x - mesh.uvs[v].x);
@@ -275,9 +275,9 @@ TEST(Joints, TheFootContinuesTheParentsBark) {
         if (sample.name != "shrub") {
             EXPECT_GE(2 * collars, stout);
         }
-        EXPECT_LE(jumps, feet / 20);
-        EXPECT_LE(kinks, feet / 20);
-        EXPECT_LE(shades, feet / 20);
+        EXPECT_LE(jumps, bases / 20);
+        EXPECT_LE(kinks, bases / 20);
+        EXPECT_LE(shades, bases / 20);
     }
 }
 
@@ -362,7 +362,7 @@ Tree straight_trunk(const Radius& radius_at) {
     return tree;
 }
 
-TEST(Joints, ATrunkWithoutAFootIsGivenOne) {
+TEST(Joints, ATrunkWithoutABaseIsGivenOne) {
     for (const double radius : {0.05, 0.15, 0.4}) {
         SCOPED_TRACE(radius);
         const Mesh mesh =
@@ -382,7 +382,7 @@ TEST(Joints, ATrunkWithoutAFootIsGivenOne) {
     }
 }
 
-TEST(Joints, AFootThatWasScannedStays) {
+TEST(Joints, ABaseThatWasScannedStays) {
     const auto radius_at = [](double y) { return 0.15 * (1.0 + 0.5 * std::exp(-3.0 * y)); };
     const Mesh mesh = build_branch_tubes(straight_trunk(radius_at));
     for (size_t v = 0; v < mesh.positions.size(); v++) {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "error.h"
-#include "mesh/leaf_shapes.h"
+#include "textures/leaf_shapes.h"
 
 namespace treerec {
 namespace {

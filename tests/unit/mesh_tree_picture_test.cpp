@@ -63,7 +63,7 @@ TEST(TreePicture, RightIsRightAndUpIsUp) {
     Tree tree;
     tree.add_root({0, 0, 0}, 0.1);
     tree.add_child(0, {0, 4, 0}, 0.1);
-    const NodeId limb = tree.add_child(1, {3, 4, 0}, 0.4);
+    const NodeId branch = tree.add_child(1, {3, 4, 0}, 0.4);
     const Counted counted = count(draw_tree(tree, {}, {}, 64));
     EXPECT_GT(counted.top, counted.seen / 2);
     const auto lower = [](const Image& image, int from, int to) {
@@ -78,7 +78,7 @@ TEST(TreePicture, RightIsRightAndUpIsUp) {
     // What stands in front hides what is behind.
     TreeColors colors;
     const Image behind = draw_tree(tree, {}, colors, 64);
-    tree.add_child(limb, {3, 4, 5}, 0.39);
+    tree.add_child(branch, {3, 4, 5}, 0.39);
     EXPECT_NE(draw_tree(tree, {}, colors, 64).pixels, behind.pixels);
 }
 

@@ -52,14 +52,14 @@ double parted(const Vec2& a, const Vec2& b, const double (&reach)[2]) {
 }
 
 struct Swing {
-    double limb = 1.7 * shader_constant("TREE_LIMB_SWING");
-    double bough = 1.8 * shader_constant("TREE_BOUGH_SWING");
+    double primary = 1.7 * shader_constant("TREE_PRIMARY_SWING");
+    double secondary = 1.8 * shader_constant("TREE_SECONDARY_SWING");
 };
 
 TEST(Wind, WhatTouchesStaysTogetherAtFullWind) {
     const Swing swing;
-    ASSERT_GT(swing.limb, 0.0);
-    ASSERT_GT(swing.bough, 0.0);
+    ASSERT_GT(swing.primary, 0.0);
+    ASSERT_GT(swing.secondary, 0.0);
     for (const Habit habit : all_habits()) {
         GrowOptions options;
         options.habit = habit;
@@ -67,7 +67,7 @@ TEST(Wind, WhatTouchesStaysTogetherAtFullWind) {
         const BranchList list = list_branches(tree);
         const Crown crown = measure_crown(tree);
         const WindGroups wind(tree, list, crown.height);
-        const double reach[2] = {swing.limb * crown.height, swing.bough * crown.height};
+        const double reach[2] = {swing.primary * crown.height, swing.secondary * crown.height};
         double worst = 0.0, most = 0.0;
         std::vector<double> way(static_cast<size_t>(tree.id_end()), 0.0);
         for (size_t i = 0; i < list.branches.size(); i++) {
@@ -138,7 +138,7 @@ TEST(Wind, LeavesStayOnTheirTwigs) {
         options.habit = habit;
         const Tree tree = grow_tree(options);
         const double height = measure_crown(tree).height;
-        const double reach[2] = {swing.limb * height, swing.bough * height};
+        const double reach[2] = {swing.primary * height, swing.secondary * height};
         const Mesh bark = build_branch_tubes(tree);
         const std::vector<LeafPlacement> leaves = place_leaves(tree, LeafRules(), 1);
         ASSERT_GT(leaves.size(), 1000u);

@@ -14,12 +14,12 @@
 #include "file_bytes.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
-#include "mesh/texture_noise.h"
 #include "photo_orbit.h"
 #include "photos/bark_maps.h"
 #include "photos/quilt.h"
 #include "photos/seen_bark.h"
 #include "pipeline/export.h"
+#include "textures/texture_noise.h"
 #include "with_photos.h"
 
 namespace treerec {

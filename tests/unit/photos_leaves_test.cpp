@@ -11,14 +11,14 @@
 #include "exchange/quiet_tiny_gltf.h"
 #include "file_bytes.h"
 #include "geometry/parallel.h"
-#include "mesh/linear_light.h"
-#include "mesh/texture_noise.h"
-#include "mesh/textures.h"
 #include "photo_orbit.h"
 #include "photos/leaf_look.h"
 #include "photos/photo_picture.h"
 #include "pipeline/export.h"
 #include "synth/grow.h"
+#include "textures/linear_light.h"
+#include "textures/texture_noise.h"
+#include "textures/textures.h"
 #include "with_photos.h"
 
 namespace treerec {

@@ -13,7 +13,7 @@ namespace {
 
 const DVec3 kUp(0, 1, 0);
 
-// A stem that leans and narrows from the foot to `top`, rough as bark is, on uneven ground, in a bench of
+// A stem that leans and narrows from the base to `top`, rough as bark is, on uneven ground, in a bench of
 // slats.
 std::vector<DVec3> trunk_in_a_bench(Random& random, double top) {
     std::vector<DVec3> points;
@@ -62,11 +62,11 @@ TEST(SubjectStem, IsNoneWhereACrownShows) {
 }
 
 // A spruce's stem shows up to its top, and is no trunk alone.
-TEST(SubjectStem, IsNoneWhereItBearsLimbs) {
+TEST(SubjectStem, IsNoneWhereItBearsBranches) {
     Random random(5);
     std::vector<DVec3> points = trunk_in_a_bench(random, 2.4);
-    for (int limb = 0; limb < 12; limb++) {
-        const double angle = limb * 2.4, y = 1.0 + 0.11 * limb;
+    for (int branch = 0; branch < 12; branch++) {
+        const double angle = branch * 2.4, y = 1.0 + 0.11 * branch;
         for (int i = 0; i < 300; i++) {
             const double away = 0.4 + 1.1 * random.uniform();
             points.push_back(DVec3(away * std::sin(angle), y - 0.1 * away, away * std::cos(angle)) +

@@ -177,8 +177,8 @@ TEST(PhotosTell, TheSkyOfRealPhotos) {
     EXPECT_FALSE(one_sided_arc(orbit, points_of("treehill_71")));
 }
 
-// The 71 photos of a trunk in a round bench: it alone is the tree, where its limbs were the bench's and the
-// ground's. Its radius by circles through the points at three heights.
+// The 71 photos of a trunk in a round bench: it alone is the tree, where its branches were the bench's and
+// the ground's. Its radius by circles through the points at three heights.
 TEST(PhotosTell, OfATrunkTheTrunk) {
     const std::string folder = scan_test::scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";

@@ -1,4 +1,4 @@
-// Thin wood from photos, on drawn limbs of which every axis is known.
+// Thin wood from photos, on drawn branches of which every axis is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,27 +12,27 @@
 namespace treerec {
 namespace {
 
-struct Limb {
+struct Branch {
     DVec3 a{0.0}, b{0.0};
     double radius = 0.0;
 };
 
-double away_from(const Limb& limb, const DVec3& p) {
-    const DVec3 way = limb.b - limb.a;
-    const double t = std::clamp(glm::dot(p - limb.a, way) / glm::dot(way, way), 0.0, 1.0);
-    return glm::distance(p, limb.a + t * way);
+double away_from(const Branch& branch, const DVec3& p) {
+    const DVec3 way = branch.b - branch.a;
+    const double t = std::clamp(glm::dot(p - branch.a, way) / glm::dot(way, way), 0.0, 1.0);
+    return glm::distance(p, branch.a + t * way);
 }
 
-// Limbs in all directions around the origin, z to the sky, `width` pixels wide.
-std::vector<Limb> some_limbs(uint64_t seed, double pixel) {
+// Branches in all directions around the origin, z to the sky, `width` pixels wide.
+std::vector<Branch> some_branches(uint64_t seed, double pixel) {
     Random random(seed);
-    std::vector<Limb> limbs;
+    std::vector<Branch> branches;
     for (int i = 0; i < 14; i++) {
         const DVec3 a = 0.9 * random.uniform(0.2, 1.0) * random.direction();
-        limbs.push_back(
+        branches.push_back(
             {a, a + random.uniform(0.6, 1.2) * random.direction(), 0.5 * pixel * random.uniform(1.8, 6.0)});
     }
-    return limbs;
+    return branches;
 }
 
 constexpr int kWidth = 480, kHeight = 480;
@@ -58,15 +58,16 @@ Photo photo_at(double degrees, double height) {
     return photo;
 }
 
-// Dark limbs before a light sky, each pixel the share of it that they cover, with a camera's noise.
-GreyPicture drawn(const Photo& photo, const Camera& camera, const std::vector<Limb>& limbs, Random& random) {
+// Dark branches before a light sky, each pixel the share of it that they cover, with a camera's noise.
+GreyPicture drawn(const Photo& photo, const Camera& camera, const std::vector<Branch>& branches,
+                  Random& random) {
     std::vector<float> covered(static_cast<size_t>(kWidth) * kHeight, 0.0F);
-    for (const Limb& limb : limbs) {
+    for (const Branch& branch : branches) {
         constexpr int kPieces = 400;
         DVec2 before(0.0);
         double wide = 0.0;
         for (int k = 0; k <= kPieces; k++) {
-            const DVec3 p = photo.to_camera(glm::mix(limb.a, limb.b, static_cast<double>(k) / kPieces));
+            const DVec3 p = photo.to_camera(glm::mix(branch.a, branch.b, static_cast<double>(k) / kPieces));
             const DVec2 here = *camera.project(p) - 0.5;
             if (k > 0) {
                 const DVec2 low = glm::min(before, here) - wide - 2.0,
@@ -74,14 +75,14 @@ GreyPicture drawn(const Photo& photo, const Camera& camera, const std::vector<Li
                 for (int y = std::max(0, static_cast<int>(low.y)); y <= std::min(kHeight - 1.0, high.y); y++)
                     for (int x = std::max(0, static_cast<int>(low.x)); x <= std::min(kWidth - 1.0, high.x);
                          x++) {
-                        const Limb piece{DVec3(before, 0.0), DVec3(here, 0.0), 0.0};
+                        const Branch piece{DVec3(before, 0.0), DVec3(here, 0.0), 0.0};
                         const double inside = wide + 0.5 - away_from(piece, DVec3(x, y, 0.0));
                         auto& cover = covered[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)];
                         cover = std::max(cover, static_cast<float>(std::clamp(inside, 0.0, 1.0)));
                     }
             }
             before = here;
-            wide = kFocal * limb.radius / p.z;
+            wide = kFocal * branch.radius / p.z;
         }
     }
     GreyPicture picture(kWidth, kHeight);
@@ -103,14 +104,14 @@ struct Orbit {
     std::vector<double> scales;
 };
 
-Orbit orbit_of(const std::vector<Limb>& limbs, int photos) {
+Orbit orbit_of(const std::vector<Branch>& branches, int photos) {
     Orbit orbit;
     orbit.model.cameras = {lens()};
     Random random(9);
     for (int i = 0; i < photos; i++) {
         orbit.model.photos.push_back(photo_at(360.0 * i / photos, random.uniform(-2.0, 2.0)));
         orbit.ridges.push_back(
-            find_ridges(pyramid_over(drawn(orbit.model.photos.back(), lens(), limbs, random))));
+            find_ridges(pyramid_over(drawn(orbit.model.photos.back(), lens(), branches, random))));
         orbit.scales.push_back(1.0);
     }
     return orbit;
@@ -204,8 +205,8 @@ TEST(Ridges, AreNotInPlainPicturesNorAtEdges) {
 TEST(ThinWood, IsFoundWhereItIs) {
     const double pixel = kAway / kFocal;
     for (const uint64_t seed : {1, 2}) {
-        const std::vector<Limb> limbs = some_limbs(seed, pixel);
-        const Orbit orbit = orbit_of(limbs, 30);
+        const std::vector<Branch> branches = some_branches(seed, pixel);
+        const Orbit orbit = orbit_of(branches, 30);
         const std::vector<ThinPlace> places =
             match_lines(orbit.model, orbit.ridges, orbit.scales, DVec3(0.0), near_middle, {});
         const std::vector<ThinPlace> merged = merged_places(places);
@@ -213,7 +214,7 @@ TEST(ThinWood, IsFoundWhereItIs) {
         size_t right = 0, wide = 0;
         for (const ThinPlace& place : merged) {
             const auto nearest =
-                std::min_element(limbs.begin(), limbs.end(), [&](const Limb& a, const Limb& b) {
+                std::min_element(branches.begin(), branches.end(), [&](const Branch& a, const Branch& b) {
                     return away_from(a, place.position) < away_from(b, place.position);
                 });
             const bool on = away_from(*nearest, place.position) < 1.5 * pixel;
@@ -222,11 +223,11 @@ TEST(ThinWood, IsFoundWhereItIs) {
         }
         EXPECT_GT(static_cast<double>(right), 0.93 * static_cast<double>(merged.size()));
         EXPECT_GT(static_cast<double>(wide), 0.9 * static_cast<double>(right));
-        // What of the limbs is near a place.
+        // What of the branches is near a place.
         size_t covered = 0, all = 0;
-        for (const Limb& limb : limbs)
+        for (const Branch& branch : branches)
             for (int k = 0; k < 50; k++) {
-                const DVec3 p = glm::mix(limb.a, limb.b, (k + 0.5) / 50.0);
+                const DVec3 p = glm::mix(branch.a, branch.b, (k + 0.5) / 50.0);
                 all++;
                 covered += std::any_of(merged.begin(), merged.end(), [&](const ThinPlace& place) {
                     return glm::distance(place.position, p) < 6.0 * pixel;
@@ -237,15 +238,15 @@ TEST(ThinWood, IsFoundWhereItIs) {
 }
 
 TEST(ThinWood, IsNotFoundWherePhotosHaveNothingInCommon) {
-    // Each photo of limbs of its own.
+    // Each photo of branches of its own.
     Orbit orbit;
     orbit.model.cameras = {lens()};
     Random random(3);
     for (int i = 0; i < 24; i++) {
-        const std::vector<Limb> limbs = some_limbs(100 + static_cast<uint64_t>(i), kAway / kFocal);
+        const std::vector<Branch> branches = some_branches(100 + static_cast<uint64_t>(i), kAway / kFocal);
         orbit.model.photos.push_back(photo_at(15.0 * i, 0.0));
         orbit.ridges.push_back(
-            find_ridges(pyramid_over(drawn(orbit.model.photos.back(), lens(), limbs, random))));
+            find_ridges(pyramid_over(drawn(orbit.model.photos.back(), lens(), branches, random))));
         orbit.scales.push_back(1.0);
     }
     const auto places = match_lines(orbit.model, orbit.ridges, orbit.scales, DVec3(0.0), near_middle, {});

@@ -229,7 +229,7 @@ TEST_F(Pipeline, ASkeletonIsNoCloud) {
     EXPECT_THROW(reconstruct_file(path("missing.ply"), {}), Error);
 }
 
-// The middle of its walls' foot is empty, so no point is near it.
+// The middle of its walls' base is empty, so no point is near it.
 TEST_F(Pipeline, AHouseStillHasARoot) {
     Random random(6);
     PointCloud house;

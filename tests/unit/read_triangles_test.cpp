@@ -103,7 +103,8 @@ TEST_F(ReadTriangles, OurOwnModelsComeBackAsTheirFinestLevel) {
     model.leaves = &leaves;
     model.coarser = {{&coarse, nullptr, 10.0, {}}};
     model.pictures = make_pictures("oak", 32, 1);
-    for (const char* name : {"tree.glb", "tree.gltf"}) {
+    std::filesystem::create_directory(folder_ / "\u6728");
+    for (const char* name : {"tree.glb", "tree.gltf", "\u6728/tree.gltf"}) {
         write_gltf(path(name), model);
         const Triangles found = read_triangles(path(name));
         ASSERT_EQ(found.size(), (bark.indices.size() + leaves.indices.size()) / 3) << name;

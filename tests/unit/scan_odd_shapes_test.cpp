@@ -105,6 +105,33 @@ TEST(OddShapes, AWallBesideATreeIsLeftOutAndCounted) {
             }
 }
 
+TEST(OddShapes, WhatHangsOnAWallGoesWithIt) {
+    const std::vector<Vec3> tree = tree_points(4);
+    const double length = made_of(standing(tree)).measured.total_length;
+    for (const bool with_ground : {false, true}) {
+        SCOPED_TRACE(with_ground);
+        Random random(3);
+        std::vector<Vec3> points = tree;
+        add_wall(points, random, {-5.0, 0.0, -2.6}, {4.0, 0.0, -2.6}, 5.0, 0.005, 6000);
+        // Two sills, and a lamp on an arm.
+        size_t hangings = 0;
+        for (const double x : {-4.0, 2.5})
+            for (int i = 0; i < 250; i++, hangings++)
+                points.emplace_back(x + random.uniform(0.0, 1.2), 1.1 + random.uniform(0.0, 0.06),
+                                    -2.6 + random.uniform(0.02, 0.3));
+        add_cylinder(points, random, {-3.2, 2.6, -2.6}, {-3.2, 2.6, -1.8}, 0.03, 0.03, 200);
+        for (int i = 0; i < 200; i++)
+            points.emplace_back(DVec3(-3.2, 2.5, -1.7) + 0.15 * random.direction());
+        hangings += 400;
+        if (with_ground) add_ground(points, random, 5.0, 0.01, 5000);
+        const Reconstruction result = made_of(standing(points));
+        EXPECT_GE(removed(result, "Walls"), 5700 + hangings * 9 / 10);
+        EXPECT_LE(removed(result, "Walls"), 6600 + hangings);
+        EXPECT_GE(result.cloud.size() * 100, tree.size() * 97);
+        EXPECT_NEAR(result.measured.total_length, length, 0.1 * length);
+    }
+}
+
 TEST(OddShapes, NeitherATreeNorAHedgeHasAWall) {
     Random random(8);
     std::vector<Vec3> hedge;

@@ -47,8 +47,8 @@ TEST(BaseEnd, IsFoundHoweverTheTreeLies) {
                     points.emplace_back(turned(DVec3(scan.cloud.positions[i]), around, over));
                     bounds.add(DVec3(points.back()));
                 }
-                const DVec3 foot = turned(tree.node(tree.root()).position, around, over);
-                const double off = glm::distance(find_base_end(points, progress).position, foot);
+                const DVec3 base = turned(tree.node(tree.root()).position, around, over);
+                const double off = glm::distance(find_base_end(points, progress).position, base);
                 all++;
                 found += off < 0.06 * bounds.diagonal();
             }
@@ -57,13 +57,13 @@ TEST(BaseEnd, IsFoundHoweverTheTreeLies) {
 }
 
 // Far wider than high, but no branch that lies.
-TEST(BaseEnd, OfASpreadingTreeIsItsFoot) {
+TEST(BaseEnd, OfASpreadingTreeIsItsBase) {
     for (const uint64_t seed : {1, 2, 3}) {
         Random random(seed);
         PointCloud cloud;
         add_cone(cloud, random, {0, 0, 0}, {0, 1.6, 0}, 0.3, 0.25, 0.03, 0.002);
-        for (int limb = 0; limb < 7; limb++) {
-            const double angle = 2.0 * kPi * (limb + random.uniform(-0.2, 0.2)) / 7.0;
+        for (int branch = 0; branch < 7; branch++) {
+            const double angle = 2.0 * kPi * (branch + random.uniform(-0.2, 0.2)) / 7.0;
             const DVec3 out(std::cos(angle), 0.0, std::sin(angle)), up(0.0, 1.0, 0.0);
             const double length = random.uniform(4.0, 5.0);
             const DVec3 tip = length * out + random.uniform(2.5, 3.5) * up;

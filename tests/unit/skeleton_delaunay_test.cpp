@@ -130,11 +130,11 @@ TEST(Delaunay, ThinsOutwardsByAllometry) {
     EXPECT_DOUBLE_EQ(allometric_radius(trunk, 0.0), 0.001);
 }
 
-// A stem and one limb that taper: both are found to their ends, and as thick as they are.
-TEST(Delaunay, FollowsAStemAndALimb) {
+// A stem and one branch that taper: both are found to their ends, and as thick as they are.
+TEST(Delaunay, FollowsAStemAndABranch) {
     std::vector<Vec3> points = bark(DVec3(0.0), DVec3(0, 5, 0), 0.1, 12000, 3, 0.1);
-    const std::vector<Vec3> limb = bark(DVec3(0, 2, 0), DVec3(2, 4, 0), 0.05, 4000, 4, 0.1);
-    points.insert(points.end(), limb.begin(), limb.end());
+    const std::vector<Vec3> branch = bark(DVec3(0, 2, 0), DVec3(2, 4, 0), 0.05, 4000, 4, 0.1);
+    points.insert(points.end(), branch.begin(), branch.end());
     for (const SpanningTreeKind kind : kKinds) {
         const SkeletonResult made = skeletonize(cloud_of(points), by(kind));
         ASSERT_EQ(made.tree.check(), std::nullopt);

@@ -261,7 +261,7 @@ TEST(FloodTest, ExplainsTwigsThatRunSideBySideWithinAVoxel) {
         PointCloud twigs;
         test::add_cone(cloud, random, {0, 0, 0}, {0, 2.0, 0}, 0.05, 0.04, 0.035, 0.0);
         for (int bundle = 0; bundle < 8; bundle++) {
-            const DVec3 foot(0.0, random.uniform(0.8, 1.9), 0.0);
+            const DVec3 base(0.0, random.uniform(0.8, 1.9), 0.0);
             DVec3 along = any_direction(random);
             along = glm::normalize(DVec3(along.x, 0.5 * along.y, along.z) + DVec3(0.05, 0.0, 0.0));
             const DVec3 side = any_perpendicular(along);
@@ -269,7 +269,7 @@ TEST(FloodTest, ExplainsTwigsThatRunSideBySideWithinAVoxel) {
             for (int twig = 0; twig < 6; twig++) {
                 const DVec3 offset = 0.06 * ((twig % 3 - 1.0) * side + (twig / 3 - 0.5) * other);
                 for (double t = 0.05; t < 0.9; t += 0.04)
-                    twigs.positions.emplace_back(foot + t * along + std::min(1.0, t / 0.4) * offset +
+                    twigs.positions.emplace_back(base + t * along + std::min(1.0, t / 0.4) * offset +
                                                  0.002 * any_direction(random));
             }
         }

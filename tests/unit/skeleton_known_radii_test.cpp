@@ -106,28 +106,28 @@ TEST(KnownRadii, ATrunkWithFurrowsKeepsItsOwn) {
     }
 }
 
-constexpr double kLimb = 0.04;
+constexpr double kBranch = 0.04;
 
-// A stem; a limb that is seen from three of its radii beside the stem's bark on; and a twig of the stem that
-// comes down on the limb farther out.
-PointCloud limb_without_foot(uint64_t seed) {
+// A stem; a branch that is seen from three of its radii beside the stem's bark on; and a twig of the stem
+// that comes down on the branch farther out.
+PointCloud branch_without_base(uint64_t seed) {
     Random random(seed);
     PointCloud cloud;
     add_cone(cloud, random, {0, 0, 0}, {0, 3.4, 0}, 0.12, 0.1, 0.012, 0.001);
     know(cloud, 0.11);
-    const DVec3 foot(0.12 + 3.0 * kLimb, 1.5, 0.0), end(1.8, 1.9, 0.0);
-    add_cone(cloud, random, foot, end, kLimb, kLimb, 0.01, 0.001);
-    know(cloud, kLimb);
-    add_cone(cloud, random, {0.1, 2.3, 0.0}, glm::mix(foot, end, 0.55) + DVec3(0.0, kLimb, 0.0), 0.005, 0.005,
-             0.004, 0.0005);
+    const DVec3 base(0.12 + 3.0 * kBranch, 1.5, 0.0), end(1.8, 1.9, 0.0);
+    add_cone(cloud, random, base, end, kBranch, kBranch, 0.01, 0.001);
+    know(cloud, kBranch);
+    add_cone(cloud, random, {0.1, 2.3, 0.0}, glm::mix(base, end, 0.55) + DVec3(0.0, kBranch, 0.0), 0.005,
+             0.005, 0.004, 0.0005);
     know(cloud, 0.005);
     return cloud;
 }
 
-// The ways from the limb's middle to the stem, and whether they pass by the twig.
-TEST(KnownRadii, ALimbHangsOnTheStemAndNotOnATwigThatTouchesIt) {
+// The ways from the branch's middle to the stem, and whether they pass by the twig.
+TEST(KnownRadii, ABranchHangsOnTheStemAndNotOnATwigThatTouchesIt) {
     for (const uint64_t seed : {1, 2, 3, 4}) {
-        const PointCloud cloud = limb_without_foot(seed);
+        const PointCloud cloud = branch_without_base(seed);
         const Tree tree = skeletonize(cloud, thinned_to(kSpacing)).tree;
         const DVec3 begin(0.32, 1.53, 0.0);
         NodeId at = tree.root();
@@ -136,7 +136,7 @@ TEST(KnownRadii, ALimbHangsOnTheStemAndNotOnATwigThatTouchesIt) {
                 glm::distance(in_cloud(tree, cloud, at), begin))
                 at = id;
         ASSERT_LT(glm::distance(in_cloud(tree, cloud, at), begin), 0.15) << seed;
-        // Down the limb's own way into the stem, without a climb to the twig.
+        // Down the branch's own way into the stem, without a climb to the twig.
         double highest = 0.0, farthest = 0.0;
         for (NodeId id = at; id != kNoNode; id = tree.node(id).parent) {
             const DVec3 p = in_cloud(tree, cloud, id);
@@ -145,10 +145,10 @@ TEST(KnownRadii, ALimbHangsOnTheStemAndNotOnATwigThatTouchesIt) {
         }
         EXPECT_LT(highest, 1.75) << seed;
         EXPECT_LT(farthest, 0.5) << seed;
-        const auto on_limb = [](const DVec3& p) {
+        const auto on_branch = [](const DVec3& p) {
             return p.x > 0.4 && p.x < 1.7 && p.y < 2.0 - 0.02 && p.y < 1.5 + 0.3 * p.x;
         };
-        EXPECT_NEAR(radius_where(tree, cloud, on_limb), kLimb, 0.1 * kLimb) << seed;
+        EXPECT_NEAR(radius_where(tree, cloud, on_branch), kBranch, 0.1 * kBranch) << seed;
     }
 }
 
@@ -175,7 +175,7 @@ TEST(KnownRadii, WhereNoneIsKnownNothingChanges) {
 }
 
 TEST(KnownRadii, OrderRepetitionThreadsAndPlacesThatAreNoneDoNotMatter) {
-    PointCloud cloud = limb_without_foot(9);
+    PointCloud cloud = branch_without_base(9);
     set_thread_count(1);
     const Tree first = skeletonize(cloud, thinned_to(kSpacing)).tree;
     Random random(99);

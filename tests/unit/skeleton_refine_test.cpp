@@ -11,7 +11,7 @@ namespace {
 
 using test::add_cone;
 
-// A limb along the y axis, with `count` stations `step` metres apart.
+// A branch along the y axis, with `count` stations `step` metres apart.
 std::vector<Station> upright(int count, double step, double radius, const DVec3& base = DVec3(0.0)) {
     std::vector<Station> line(static_cast<size_t>(count));
     for (int i = 0; i < count; i++) {
@@ -22,19 +22,19 @@ std::vector<Station> upright(int count, double step, double radius, const DVec3&
     return line;
 }
 
-// Every point at the station of the limb that is nearest to it.
+// Every point at the station of the branch that is nearest to it.
 PointPlaces nearest_places(const std::vector<Vec3>& points, const std::vector<std::vector<Station>>& axes) {
     PointPlaces places;
     for (const Vec3& p : points) {
         double best = 1e30;
-        places.limb.push_back(-1);
+        places.branch.push_back(-1);
         places.station.push_back(0);
         for (size_t l = 0; l < axes.size(); l++)
             for (size_t i = 0; i < axes[l].size(); i++) {
                 const double off = std::abs(glm::distance(DVec3(p), axes[l][i].position) - axes[l][i].radius);
                 if (off >= best) continue;
                 best = off;
-                places.limb.back() = static_cast<int32_t>(l);
+                places.branch.back() = static_cast<int32_t>(l);
                 places.station.back() = static_cast<int32_t>(i);
             }
     }
@@ -43,13 +43,13 @@ PointPlaces nearest_places(const std::vector<Vec3>& points, const std::vector<st
 
 struct Scene {
     std::vector<Vec3> points;
-    std::vector<Limb> limbs;
+    std::vector<SkeletonBranch> branches;
     std::vector<std::vector<Station>> axes;
 
     void refine(int times = 1) {
         for (int i = 0; i < times; i++) {
             SubProgress progress(nullptr, 0.0, 1.0);
-            refine_axes(axes, limbs, nearest_places(points, axes), points, progress);
+            refine_axes(axes, branches, nearest_places(points, axes), points, progress);
         }
     }
 };
@@ -60,7 +60,7 @@ Scene noisy_pole(uint64_t seed, double radius, double noise, double from = 0.0, 
     add_cone(cloud, random, {0, 0, 0}, {0, 3, 0}, radius, radius, 0.02, noise, from, to);
     Scene scene;
     scene.points = cloud.positions;
-    scene.limbs.resize(1);
+    scene.branches.resize(1);
     scene.axes.push_back(upright(31, 0.1, radius));
     return scene;
 }
@@ -100,16 +100,16 @@ TEST(RefineAxes, MovesADisplacedAxisIntoTheMiddle) {
     }
 }
 
-TEST(RefineAxes, ALimbDoesNotThickenItsParent) {
+TEST(RefineAxes, ABranchDoesNotThickenItsParent) {
     Random random(3);
     PointCloud cloud;
     add_cone(cloud, random, {0, 0, 0}, {0, 3, 0}, 0.1, 0.1, 0.02, 0.002);
     add_cone(cloud, random, {0.1, 1.5, 0}, {0.7, 2.1, 0}, 0.06, 0.05, 0.01, 0.002);
     Scene scene;
     scene.points = cloud.positions;
-    scene.limbs.resize(2);
-    scene.limbs[1].parent = 0;
-    scene.limbs[1].attach = 15;
+    scene.branches.resize(2);
+    scene.branches[1].parent = 0;
+    scene.branches[1].attach = 15;
     scene.axes.push_back(upright(31, 0.1, 0.1));
     std::vector<Station> side;
     for (int i = 0; i < 9; i++) {
@@ -120,15 +120,15 @@ TEST(RefineAxes, ALimbDoesNotThickenItsParent) {
         side.push_back(station);
     }
     scene.axes.push_back(side);
-    // As the slices do it: the limb's lowest points hang on the parent.
+    // As the slices do it: the branch's lowest points hang on the parent.
     PointPlaces places = nearest_places(scene.points, scene.axes);
     for (size_t v = 0; v < scene.points.size(); v++)
-        if (places.limb[v] == 1 && places.station[v] <= 1) {
-            places.limb[v] = 0;
+        if (places.branch[v] == 1 && places.station[v] <= 1) {
+            places.branch[v] = 0;
             places.station[v] = 16;
         }
     SubProgress progress(nullptr, 0.0, 1.0);
-    refine_axes(scene.axes, scene.limbs, places, scene.points, progress);
+    refine_axes(scene.axes, scene.branches, places, scene.points, progress);
     for (const Station& station : scene.axes[0])
         EXPECT_NEAR(station.radius, 0.1, 0.006) << station.position.y;
 }
@@ -173,9 +173,9 @@ TEST(RefineAxes, BelievesWhatPointsAllAroundAgreeOn) {
     EXPECT_EQ(believed, 0u);
 }
 
-TEST(RefineAxes, LeavesLimbsWithoutPointsAlone) {
+TEST(RefineAxes, LeavesBranchesWithoutPointsAlone) {
     Scene scene;
-    scene.limbs.resize(1);
+    scene.branches.resize(1);
     scene.axes.push_back(upright(5, 0.1, 0.05));
     scene.refine();
     for (int i = 0; i < 5; i++) {
@@ -184,16 +184,17 @@ TEST(RefineAxes, LeavesLimbsWithoutPointsAlone) {
     }
 }
 
-std::vector<std::vector<Station>> random_axes(Random& random, std::vector<Limb>& limbs) {
+std::vector<std::vector<Station>> random_axes(Random& random, std::vector<SkeletonBranch>& branches) {
     std::vector<std::vector<Station>> axes;
-    limbs.clear();
+    branches.clear();
     for (int l = 0; l < 12; l++) {
-        Limb limb;
+        SkeletonBranch branch;
         DVec3 p(0.0);
         if (l > 0) {
-            limb.parent = static_cast<int32_t>(random.below(static_cast<uint32_t>(l)));
-            limb.attach = static_cast<int32_t>(random.below(static_cast<uint32_t>(axes[limb.parent].size())));
-            p = axes[limb.parent][limb.attach].position;
+            branch.parent = static_cast<int32_t>(random.below(static_cast<uint32_t>(l)));
+            branch.attach =
+                static_cast<int32_t>(random.below(static_cast<uint32_t>(axes[branch.parent].size())));
+            p = axes[branch.parent][branch.attach].position;
         }
         std::vector<Station> line(1 + random.below(30));
         for (Station& station : line) {
@@ -204,7 +205,7 @@ std::vector<std::vector<Station>> random_axes(Random& random, std::vector<Limb>&
             station.scatter = random.uniform(0.0, 0.02);
         }
         axes.push_back(line);
-        limbs.push_back(limb);
+        branches.push_back(branch);
     }
     return axes;
 }
@@ -212,11 +213,11 @@ std::vector<std::vector<Station>> random_axes(Random& random, std::vector<Limb>&
 TEST(InferRadii, NeverGrowOutward) {
     for (uint64_t seed = 1; seed <= 40; seed++) {
         Random random(seed);
-        std::vector<Limb> limbs;
-        std::vector<std::vector<Station>> axes = random_axes(random, limbs);
-        infer_radii(axes, limbs);
+        std::vector<SkeletonBranch> branches;
+        std::vector<std::vector<Station>> axes = random_axes(random, branches);
+        infer_radii(axes, branches);
         for (size_t l = 0; l < axes.size(); l++) {
-            double limit = limbs[l].parent < 0 ? 1e9 : axes[limbs[l].parent][limbs[l].attach].radius;
+            double limit = branches[l].parent < 0 ? 1e9 : axes[branches[l].parent][branches[l].attach].radius;
             for (const Station& station : axes[l]) {
                 EXPECT_GT(station.radius, 0.0);
                 EXPECT_LE(station.radius, limit);
@@ -227,9 +228,9 @@ TEST(InferRadii, NeverGrowOutward) {
 }
 
 TEST(InferRadii, TakesTheNoiseOffThinTwigs) {
-    std::vector<Limb> limbs(2);
-    limbs[1].parent = 0;
-    limbs[1].attach = 20;
+    std::vector<SkeletonBranch> branches(2);
+    branches[1].parent = 0;
+    branches[1].attach = 20;
     std::vector<std::vector<Station>> axes = {upright(31, 0.1, 0.1), upright(11, 0.1, 0.012, {0.1, 2, 0})};
     for (Station& station : axes[1])
         station.measured = false;
@@ -239,24 +240,24 @@ TEST(InferRadii, TakesTheNoiseOffThinTwigs) {
         clean[0][i].scatter = 0.0005;
     }
     EXPECT_NEAR(noise_of(axes), 0.01, 1e-4);
-    infer_radii(axes, limbs);
-    infer_radii(clean, limbs);
+    infer_radii(axes, branches);
+    infer_radii(clean, branches);
     EXPECT_NEAR(clean[1][2].radius, 0.012, 0.0005);
     EXPECT_LT(axes[1][2].radius, 0.0105);
     EXPECT_GT(axes[1][2].radius, 0.004);
 }
 
 TEST(InferRadii, GuessesAsThickAsTheTreeWasMeasured) {
-    std::vector<Limb> limbs(2);
-    limbs[1].parent = 0;
-    limbs[1].attach = 5;
+    std::vector<SkeletonBranch> branches(2);
+    branches[1].parent = 0;
+    branches[1].attach = 5;
     // A slender stem, about a hundredth of the way to its tip thick; thin wood tapers half as fast again.
     std::vector<std::vector<Station>> axes = {upright(101, 0.1, 0.1), upright(11, 0.1, 0.0, {0.1, 0.5, 0})};
     for (size_t i = 0; i < axes[0].size(); i++)
         axes[0][i].radius = 0.002 + 0.1 * (1.0 - static_cast<double>(i) / 100.0);
     for (Station& station : axes[1])
         station.measured = false;
-    infer_radii(axes, limbs);
+    infer_radii(axes, branches);
     EXPECT_NEAR(axes[1][0].radius, 0.003 + 0.0155 * 1.0, 0.001);
     EXPECT_NEAR(axes[1][10].radius, 0.0028, 1e-9);
 }
@@ -276,9 +277,9 @@ double steepest(const std::vector<Station>& line) {
 }
 
 TEST(InferRadii, AForkThatNoPointShowsIsNoThickerThanWhatGrowsFromIt) {
-    std::vector<Limb> limbs(2);
-    limbs[1].parent = 0;
-    limbs[1].attach = 20;
+    std::vector<SkeletonBranch> branches(2);
+    branches[1].parent = 0;
+    branches[1].attach = 20;
     // Around the fork all points are the parent's; those further out show a twig of 3 mm.
     std::vector<std::vector<Station>> axes = {upright(151, 0.02, 0.03),
                                               upright(51, 0.02, 0.003, {0.1, 0.4, 0})};
@@ -286,7 +287,7 @@ TEST(InferRadii, AForkThatNoPointShowsIsNoThickerThanWhatGrowsFromIt) {
         axes[1][i].measured = false;
         if (i < 10) axes[1][i].radius = 0.0;
     }
-    infer_radii(axes, limbs, true);
+    infer_radii(axes, branches, true);
     EXPECT_LT(axes[1][0].radius, 0.005);
     EXPECT_GE(axes[1][0].radius, axes[1][10].radius);
     EXPECT_LT(steepest(axes[1]), 1.3);
@@ -297,17 +298,17 @@ TEST(InferRadii, AForkThatNoPointShowsIsNoThickerThanWhatGrowsFromIt) {
         axes[1][i].radius = 0.0;
     for (size_t i = 40; i < axes[1].size(); i++)
         axes[1][i].radius = 0.003;
-    infer_radii(axes, limbs, true);
+    infer_radii(axes, branches, true);
     EXPECT_NEAR(axes[1][24].radius, 0.0045, 0.0008);
 }
 
 TEST(InferRadii, MeasuredWoodNarrowsToItsTipEvenly) {
-    std::vector<Limb> limbs(1);
+    std::vector<SkeletonBranch> branches(1);
     std::vector<std::vector<Station>> axes = {upright(61, 0.02, 0.02)};
     // At the end, too few points for a circle still lie as far from the axis.
     for (size_t i = 51; i < axes[0].size(); i++)
         axes[0][i].measured = false;
-    infer_radii(axes, limbs, true);
+    infer_radii(axes, branches, true);
     EXPECT_NEAR(axes[0][50].radius, 0.02, 1e-9);
     EXPECT_NEAR(axes[0][55].radius, 0.01, 0.002);
     EXPECT_LT(axes[0][60].radius, 0.004);
@@ -315,23 +316,23 @@ TEST(InferRadii, MeasuredWoodNarrowsToItsTipEvenly) {
 }
 
 TEST(InferRadii, ThickWoodThatWasCutKeepsItsThickness) {
-    std::vector<Limb> limbs(1);
+    std::vector<SkeletonBranch> branches(1);
     std::vector<std::vector<Station>> axes = {upright(61, 0.02, 0.08)};
     for (size_t i = 0; i < axes[0].size(); i++) {
         axes[0][i].scatter = 0.003;
         axes[0][i].measured = i <= 50;
     }
-    infer_radii(axes, limbs, true);
+    infer_radii(axes, branches, true);
     EXPECT_NEAR(axes[0][60].radius, 0.08, 0.002);
 }
 
 TEST(InferRadii, ABaseKeepsItsFlare) {
-    std::vector<Limb> limbs(1);
+    std::vector<SkeletonBranch> branches(1);
     std::vector<std::vector<Station>> axes = {upright(31, 0.1, 0.1)};
     axes[0][0].radius = 0.16;
     axes[0][1].radius = 0.13;
     axes[0][2].radius = 0.11;
-    infer_radii(axes, limbs);
+    infer_radii(axes, branches);
     EXPECT_GT(axes[0][0].radius, 0.14);
     EXPECT_GT(axes[0][1].radius, 0.12);
     EXPECT_NEAR(axes[0][5].radius, 0.1, 1e-9);

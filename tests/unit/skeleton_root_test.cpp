@@ -40,18 +40,18 @@ TEST(Root, StandsWhereAStemIsKnownToStand) {
             options.method = method;
             const DVec3 lowest = root_of(skeletonize(cloud, options));
             EXPECT_LT(lowest.y, -0.9);
-            options.foot = DVec3(0.1, 0.1, -0.1);
+            options.stem_base = DVec3(0.1, 0.1, -0.1);
             const DVec3 known = root_of(skeletonize(cloud, options));
             EXPECT_LT(std::hypot(known.x, known.z), 0.3);
             EXPECT_GT(known.y, -0.5);
             // Where nothing stands, the lowest wood is as good as ever.
-            options.foot = DVec3(-8.0, 0.0, 5.0);
+            options.stem_base = DVec3(-8.0, 0.0, 5.0);
             EXPECT_EQ(root_of(skeletonize(cloud, options)), lowest);
         }
 }
 
 // Bushes stood lower than some of these stems, and were rooted instead.
-TEST(Root, OfATreeInAPlotIsItsStemsFoot) {
+TEST(Root, OfATreeInAPlotIsItsStemsBase) {
     const std::string folder = scan_test::scans_folder();
     if (folder.empty()) GTEST_SKIP() << "TREEREC_SCANS does not name the folder of the real scans.";
     for (const size_t number : {1, 5, 17}) {

@@ -184,9 +184,9 @@ inline WoodScan thick_scan(uint64_t seed) {
     for (int b = 0; b < boughs; b++) {
         const DVec3 along =
             tilted(top, random.uniform(0.4, 0.8), 2.0 * kPi * (b + random.uniform(-0.15, 0.15)) / boughs);
-        const DVec3 foot = scan.wood[0].at(random.uniform(0.9, 0.97));
+        const DVec3 stem_base = scan.wood[0].at(random.uniform(0.9, 0.97));
         const double own = radius * random.uniform(0.25, 0.4);
-        scan.wood.push_back({foot, foot + random.uniform(3.0, 4.5) * along, own, 0.1 * own});
+        scan.wood.push_back({stem_base, stem_base + random.uniform(3.0, 4.5) * along, own, 0.1 * own});
     }
     scan.tips = static_cast<size_t>(boughs);
     scan.spacing = radius / random.uniform(12.0, 40.0);

@@ -189,7 +189,7 @@ TEST(Skeletonize, TapersOverAGap) {
     EXPECT_GE(looked, 2u);
 }
 
-// A branch whose foot the scan has missed, and above it a bough that is nearer than the stem it grew from.
+// A branch whose base the scan has missed, and above it a bough that is nearer than the stem it grew from.
 TEST(Skeletonize, BridgesAGapInABranchsOwnDirection) {
     Random random(12);
     PointCloud cloud;

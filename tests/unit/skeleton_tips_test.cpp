@@ -23,8 +23,8 @@ std::vector<Station> line_of(std::initializer_list<double> heights, double radiu
 
 TEST(Tips, EndBeforeTheirFarthestPoint) {
     std::vector<std::vector<Station>> axes{line_of({0.0, 0.1, 0.2, 0.3}, 0.004)};
-    const std::vector<Limb> limbs(1);
-    draw_back_tips(axes, limbs, kShortest);
+    const std::vector<SkeletonBranch> branches(1);
+    draw_back_tips(axes, branches, kShortest);
     ASSERT_EQ(axes[0].size(), 4u);
     EXPECT_NEAR(axes[0].back().position.y, 0.292, 1e-9);
     EXPECT_DOUBLE_EQ(axes[0].back().radius, 0.004);
@@ -32,7 +32,7 @@ TEST(Tips, EndBeforeTheirFarthestPoint) {
 
 TEST(Tips, StationsNearerThanThatGo) {
     std::vector<std::vector<Station>> axes{line_of({0.0, 0.1, 0.294, 0.297, 0.3}, 0.004)};
-    draw_back_tips(axes, std::vector<Limb>(1), kShortest);
+    draw_back_tips(axes, std::vector<SkeletonBranch>(1), kShortest);
     ASSERT_EQ(axes[0].size(), 3u);
     EXPECT_NEAR(axes[0].back().position.y, 0.292, 1e-9);
 }
@@ -40,22 +40,22 @@ TEST(Tips, StationsNearerThanThatGo) {
 TEST(Tips, OfCutWoodStay) {
     std::vector<std::vector<Station>> axes{line_of({0.0, 0.5, 1.0}, 0.05), line_of({0.0, 0.5, 1.0}, 0.005)};
     axes[1].back().measured = true;
-    draw_back_tips(axes, std::vector<Limb>(2), kShortest);
+    draw_back_tips(axes, std::vector<SkeletonBranch>(2), kShortest);
     EXPECT_EQ(axes[0].back().position.y, 1.0);
     EXPECT_EQ(axes[1].back().position.y, 1.0);
 }
 
 TEST(Tips, AForkAndAShortTwigStay) {
-    // A side limb of 8 cm on the first one's last station but one, 2 mm before the tip.
+    // A side branch of 8 cm on the first one's last station but one, 2 mm before the tip.
     std::vector<std::vector<Station>> axes{line_of({0.0, 0.1, 0.298, 0.3}, 0.004),
                                            line_of({0.3, 0.34}, 0.01)};
     for (Station& station : axes[1])
         station.position.x += 0.01;
-    std::vector<Limb> limbs(2);
-    limbs[1].parent = 0;
-    limbs[1].attach = 2;
+    std::vector<SkeletonBranch> branches(2);
+    branches[1].parent = 0;
+    branches[1].attach = 2;
     const std::vector<std::vector<Station>> before = axes;
-    draw_back_tips(axes, limbs, kShortest);
+    draw_back_tips(axes, branches, kShortest);
     for (size_t l = 0; l < axes.size(); l++) {
         ASSERT_EQ(axes[l].size(), before[l].size());
         for (size_t i = 0; i < axes[l].size(); i++)

@@ -86,7 +86,7 @@ TEST(TwigGrowth, AtOnceGivesWhatOneByOneGives) {
         EXPECT_EQ(all.limb, one.limb);
         EXPECT_EQ(all.station, one.station);
         twigs += grown.limbs.size();
-        for (const Limb& limb : grown.limbs)
+        for (const SkeletonBranch& limb : grown.limbs)
             on_twigs += limb.parent > 0 ? 1 : 0;
     }
     EXPECT_GT(twigs, 500u);

@@ -125,7 +125,7 @@ TEST(Twigs, NoneGrowFromNoise) {
 }
 
 // The lowest points are those of a root spur beside the stem.
-TEST(Foot, StandsUnderItsStem) {
+TEST(Base, StandsUnderItsStem) {
     PointCloud cloud = stem(7, 0.002);
     Random random(8);
     add_cone(cloud, random, {0.05, 0.12, 0.0}, {0.32, -0.06, 0.0}, 0.05, 0.02, 0.01, 0.002);
@@ -135,8 +135,8 @@ TEST(Foot, StandsUnderItsStem) {
     EXPECT_LT(root.y, 0.05);
 }
 
-// A stem that really bends at its foot stays bent.
-TEST(Foot, ASweptFootStays) {
+// A stem that really bends at its base stays bent.
+TEST(Base, ASweptBaseStays) {
     Random random(9);
     PointCloud cloud;
     std::vector<DVec3> line;

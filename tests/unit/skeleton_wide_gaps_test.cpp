@@ -61,9 +61,9 @@ double way_down(const Tree& tree, const PointCloud& cloud, const DVec3& place) {
 void expect_stems_on_their_stumps(const PointCloud& cloud, double to, const std::string& what) {
     const SkeletonResult result = skeletonize(cloud, {});
     for (const double turn : {0.0, 2.1, 4.2}) {
-        const DVec3 foot = on_stem(turn, to + 0.15);
-        const double straight = kForkHeight + glm::distance(foot, DVec3(0.0, kForkHeight, 0.0));
-        EXPECT_LT(way_down(result.tree, cloud, foot), 1.25 * straight)
+        const DVec3 base = on_stem(turn, to + 0.15);
+        const double straight = kForkHeight + glm::distance(base, DVec3(0.0, kForkHeight, 0.0));
+        EXPECT_LT(way_down(result.tree, cloud, base), 1.25 * straight)
             << what << ", the stem towards " << turn;
     }
 }

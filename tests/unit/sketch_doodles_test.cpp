@@ -58,10 +58,10 @@ bool is_that_tree(const Doodle& doodle, const SketchedTree& made) {
         low = glm::min(low, at);
         high = glm::max(high, at);
     }
-    const double height = doodle.foot.y - doodle.crown_low.y;
+    const double height = doodle.stem_base.y - doodle.crown_low.y;
     if (doodle.has_outline && !made.understood.drawn.outline_stroke) return false;
     return boxes_iou(low, high, doodle.crown_low, doodle.crown_high) > 0.5 &&
-           glm::length(made.foot - doodle.foot) < 0.15 * height;
+           glm::length(made.stem_base - doodle.stem_base) < 0.15 * height;
 }
 
 void check_tree(const SketchedTree& made, const Doodle& doodle) {

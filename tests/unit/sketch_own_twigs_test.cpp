@@ -33,8 +33,8 @@ std::string sentence_of(const std::function<void()>& call) {
     return {};
 }
 
-// Limbs all around a trunk, each with twigs that leave it at so many degrees, and these with shoots: its wood
-// is `stout` times as thick as usual.
+// Branches all around a trunk, each with twigs that leave it at so many degrees, and these with shoots: its
+// wood is `stout` times as thick as usual.
 Tree tree_with_angle(double degrees, double stout) {
     Tree tree;
     NodeId trunk = tree.add_root(DVec3(0.0), 0.1 * stout, kTrunkFlag);
@@ -55,16 +55,16 @@ Tree tree_with_angle(double degrees, double stout) {
         if (i < 6 || i == 24) continue;
         const DVec3 out(std::cos(2.4 * i), 0.6, std::sin(2.4 * i));
         const double reach = 0.35 * (10.0 - y) + 0.5;
-        const std::vector<NodeId> limb = line(trunk, glm::normalize(out), reach,
-                                              std::min(0.012 * stout * reach, tree.node(trunk).radius), 8);
-        for (size_t k = 3; k < limb.size(); k++) {
+        const std::vector<NodeId> side_branch = line(
+            trunk, glm::normalize(out), reach, std::min(0.012 * stout * reach, tree.node(trunk).radius), 8);
+        for (size_t k = 3; k < side_branch.size(); k++) {
             const DMat3 frame = frame_about(glm::normalize(out));
             const double roll = 2.4 * static_cast<double>(k) + i;
             const DVec3 side = frame[0] * std::cos(roll) + frame[2] * std::sin(roll);
             const DVec3 way = frame[1] * std::cos(off) + side * std::sin(off);
             const double length = 0.3 + 0.1 * static_cast<double>(k % 5);
-            const double thick = std::min(0.006 * stout * length, 0.9 * tree.node(limb[k]).radius);
-            const std::vector<NodeId> twig = line(limb[k], way, length, thick, 4);
+            const double thick = std::min(0.006 * stout * length, 0.9 * tree.node(side_branch[k]).radius);
+            const std::vector<NodeId> twig = line(side_branch[k], way, length, thick, 4);
             for (size_t s = 1; s < 4; s++) {
                 const DVec3 shoot = glm::normalize(way + (s % 2 == 0 ? 0.7 : -0.7) * frame[1]);
                 line(twig[s], shoot, 0.4 * length, 0.5 * tree.node(twig[s]).radius, 2);
@@ -76,7 +76,7 @@ Tree tree_with_angle(double degrees, double stout) {
 
 // Degrees, of the side branches that are no shorter than that on what grows from the trunk.
 double usual_angle(const Tree& tree, double shortest) {
-    const LimbStatistics statistics(tree);
+    const BranchStatistics statistics(tree);
     std::vector<double> angles;
     const std::vector<Branch>& branches = statistics.list().branches;
     for (size_t i = 0; i < branches.size(); i++) {
@@ -185,7 +185,7 @@ TEST(OwnTwigs, TheMadeTreeTapersAsItsSource) {
             const SketchedTree made = sketch_tree(sketch, {});
             const double times = sketch.height / stock.height;
             EXPECT_NEAR(made.tree.node(made.tree.root()).radius, 0.1 * stout * times, 1e-9);
-            const LimbStatistics statistics(made.tree);
+            const BranchStatistics statistics(made.tree);
             // Half-way up it is as thin as there.
             EXPECT_NEAR(statistics.profile(0)[5], stock.taper->trunk[5], 0.12) << seed;
             const WoodTaper taper = stock.taper->at_height(sketch.height);
@@ -194,7 +194,7 @@ TEST(OwnTwigs, TheMadeTreeTapersAsItsSource) {
                 const Branch& branch = statistics.list().branches[i];
                 const std::span<const NodeId> nodes = statistics.list().nodes_of(branch);
                 if (branch.order != 1 || made.stroke_of_node[static_cast<size_t>(nodes[0])] < 0) continue;
-                // The limb's own wood: a twig may be what goes on from it.
+                // The branch's own wood: a twig may be what goes on from it.
                 const int32_t stroke = made.stroke_of_node[static_cast<size_t>(nodes[0])];
                 double length = 0.0;
                 for (const NodeId id : made.tree.depth_first())
@@ -220,7 +220,7 @@ TEST(OwnTwigs, TheMadeTreeTapersAsItsSource) {
 TEST(OwnTwigs, TaperScalesWithTheTree) {
     const TwigStock stock = stock_of_tree(tree_with_angle(50.0, 1.0), "");
     const WoodTaper twice = stock.taper->at_height(2.0 * stock.height);
-    EXPECT_NEAR(twice.foot, 2.0 * stock.taper->foot, 1e-12);
+    EXPECT_NEAR(twice.stem_base, 2.0 * stock.taper->stem_base, 1e-12);
     for (const double length : {0.5, 1.0, 3.0})
         EXPECT_NEAR(twice.branches.base_radius(2.0 * length), 2.0 * stock.taper->branches.base_radius(length),
                     1e-9);
@@ -263,6 +263,11 @@ TEST(OwnTwigs, AreSavedWithTheSketch) {
         ASSERT_TRUE(read.twigs);
         EXPECT_EQ(twig_stock_json(*read.twigs), twig_stock_json(*sketch.twigs));
         EXPECT_EQ(sketch_json(read, told), text);
+        // The trunk's radius at its base had another name.
+        std::string old = text;
+        if (const size_t at = old.find("\"base\""); at != std::string::npos) old.replace(at, 6, "\"foot\"");
+        EXPECT_EQ(old != text, of_tree);
+        EXPECT_EQ(twig_stock_json(*parse_sketch_json(old, "It", &told).twigs), twig_stock_json(*read.twigs));
         const SketchedTree a = sketch_tree(sketch, {}), b = sketch_tree(read, {});
         ASSERT_EQ(a.tree.size(), b.tree.size());
         for (const NodeId id : a.tree.depth_first())

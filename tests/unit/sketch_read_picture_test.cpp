@@ -182,7 +182,7 @@ TEST(SketchPicture, LinesGoOnStraightWhereTheyMeet) {
                               {750.0, 200.0}, {820.0, 400.0}, {700.0, 560.0}, {500.0, 700.0}};
     const std::vector<Meeting> meetings = {
         {"the trunk ends at the outline's top", {outline, {{500.0, 950.0}, {500.0, 100.0}}}, {true, false}},
-        {"the outline's foot rests on the trunk's top",
+        {"the outline's base rests on the trunk's top",
          {outline, {{500.0, 950.0}, {500.0, 700.0}}},
          {true, false}},
         {"an outline with a point below hangs on the trunk",

@@ -219,21 +219,21 @@ TEST(SketchSpecies, EachGrowsInItsOwnWay) {
     }
 }
 
-// Leaves hide the wood: but for the foot of the twig there is one within a leaf's length of every part of it.
+// Leaves hide the wood: but for the base of the twig there is one within a leaf's length of every part of it.
 TEST(SketchSpecies, LeavesStandAllOverThem) {
     for (const std::string& name : sketch_species_names()) {
         const SketchSpecies& species = sketch_species(name);
         for (const SpeciesTwig& twig : species.twigs) {
             const Tree tree = on_a_pole(twig.scion);
             const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset(name), 1);
-            const DVec3 foot(0.0, 9.0, 0.0);
+            const DVec3 base(0.0, 9.0, 0.0);
             double wood = 0.0, hidden = 0.0;
             for (NodeId id : tree.depth_first()) {
                 const Node& node = tree.node(id);
                 if (node.parent == kNoNode || node.position.y <= 9.0 + 1e-6) continue;
                 const DVec3 before = tree.node(node.parent).position;
                 const DVec3 middle = 0.5 * (before + node.position);
-                if (glm::distance(middle, foot) < 0.3 * twig.length) continue;
+                if (glm::distance(middle, base) < 0.3 * twig.length) continue;
                 double nearest = 1e9;
                 for (const LeafPlacement& leaf : leaves)
                     nearest = std::min(nearest, glm::distance(DVec3(leaf.position), middle));

@@ -22,7 +22,7 @@ constexpr int kSketches = 24;
 
 // Where a place of the tree is seen on the canvas.
 DVec2 seen(const SketchedTree& made, const DVec3& p) {
-    return DVec2(made.foot.x + p.x / made.scale, made.foot.y - p.y / made.scale);
+    return DVec2(made.stem_base.x + p.x / made.scale, made.stem_base.y - p.y / made.scale);
 }
 
 double from_line(const DVec2& p, const std::vector<DVec2>& line) {
@@ -192,8 +192,8 @@ TEST(SketchTree, RadiiTaperAndAreNeverTooThin) {
         SketchOptions options;
         options.density = 0.0;
         const SketchedTree made = sketch_tree(sketch, options);
-        const double foot = made.tree.node(made.tree.root()).radius;
-        EXPECT_NEAR(foot, sketch.height / 40.0, 1e-9);
+        const double stem_base = made.tree.node(made.tree.root()).radius;
+        EXPECT_NEAR(stem_base, sketch.height / 40.0, 1e-9);
         for (const NodeId id : made.tree.depth_first()) {
             const Node& node = made.tree.node(id);
             EXPECT_GE(node.radius, 0.002 - 1e-12);

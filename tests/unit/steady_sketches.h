@@ -41,9 +41,9 @@ inline Sketch drawn_sketch(uint64_t seed) {
     const DVec2 radii(random.uniform(120.0, 360.0), random.uniform(200.0, 330.0));
     const DVec2 middle(500.0 + random.uniform(-60.0, 60.0), 60.0 + radii.y * 1.2);
     sketch.strokes.push_back(drawn_outline(middle, radii, random.uniform(0.0, 0.08)));
-    const DVec2 foot(500.0 + random.uniform(-60.0, 60.0), 965.0);
+    const DVec2 stem_base(500.0 + random.uniform(-60.0, 60.0), 965.0);
     const DVec2 top = middle + DVec2(random.uniform(-20.0, 20.0), -random.uniform(0.3, 0.7) * radii.y);
-    const Stroke trunk = drawn_line(foot, top, random.uniform(-0.04, 0.04));
+    const Stroke trunk = drawn_line(stem_base, top, random.uniform(-0.04, 0.04));
     sketch.strokes.push_back(trunk);
     const int branches = 2 + static_cast<int>(random.below(7));
     for (int i = 0; i < branches; i++) {

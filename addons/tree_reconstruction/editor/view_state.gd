@@ -71,12 +71,12 @@ var channel: int = 0:
 	set(value):
 		channel = value
 		changed.emit()
-## The scan's axes at the tree's foot.
+## The scan's axes at the tree's base.
 var axes: bool = false:
 	set(value):
 		axes = value
 		changed.emit()
-## Squares of a metre at the tree's foot.
+## Squares of a metre at the tree's base.
 var grid: bool = false:
 	set(value):
 		grid = value

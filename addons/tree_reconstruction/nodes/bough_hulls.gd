@@ -1,7 +1,7 @@
 @tool
 extends RefCounted
-## What of felled wood lies on the ground beside its stout limbs: a hull around each bough, with its
-## thin wood, which else would sink.
+## What of felled wood lies on the ground beside its stout branches: a hull around each bough, with
+## its thin wood, which else would sink.
 
 const Collision := preload("tree_collision.gd")
 

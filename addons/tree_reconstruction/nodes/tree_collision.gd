@@ -5,7 +5,7 @@ extends RefCounted
 ## What the shapes are: see [enum TreeInstance3D.CollisionKind].
 enum Kind { CAPSULES, CONVEX_PARTS, TRUNK_ONLY }
 
-# However young a tree is, wood of so much of its foot's radius is stout for it.
+# However young a tree is, wood of so much of its base's radius is stout for it.
 const _STOUT: float = 0.4
 
 

@@ -142,7 +142,7 @@ static func _can_fall(tree: TreeInstance3D, density: float) -> bool:
 	return true
 
 
-# Wood that lies has no foot in the ground.
+# Wood that lies has no base in the ground.
 static func _lying(skeleton: Dictionary) -> Dictionary:
 	var wood: Dictionary = skeleton.duplicate()
 	var flags: PackedByteArray = wood["flags"]

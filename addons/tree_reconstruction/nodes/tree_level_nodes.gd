@@ -249,7 +249,7 @@ func _show(
 	part.visibility_range_fade_mode = _tree.visibility_range_fade_mode
 
 
-# How far the middle of the box is from half the tree's height above its foot, in metres.
+# How far the middle of the box is from half the tree's height above its base, in metres.
 func _slack() -> float:
 	var height: float = _tree.get_tree_height()
 	var middle: Vector3 = _tree.global_position + Vector3(0.0, 0.5 * height, 0.0)

@@ -4,8 +4,8 @@ class_name TreePusher3D
 extends Node3D
 ## A sphere that pushes branches and leaves aside: a child of a character or a vehicle.
 ##
-## Twigs and leaves within [member radius] give way, stout limbs hold. The four that are nearest to
-## the camera take effect. They come softly, and what they bent springs back softly when they go.
+## Twigs and leaves within [member radius] give way, stout branches hold. The four that are nearest
+## to the camera take effect. They come softly, and what they bent springs back softly when they go.
 ## Trees with a [member TreeWind.quality] below [constant TreeWind.BRANCHES], and baked ones without
 ## [member TreeBaker.global_wind], do not feel them.
 

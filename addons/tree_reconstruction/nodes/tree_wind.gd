@@ -16,7 +16,7 @@ extends Node
 enum Quality {
 	NONE,  ## Nothing moves.
 	SWAY,  ## Whole trees lean and swing.
-	BRANCHES,  ## Limbs and boughs swing, too, and give way to a [TreePusher3D].
+	BRANCHES,  ## Primary and secondary branches swing, too, and give way to a [TreePusher3D].
 	FLUTTER,  ## Twigs tremble and leaves flutter, too.
 }
 
@@ -29,9 +29,12 @@ enum Channel {
 	OCCLUSION,  ## White is open to the sky ([code]COLOR.a[/code]).
 	PIVOT,  ## Where the branch's pivot is, repeating each metre ([code]CUSTOM0.xyz[/code]).
 	LEVEL,  ## A colour for each level of branching ([code]CUSTOM0.w[/code]).
-	LIMB,  ## A colour for each limb, the lighter the farther out ([code]CUSTOM2.x[/code]).
-	BOUGH,  ## The same for boughs ([code]CUSTOM2.y[/code]).
+	## A colour for each primary branch, the lighter the farther out ([code]CUSTOM2.x[/code]).
+	PRIMARY_BRANCH,
+	SECONDARY_BRANCH,  ## The same for secondary branches ([code]CUSTOM2.y[/code]).
 	MOTION,  ## How far it has moved now: red, green and blue are 10 cm in x, y and z.
+	LIMB = PRIMARY_BRANCH,  ## @deprecated: Use [constant PRIMARY_BRANCH].
+	BOUGH = SECONDARY_BRANCH,  ## @deprecated: Use [constant SECONDARY_BRANCH].
 }
 
 const Checked := preload("checked.gd")

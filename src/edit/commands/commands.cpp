@@ -1,22 +1,15 @@
 #include "edit/commands/commands.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "edit/commands/command_lists.h"
 
 namespace treerec {
 
 const std::vector<EditCommand>& edit_commands() {
-    static const std::vector<EditCommand> all = [] {
-        std::vector<EditCommand> list;
-        for (const auto commands : {prune_commands, shape_commands, graft_commands, lstring_commands,
-                                    lighten_commands, leaf_commands}) {
-            std::vector<EditCommand> some = commands();
-            std::move(some.begin(), some.end(), std::back_inserter(list));
-        }
-        return list;
-    }();
+    static const std::vector<EditCommand> all =
+        joined({prune_commands(), shape_commands(), graft_commands(), lstring_commands(), lighten_commands(),
+                leaf_commands()});
     return all;
 }
 

@@ -17,9 +17,8 @@ EditOutcome outcome_of(Removed removed) {
     return outcome;
 }
 
-}  // namespace
-
-std::vector<EditCommand> prune_commands() {
+// Long twigs, and what the user points at.
+std::vector<EditCommand> part_commands() {
     return {
         {"prune",
          "prune",
@@ -90,6 +89,12 @@ std::vector<EditCommand> prune_commands() {
          [](Tree& tree, const EditArguments& given) {
              return outcome_of(keep_only(tree, given.nodes("nodes")));
          }},
+    };
+}
+
+// All wood that is alike.
+std::vector<EditCommand> rule_commands() {
+    return {
         {"prune_order",
          "prune",
          "Cuts away branches of an order and above.",
@@ -104,6 +109,12 @@ std::vector<EditCommand> prune_commands() {
          [](Tree& tree, const EditArguments& given) {
              return outcome_of(prune_by_radius(tree, given.number("radius")));
          }},
+    };
+}
+
+// What lies in a part of space.
+std::vector<EditCommand> region_commands() {
+    return {
         {"prune_box",
          "prune",
          "Cuts away the wood inside a box.",
@@ -134,6 +145,12 @@ std::vector<EditCommand> prune_commands() {
              return outcome_of(prune_region(tree, side, given.on("exact")));
          }},
     };
+}
+
+}  // namespace
+
+std::vector<EditCommand> prune_commands() {
+    return joined({part_commands(), rule_commands(), region_commands()});
 }
 
 }  // namespace treerec

@@ -93,6 +93,7 @@ std::vector<EditCommand> smooth_commands() {
     };
 }
 
+// Wood that goes elsewhere, as it is.
 std::vector<EditCommand> move_commands() {
     return {
         {"move",
@@ -150,6 +151,12 @@ std::vector<EditCommand> move_commands() {
              outcome.nodes = {given.node("node")};
              return outcome;
          }},
+    };
+}
+
+// Wood that is added, hung elsewhere or bent by its weight.
+std::vector<EditCommand> wood_commands() {
+    return {
         {"grow",
          "shape",
          "Grows new wood on a node.",
@@ -200,6 +207,12 @@ std::vector<EditCommand> move_commands() {
              options.stiffness = given.number("stiffness") * 1e9;
              return outcome_of(sag(tree, given.nodes("nodes"), options), "Bent");
          }},
+    };
+}
+
+// How thick wood is, and what of it is trunk.
+std::vector<EditCommand> radius_commands() {
+    return {
         {"thicken",
          "shape",
          "Makes wood thicker or thinner by a factor.",
@@ -231,10 +244,7 @@ std::vector<EditCommand> move_commands() {
 }  // namespace
 
 std::vector<EditCommand> shape_commands() {
-    std::vector<EditCommand> all = move_commands();
-    for (EditCommand& command : smooth_commands())
-        all.push_back(std::move(command));
-    return all;
+    return joined({move_commands(), wood_commands(), radius_commands(), smooth_commands()});
 }
 
 }  // namespace treerec

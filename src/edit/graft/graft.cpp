@@ -158,11 +158,11 @@ Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed,
     made.wood = vary_scion(joint.scion, joint.options.variation, made.seed);
     // The gap is the first seed's at every try, so that only the scion changes.
     const DMat3 axes = aim_scion(joint, seed) * turn_about(joint.own, made.spin * kDegree);
-    const DVec3 foot = joint.scion.node(joint.scion.root()).position;
+    const DVec3 base = joint.scion.node(joint.scion.root()).position;
     for (NodeId id : made.wood.depth_first()) {
         const Node& node = made.wood.node(id);
         const double radius = node.radius * joint.scale;
-        made.wood.set_position(id, axes * (joint.scale * (node.position - foot)));
+        made.wood.set_position(id, axes * (joint.scale * (node.position - base)));
         made.wood.set_radius(id, std::max(radius, std::min(node.radius, kLeastRadius)));
     }
     const Node& host = joint.tree.node(joint.host);

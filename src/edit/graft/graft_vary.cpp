@@ -60,8 +60,8 @@ Tree vary_scion(const Tree& scion, const Variation& variation, uint64_t seed) {
         const Branch& branch = list.branches[b];
         const std::span<const NodeId> nodes = list.nodes_of(branch);
         Random random(hash_seed(seed, b));
-        const DVec3 foot = scion.node(branch.attach == kNoNode ? scion.root() : branch.attach).position;
-        const DVec3 way = normalized_or(scion.node(nodes.back()).position - foot, DVec3(0.0, 1.0, 0.0));
+        const DVec3 start = scion.node(branch.attach == kNoNode ? scion.root() : branch.attach).position;
+        const DVec3 way = normalized_or(scion.node(nodes.back()).position - start, DVec3(0.0, 1.0, 0.0));
         const DVec3 fork_axis = some_perpendicular(way, random.uniform(0.0, 2.0 * kPi));
         const double fork = random.uniform(-most, most);
         const DVec3 arc_axis = some_perpendicular(way, random.uniform(0.0, 2.0 * kPi));

@@ -120,14 +120,14 @@ std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
     if (!tree.contains(joint)) throw Error("There is no node " + std::to_string(joint) + " in this tree.");
     require_scion(scion);
     require_room(tree, scion.size() - 1);
-    const DVec3 foot = scion.node(scion.root()).position;
+    const DVec3 base = scion.node(scion.root()).position;
     const DVec3 place = tree.node(joint).position;
     const std::vector<NodeId> order = scion.depth_first();
     std::vector<DVec3> positions(order.size());
     std::vector<double> radii(order.size());
     for (size_t i = 1; i < order.size(); i++) {
         const Node& node = scion.node(order[i]);
-        positions[i] = place + placement.axes * (placement.scale * (node.position - foot));
+        positions[i] = place + placement.axes * (placement.scale * (node.position - base));
         radii[i] = placement.scale * node.radius;
         if (!is_finite(positions[i]) || !(radii[i] > 0.0) || !std::isfinite(radii[i]))
             throw Error("The branch to graft is too large or too small at a scale of " +

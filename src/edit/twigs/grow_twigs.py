@@ -3,7 +3,7 @@
 its thumbnail into the addon.
 
 Each is a scion (edit/graft/scion.h) as the wood looks without leaves: how its buds are arranged, how its shoots bend,
-which of them grow on. They are grown as if they rose from a limb at `rise` degrees; the strings are what ships, so
+which of them grow on. They are grown as if they rose from a branch at `rise` degrees; the strings are what ships, so
 that a change here is a change to look at.
 """
 import math

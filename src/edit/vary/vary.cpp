@@ -39,7 +39,7 @@ constexpr double kShapeTip = 0.35;  // of its length: how far its tip may be fro
 constexpr double kBalance = 0.12;   // of the tree's nodes and wood: how far a variant may be from it
 constexpr double kUpright = 0.8;    // the least rise of a trunk that branches turn about
 constexpr double kRival = 0.4, kRivalRange = 0.35;  // thicker beside the leader, it turns less about it
-constexpr int32_t kFewLimbs = 8;                    // fewer tell nothing of their order alone
+constexpr int32_t kFewBranches = 8;                 // fewer tell nothing of their order alone
 constexpr double kAllowance = 0.03;                 // outside of the observed ranges
 constexpr double kMostRadius = 1.0;                 // at the joint, of the parent's
 
@@ -89,110 +89,110 @@ void VariantMaker::Range::add(double value) {
 
 VariantMaker::VariantMaker(const Tree& tree, const Foliage& foliage) : tree_(tree), foliage_(foliage) {
     if (tree.size() < 2) return;
-    look_at_limbs();
+    look_at_branches();
     look_at_habits();
     look_at_growth();
     if (!foliage.empty()) carry_foliage(foliage);
 }
 
-void VariantMaker::look_at_limbs() {
+void VariantMaker::look_at_branches() {
     const BranchList list = list_branches(tree_);
     floor_ = tree_.node(tree_.root()).position.y;
     for (const NodeId id : list.nodes)
         floor_ = std::min(floor_, tree_.node(id).position.y);
-    limbs_.resize(list.branches.size());
-    std::vector<int32_t> place(static_cast<size_t>(tree_.id_end()), -1);  // along its limb
-    for (size_t b = 0; b < limbs_.size(); b++) {
-        const Branch& branch = list.branches[b];
-        Limb& limb = limbs_[b];
-        limb.parent = branch.parent;
-        limb.order = branch.order;
-        limb.begin = static_cast<int32_t>(steps_.size());
-        const NodeId foot = b == 0 ? tree_.root() : branch.attach;
-        if (b > 0) limb.attach = place[foot];
-        DVec3 from = tree_.node(foot).position;
-        for (NodeId id : list.nodes_of(branch)) {
+    branches_.resize(list.branches.size());
+    std::vector<int32_t> place(static_cast<size_t>(tree_.id_end()), -1);  // along its branch
+    for (size_t b = 0; b < branches_.size(); b++) {
+        const Branch& listed = list.branches[b];
+        VariedBranch& branch = branches_[b];
+        branch.parent = listed.parent;
+        branch.order = listed.order;
+        branch.begin = static_cast<int32_t>(steps_.size());
+        const NodeId base = b == 0 ? tree_.root() : listed.attach;
+        if (b > 0) branch.attach = place[base];
+        DVec3 from = tree_.node(base).position;
+        for (NodeId id : list.nodes_of(listed)) {
             if (id == tree_.root()) continue;
             const Node& node = tree_.node(id);
             const DVec3 step = node.position - from;
             const double length = glm::length(step);
-            limb.length += length;
-            place[id] = static_cast<int32_t>(steps_.size()) - limb.begin;
+            branch.length += length;
+            place[id] = static_cast<int32_t>(steps_.size()) - branch.begin;
             steps_.push_back(step);
             lengths_.push_back(length);
-            along_.push_back(limb.length);
+            along_.push_back(branch.length);
             radii_.push_back(node.radius);
             flags_.push_back(node.flags & kTrunkFlag);
             leaf_rules_.push_back(node.leaf_rule);
-            limb.stem = limb.stem || node.is_trunk();
-            if (place[id] == 0) limb.least_rule = limb.most_rule = node.leaf_rule;
-            limb.least_rule = std::min(limb.least_rule, node.leaf_rule);
-            limb.most_rule = std::max(limb.most_rule, node.leaf_rule);
+            branch.stem = branch.stem || node.is_trunk();
+            if (place[id] == 0) branch.least_rule = branch.most_rule = node.leaf_rule;
+            branch.least_rule = std::min(branch.least_rule, node.leaf_rule);
+            branch.most_rule = std::max(branch.most_rule, node.leaf_rule);
             from = node.position;
         }
-        limb.end = static_cast<int32_t>(steps_.size());
-        limb.nodes = limb.end - limb.begin;
-        limb.wood = limb.length;
-        limb.radius = radii_[limb.begin];
-        const DVec3 start = tree_.node(foot).position;
-        const auto middle =
-            std::lower_bound(along_.begin() + limb.begin, along_.begin() + limb.end - 1, 0.5 * limb.length) -
-            along_.begin();
+        branch.end = static_cast<int32_t>(steps_.size());
+        branch.nodes = branch.end - branch.begin;
+        branch.wood = branch.length;
+        branch.radius = radii_[branch.begin];
+        const DVec3 start = tree_.node(base).position;
+        const auto middle = std::lower_bound(along_.begin() + branch.begin, along_.begin() + branch.end - 1,
+                                             0.5 * branch.length) -
+                            along_.begin();
         DVec3 way(0.0);
-        for (int32_t k = limb.begin; k <= static_cast<int32_t>(middle); k++)
+        for (int32_t k = branch.begin; k <= static_cast<int32_t>(middle); k++)
             way += steps_[k];
-        limb.way = normalized_or(way, normalized_or(from - start, DVec3(0, 1, 0)));
-        limb.reach = from - start;
-        limb.axes = standing_axes(limb.way);
-        limb.reach_in_axes = limb.reach * limb.axes;
+        branch.way = normalized_or(way, normalized_or(from - start, DVec3(0, 1, 0)));
+        branch.reach = from - start;
+        branch.axes = standing_axes(branch.way);
+        branch.reach_in_axes = branch.reach * branch.axes;
         if (b == 0) continue;
-        const Limb& parent = limbs_[limb.parent];
-        const int32_t joint = parent.begin + limb.attach;
-        DVec3 axis = limb.attach >= 0 ? steps_[joint] : DVec3(0.0);
+        const VariedBranch& parent = branches_[branch.parent];
+        const int32_t joint = parent.begin + branch.attach;
+        DVec3 axis = branch.attach >= 0 ? steps_[joint] : DVec3(0.0);
         if (joint + 1 < parent.end) {
             axis += steps_[joint + 1];
-            limb.beside = limb.radius / radii_[joint + 1];
+            branch.beside = branch.radius / radii_[joint + 1];
         }
-        limb.axis = normalized_or(axis, parent.way);
+        branch.axis = normalized_or(axis, parent.way);
     }
-    // Children stand behind their parents, in order along them; all of one limb one after another.
-    for (size_t b = limbs_.size(); b-- > 1;) {
-        Limb& parent = limbs_[limbs_[b].parent];
-        parent.nodes += limbs_[b].nodes;
-        parent.wood += limbs_[b].wood;
-        parent.stem = parent.stem || limbs_[b].stem;
-        parent.least_rule = std::min(parent.least_rule, limbs_[b].least_rule);
-        parent.most_rule = std::max(parent.most_rule, limbs_[b].most_rule);
+    // Children stand behind their parents, in order along them; all of one branch one after another.
+    for (size_t b = branches_.size(); b-- > 1;) {
+        VariedBranch& parent = branches_[branches_[b].parent];
+        parent.nodes += branches_[b].nodes;
+        parent.wood += branches_[b].wood;
+        parent.stem = parent.stem || branches_[b].stem;
+        parent.least_rule = std::min(parent.least_rule, branches_[b].least_rule);
+        parent.most_rule = std::max(parent.most_rule, branches_[b].most_rule);
         parent.first_child = static_cast<int32_t>(b);
         if (parent.last_child == 0) parent.last_child = static_cast<int32_t>(b) + 1;
     }
 }
 
-double VariantMaker::parent_radius(const Limb& limb) const {
-    return limb.attach < 0 ? tree_.node(tree_.root()).radius
-                           : radii_[limbs_[limb.parent].begin + limb.attach];
+double VariantMaker::parent_radius(const VariedBranch& branch) const {
+    return branch.attach < 0 ? tree_.node(tree_.root()).radius
+                             : radii_[branches_[branch.parent].begin + branch.attach];
 }
 
 void VariantMaker::look_at_habits() {
     Habit all;
-    for (size_t b = 1; b < limbs_.size(); b++) {
-        const Limb& limb = limbs_[b];
-        if (static_cast<size_t>(limb.order) >= habits_.size()) habits_.resize(limb.order + size_t{1});
-        const double parent_length = limbs_[limb.parent].length;
-        for (Habit* habit : {&all, &habits_[limb.order]}) {
-            habit->limbs++;
-            habit->cosine.add(glm::dot(limb.axis, limb.way));
-            if (parent_length > 0.0) habit->length.add(limb.length / parent_length);
-            habit->radius.add(limb.radius / parent_radius(limb));
+    for (size_t b = 1; b < branches_.size(); b++) {
+        const VariedBranch& branch = branches_[b];
+        if (static_cast<size_t>(branch.order) >= habits_.size()) habits_.resize(branch.order + size_t{1});
+        const double parent_length = branches_[branch.parent].length;
+        for (Habit* habit : {&all, &habits_[branch.order]}) {
+            habit->branches++;
+            habit->cosine.add(glm::dot(branch.axis, branch.way));
+            if (parent_length > 0.0) habit->length.add(branch.length / parent_length);
+            habit->radius.add(branch.radius / parent_radius(branch));
         }
-        habits_[limb.order].pool.push_back(static_cast<int32_t>(b));
+        habits_[branch.order].pool.push_back(static_cast<int32_t>(b));
     }
     for (Habit& habit : habits_) {
         std::stable_sort(habit.pool.begin(), habit.pool.end(),
-                         [&](int32_t a, int32_t b) { return limbs_[a].length < limbs_[b].length; });
+                         [&](int32_t a, int32_t b) { return branches_[a].length < branches_[b].length; });
         for (size_t i = 0; i < habit.pool.size(); i++)
-            limbs_[habit.pool[i]].rank = static_cast<int32_t>(i);
-        if (habit.limbs >= kFewLimbs) continue;
+            branches_[habit.pool[i]].rank = static_cast<int32_t>(i);
+        if (habit.branches >= kFewBranches) continue;
         habit.cosine = all.cosine;
         habit.length = all.length;
         habit.radius = all.radius;
@@ -213,7 +213,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     work.parents.reserve(expected);
     work.flags.reserve(expected);
     work.leaf_rules.reserve(expected);
-    work.slots.reserve(limbs_.size() + limbs_.size() / 4);
+    work.slots.reserve(branches_.size() + branches_.size() / 4);
     Random random(seed, 7);
     work.twist_start = kPi * amount * random.uniform(-1.0, 1.0);
     work.twist_even = 0.5 * kPi * amount * random.uniform(-1.0, 1.0);
@@ -225,7 +225,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     trunk.gauge *= work.gauge;
     trunk.key = hash_seed(seed, 0);
     const Node& root = tree_.node(tree_.root());
-    trunk.foot = root.position;
+    trunk.base = root.position;
     trunk.parent = 0;
     work.positions.push_back(root.position);
     work.radii.push_back(root.radius * trunk.gauge);
@@ -248,23 +248,23 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     return variant;
 }
 
-// Sets the limb's own nodes and plans what it bears.
+// Sets the branch's own nodes and plans what it bears.
 void VariantMaker::grow(Work& work, const Slot& slot) const {
-    const Limb& limb = limbs_[slot.limb];
-    const bool trunk = slot.limb == 0;
+    const VariedBranch& branch = branches_[slot.branch];
+    const bool trunk = slot.branch == 0;
     Random random(slot.key);
     // Bends are small: a tilt across the way does for a turn, and needs no angles.
     const double bend = work.amount * (trunk ? kTrunkBend : kBend);
     const double wave = work.amount * (trunk ? kTrunkBend : kWave);
-    const DVec3 arc = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * bend);
-    const DVec3 swing = (limb.axes[0] * bell(random) + limb.axes[2] * bell(random)) * (0.7 * wave);
-    const double over_length = limb.length > 0.0 ? 1.0 / limb.length : 0.0;
+    const DVec3 arc = (branch.axes[0] * bell(random) + branch.axes[2] * bell(random)) * (0.7 * bend);
+    const DVec3 swing = (branch.axes[0] * bell(random) + branch.axes[2] * bell(random)) * (0.7 * wave);
+    const double over_length = branch.length > 0.0 ? 1.0 / branch.length : 0.0;
     const auto first = static_cast<NodeId>(work.positions.size());
-    const size_t count = static_cast<size_t>(limb.end - limb.begin);
+    const size_t count = static_cast<size_t>(branch.end - branch.begin);
     work.tilts.resize(count);
-    DVec3 at = slot.foot;
+    DVec3 at = slot.base;
     for (size_t k = 0; k < count; k++) {
-        const size_t n = static_cast<size_t>(limb.begin) + k;
+        const size_t n = static_cast<size_t>(branch.begin) + k;
         const double t = (along_[n] - 0.5 * lengths_[n]) * over_length;
         // The swing is 0 at both ends and in the middle.
         const DVec3 tilt = arc * t + swing * (10.0 * t * (1.0 - t) * (1.0 - 2.0 * t));
@@ -285,81 +285,119 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
         work.flags.push_back(flags_[n]);
         work.leaf_rules.push_back(leaf_rules_[n]);
     }
-    for (int32_t child = limb.first_child; child < limb.last_child; child++) {
-        const uint64_t key = hash_seed(slot.key, 2 * static_cast<uint64_t>(child - limb.first_child) + 2);
+    for (int32_t child = branch.first_child; child < branch.last_child; child++) {
+        const uint64_t key = hash_seed(slot.key, 2 * static_cast<uint64_t>(child - branch.first_child) + 2);
         bear(work, slot, child, key, false);
     }
     if (carried_.empty()) return;
-    for (int32_t c = carried_begin_[slot.limb]; c < carried_begin_[slot.limb + 1]; c++) {
+    for (int32_t c = carried_begin_[slot.branch]; c < carried_begin_[slot.branch + 1]; c++) {
         const Carried& one = carried_[c];
         // As dense as they are, in a smaller crown.
         if (work.size < 1.0 &&
             static_cast<double>(hash_seed(slot.key, one.cell) >> 11) * 0x1p-53 >= work.size * work.size)
             continue;
-        const DVec3 from = one.node < 0 ? slot.foot : work.positions[first + one.node];
+        const DVec3 from = one.node < 0 ? slot.base : work.positions[first + one.node];
         work.cells.push_back(one.cell);
         work.places.push_back(from + slot.turn * one.offset * slot.scale);
     }
 }
 
-// Plans one child of a limb that has its nodes: where it stands, whose shape it takes, which way it goes.
+// Plans one child of a branch that has its nodes: where it stands, whose shape it takes, which way it goes.
 void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t key, bool again) const {
-    const Limb& limb = limbs_[slot.limb];
-    const Limb& own = limbs_[child];
-    const Habit& habit = habits_[own.order];
+    const VariedBranch& branch = branches_[slot.branch];
+    const VariedBranch& own = branches_[child];
     const double amount = work.amount;
     Random random(key, 1);
-    const auto first = static_cast<NodeId>(work.positions.size()) - (limb.end - limb.begin);
+    const auto first = static_cast<NodeId>(work.positions.size()) - (branch.end - branch.begin);
 
     if (!again && is_yet_to_grow(work, own, key)) return;
     const double fate = random.uniform();
-    if (!again && !own.stem && own.wood < kSlender * limbs_[0].wood && own.order > 1) {
-        if (fate < kLeftOut * amount && work.more_wood > -kBalance * limbs_[0].wood) {
-            work.more_nodes -= own.nodes;
-            work.more_wood -= own.wood;
-            return;
-        }
-        if (fate > 1.0 - kLeftOut * amount && work.more_wood < kBalance * limbs_[0].wood &&
-            work.more_nodes < kBalance * limbs_[0].nodes) {
-            work.more_nodes += own.nodes;
-            work.more_wood += own.wood;
-            bear(work, slot, child, key + 1, true);
-        }
-    }
+    if (!again && is_left_out(work, slot, child, key, fate)) return;
 
-    // Stout limbs keep their place beside the leader, further stems all the more.
+    // Stout branches keep their place beside the leader, further stems all the more.
     const double slim = own.stem ? 0.0 : std::clamp(1.0 - (own.beside - kRival) / kRivalRange, 0.0, 1.0);
+    const int32_t joint =
+        own.attach < 0 ? own.attach : find_joint(branch, own, (again ? 3.0 : 1.0) * slim, amount, random);
+    Slot next;
+    next.parent = joint < 0 ? slot.parent : first + joint;
+    next.base = joint < 0 ? slot.base : work.positions[next.parent];
+    DVec3 way(0.0);
+    next.turn = turn_at(work, slot, own, joint, next.parent, slim, again, random, way);
 
-    // Where: not below the lowest of its siblings, nor at the tip.
-    int32_t joint = own.attach;
-    if (joint >= 0) {
-        // What is low on its parent moves less.
-        const double own_along = along_[limb.begin + joint];
-        const double reach =
-            (again ? 3.0 : 1.0) * slim * kShift * amount * std::min(limb.length, 3.0 * own_along);
-        const double wanted = own_along + reach * std::clamp(bell(random), -2.0, 2.0);
-        const int32_t lowest = std::max(limbs_[limb.first_child].attach, 0);
-        const int32_t highest = std::max(limb.end - limb.begin - 2, joint);
-        while (joint < highest && along_[limb.begin + joint + 1] <= wanted)
-            joint++;
-        while (joint > lowest && along_[limb.begin + joint] > wanted)
-            joint--;
+    // Whose shape.
+    next.branch = !own.stem && random.uniform() < kReshaped * std::min(1.0, 1.5 * amount)
+                      ? choose_shape(work, child, next.turn, way, key)
+                      : child;
+    const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
+    const DMat3 axes = next.branch != child || mirrored ? standing_axes(way) : DMat3(1.0);
+    if (next.branch != child) next.turn = axes * glm::transpose(branches_[next.branch].axes);
+    if (mirrored) {
+        const DVec3& right = axes[0];
+        const DMat3 turn = next.turn;
+        next.turn =
+            turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
+                         2.0 * right * glm::dot(right, turn[2]));
     }
-    const NodeId parent = joint < 0 ? slot.parent : first + joint;
-    const DVec3 foot = joint < 0 ? slot.foot : work.positions[parent];
-    const double share = joint < 0 || !(limb.length > 0.0) ? 0.0 : along_[limb.begin + joint] / limb.length;
+    set_size(work, slot, own, random, next);
+    next.key = hash_seed(key, 1);
+    work.slots.push_back(next);
+}
 
-    // Which way: with the limb, about it, and at another angle.
+// Whether a slender child is not there in this variant, or, elsewhere, twice: what the one takes of the wood
+// the other gives. fate: 0..1, by chance.
+bool VariantMaker::is_left_out(Work& work, const Slot& slot, int32_t child, uint64_t key, double fate) const {
+    const VariedBranch& own = branches_[child];
+    if (own.stem || own.wood >= kSlender * branches_[0].wood || own.order <= 1) return false;
+    if (fate < kLeftOut * work.amount && work.more_wood > -kBalance * branches_[0].wood) {
+        work.more_nodes -= own.nodes;
+        work.more_wood -= own.wood;
+        return true;
+    }
+    if (fate > 1.0 - kLeftOut * work.amount && work.more_wood < kBalance * branches_[0].wood &&
+        work.more_nodes < kBalance * branches_[0].nodes) {
+        work.more_nodes += own.nodes;
+        work.more_wood += own.wood;
+        bear(work, slot, child, key + 1, true);
+    }
+    return false;
+}
+
+// By the parent's nodes, where a child that is attached to one stands: not below the lowest of its siblings,
+// nor at the tip. share, amount: how far it may move.
+int32_t VariantMaker::find_joint(const VariedBranch& parent, const VariedBranch& own, double share,
+                                 double amount, Random& random) const {
+    int32_t joint = own.attach;
+    // What is low on its parent moves less.
+    const double own_along = along_[parent.begin + joint];
+    const double reach = share * kShift * amount * std::min(parent.length, 3.0 * own_along);
+    const double wanted = own_along + reach * std::clamp(bell(random), -2.0, 2.0);
+    const int32_t lowest = std::max(branches_[parent.first_child].attach, 0);
+    const int32_t highest = std::max(parent.end - parent.begin - 2, joint);
+    while (joint < highest && along_[parent.begin + joint + 1] <= wanted)
+        joint++;
+    while (joint > lowest && along_[parent.begin + joint] > wanted)
+        joint--;
+    return joint;
+}
+
+// Which way a child goes, `way`, and the turn that takes its own way there: with its parent, about it, and at
+// another angle. joint: by the parent's nodes, which is `node` of the variant.
+DMat3 VariantMaker::turn_at(const Work& work, const Slot& slot, const VariedBranch& own, int32_t joint,
+                            NodeId node, double slim, bool again, Random& random, DVec3& way) const {
+    const VariedBranch& branch = branches_[slot.branch];
+    const double amount = work.amount;
     DMat3 turn = slot.turn;
     if (joint >= 0) turn = turn * turn_onto(own.axis, normalized_or(own.axis + work.tilts[joint], own.axis));
     DVec3 axis = turn * own.axis;
     if (joint >= 0) {
-        axis = work.positions[parent] - work.positions[joint > 0 ? parent - 1 : slot.parent];
-        if (joint + 1 < limb.end - limb.begin) axis += work.positions[parent + 1] - work.positions[parent];
+        axis = work.positions[node] - work.positions[joint > 0 ? node - 1 : slot.parent];
+        if (joint + 1 < branch.end - branch.begin) axis += work.positions[node + 1] - work.positions[node];
     }
     axis = normalized_or(axis, normalized_or(turn * own.axis, DVec3(0, 1, 0)));
     const double jitter = amount * bell(random);
-    if (slot.limb == 0 && axis.y > kUpright) {
+    if (slot.branch == 0 && axis.y > kUpright) {
+        const double share =
+            joint < 0 || !(branch.length > 0.0) ? 0.0 : along_[branch.begin + joint] / branch.length;
         const double swing = 10.0 * share * (1.0 - share) * (1.0 - 2.0 * share);
         const double twist = work.twist_start + work.twist_even * share + work.twist_swing * swing;
         const double around =
@@ -370,52 +408,42 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
             (0.2 + 0.8 * slim) * kAside * jitter + (again && random.uniform() < 0.5 ? kPi : 0.0);
         turn = rotation(axis, around) * turn;
     }
-    DVec3 way = normalized_or(turn * own.way, axis);
+    way = normalized_or(turn * own.way, axis);
     // At another angle, as far as this order of branches goes. A tilt again, for a turn.
     const double cosine = glm::dot(axis, way);
     const DVec3 across = way - axis * cosine;
-    if (glm::dot(across, across) > 1e-6) {
-        const DVec3 aside = glm::normalize(across);
-        const double fork = kFork * amount * bell(random);
-        const DVec3 tilted = way + (aside * cosine - axis * glm::dot(aside, way)) * fork;
-        const double wanted =
-            std::clamp(glm::dot(axis, glm::normalize(tilted)), habit.cosine.least, habit.cosine.most);
-        const double bounded = std::clamp(wanted, -1.0, 1.0);
-        const DVec3 forked =
-            glm::normalize(axis * bounded + aside * std::sqrt(std::max(0.0, 1.0 - bounded * bounded)));
-        turn = turn_onto(way, forked) * turn;
-        way = forked;
-    }
+    if (glm::dot(across, across) <= 1e-6) return turn;
+    const Range& usual = habits_[own.order].cosine;
+    const DVec3 aside = glm::normalize(across);
+    const double fork = kFork * amount * bell(random);
+    const DVec3 tilted = way + (aside * cosine - axis * glm::dot(aside, way)) * fork;
+    const double wanted = std::clamp(glm::dot(axis, glm::normalize(tilted)), usual.least, usual.most);
+    const double bounded = std::clamp(wanted, -1.0, 1.0);
+    const DVec3 forked =
+        glm::normalize(axis * bounded + aside * std::sqrt(std::max(0.0, 1.0 - bounded * bounded)));
+    turn = turn_onto(way, forked) * turn;
+    way = forked;
+    return turn;
+}
 
-    // Whose shape.
-    Slot next;
-    next.limb = !own.stem && random.uniform() < kReshaped * std::min(1.0, 1.5 * amount)
-                    ? choose_shape(work, child, turn, way, key)
-                    : child;
-    const Limb& shape = limbs_[next.limb];
-    const bool mirrored = !own.stem && random.uniform() < kMirrored * std::min(1.0, 2.0 * amount);
-    const DMat3 axes = next.limb != child || mirrored ? standing_axes(way) : DMat3(1.0);
-    if (next.limb != child) turn = axes * glm::transpose(shape.axes);
-    if (mirrored) {
-        const DVec3& right = axes[0];
-        turn = turn - DMat3(2.0 * right * glm::dot(right, turn[0]), 2.0 * right * glm::dot(right, turn[1]),
-                            2.0 * right * glm::dot(right, turn[2]));
-    }
-    next.turn = turn;
-
-    // How long: as the one whose place it takes, but for its own growth.
+// How long and how thick the child is in the shape that `next` takes: as the one whose place it takes, but
+// for its own growth; and no thicker than its parent there.
+void VariantMaker::set_size(const Work& work, const Slot& slot, const VariedBranch& own, Random& random,
+                            Slot& next) const {
+    const VariedBranch& shape = branches_[next.branch];
+    const Habit& habit = habits_[own.order];
+    const double amount = work.amount;
     next.drift = std::clamp(slot.drift * (1.0 + kGrowth * amount * std::clamp(bell(random), -2.0, 2.0)),
                             kLeastDrift, kMostDrift);
     const double growth = next.drift / slot.drift;
     double length = own.length * slot.scale * growth;
-    const double parent_length = limb.length * slot.scale;
+    const double parent_length = branches_[slot.branch].length * slot.scale;
     if (parent_length > 0.0 && habit.length.most > 0.0)
         length = std::clamp(length, parent_length * habit.length.least * (1.0 - kAllowance),
                             parent_length * habit.length.most * (1.0 + kAllowance));
     next.scale = shape.length > 0.0 ? length / shape.length : slot.scale;
 
-    // How thick: likewise, and no more than its parent there.
-    const double thick = work.radii[parent];
+    const double thick = work.radii[next.parent];
     const double own_share = own.radius / parent_radius(own);
     double radius =
         own.radius * slot.gauge * growth * (1.0 + kGauge * amount * std::clamp(bell(random), -2.0, 2.0));
@@ -423,17 +451,12 @@ void VariantMaker::bear(Work& work, const Slot& slot, int32_t child, uint64_t ke
     const double least = habit.radius.least * (1.0 - kAllowance) * thick;
     radius = std::min(std::max(radius, std::min(least, most)), most);
     next.gauge = radius / shape.radius;
-
-    next.parent = parent;
-    next.foot = foot;
-    next.key = hash_seed(key, 1);
-    work.slots.push_back(next);
 }
 
-// Another limb of the child's order and about its length, or the child itself.
+// Another branch of the child's order and about its length, or the child itself.
 int32_t VariantMaker::choose_shape(Work& work, int32_t child, const DMat3& turn, const DVec3& way,
                                    uint64_t key) const {
-    const Limb& own = limbs_[child];
+    const VariedBranch& own = branches_[child];
     const std::vector<int32_t>& pool = habits_[own.order].pool;
     const auto size = static_cast<int32_t>(pool.size());
     Random random(key, 2);
@@ -448,14 +471,14 @@ int32_t VariantMaker::choose_shape(Work& work, int32_t child, const DMat3& turn,
             own.rank - window + static_cast<int32_t>(random.below(2 * static_cast<uint32_t>(window) + 1));
         if (rank < 0 || rank >= size || rank == own.rank) continue;
         const int32_t other = pool[rank];
-        const Limb& shape = limbs_[other];
+        const VariedBranch& shape = branches_[other];
         if (shape.stem || shape.least_rule != own.least_rule || shape.most_rule != own.most_rule) continue;
         if (!(shape.length < kShapeLength * own.length && own.length < kShapeLength * shape.length)) continue;
         if (!(shape.radius < kShapeRadius * own.radius && own.radius < kShapeRadius * shape.radius)) continue;
         if (std::abs(shape.way.y - way.y) > kShapeRise) continue;
         const double nodes = shape.nodes - own.nodes, wood = shape.wood - own.wood;
-        if (!fits(work.more_nodes, kBalance * limbs_[0].nodes, nodes)) continue;
-        if (!fits(work.more_wood, kBalance * limbs_[0].wood, wood)) continue;
+        if (!fits(work.more_nodes, kBalance * branches_[0].nodes, nodes)) continue;
+        if (!fits(work.more_wood, kBalance * branches_[0].wood, wood)) continue;
         const DVec3 there = axes * shape.reach_in_axes * (own.length / shape.length);
         if (glm::distance(tip, there) > kShapeTip * own.length) continue;
         work.more_nodes += nodes;

@@ -2,10 +2,10 @@
 //
 // Growth slows down as a tree nears its size: over its age a (1: the tree itself) its height is a (3 - a) / 2
 // of the tree's, steep at first, half as fast as the mean at 1. All lengths scale by that, all radii by its
-// power that this tree's own limbs show between their lengths and their radii. Twigs do not scale: each
-// year's are as long and as thick on a young tree, only fewer, by the crown's surface. So the short limbs are
-// what a young tree does not have yet, with all that they bear, and with them its highest orders; the leader
-// and what has trunk in it stay.
+// power that this tree's own branches show between their lengths and their radii. Twigs do not scale: each
+// year's are as long and as thick on a young tree, only fewer, by the crown's surface. So the short branches
+// are what a young tree does not have yet, with all that they bear, and with them its highest orders; the
+// leader and what has trunk in it stay.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -19,7 +19,7 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kFewLimbs = 8;  // fewer show no allometry
+constexpr size_t kFewBranches = 8;  // fewer show no allometry
 // From geometric similarity to what carries its weight with room to spare; between them, elastic similarity:
 // McMahon, "Size and Shape in Biology", Science 179, 1973.
 constexpr double kLeastPower = 1.0, kElasticPower = 1.5, kMostPower = 2.0;
@@ -36,14 +36,14 @@ double median(std::vector<double> values) {
 void VariantMaker::look_at_growth() {
     // The line of the reduced major axis through the logarithms: both sides scatter.
     std::vector<double> lengths, radii, twig_lengths, twig_radii;
-    for (const Limb& limb : limbs_) {
-        if (limb.first_child == limb.last_child) {
-            twig_lengths.push_back(limb.length);
-            twig_radii.push_back(radii_[limb.end - 1]);
+    for (const VariedBranch& branch : branches_) {
+        if (branch.first_child == branch.last_child) {
+            twig_lengths.push_back(branch.length);
+            twig_radii.push_back(radii_[branch.end - 1]);
         }
-        if (!(limb.length > 0.0 && limb.radius > 0.0)) continue;
-        lengths.push_back(portable::log(limb.length));
-        radii.push_back(portable::log(limb.radius));
+        if (!(branch.length > 0.0 && branch.radius > 0.0)) continue;
+        lengths.push_back(portable::log(branch.length));
+        radii.push_back(portable::log(branch.radius));
     }
     twig_length_ = median(twig_lengths);
     twig_radius_ = median(twig_radii);
@@ -57,7 +57,7 @@ void VariantMaker::look_at_growth() {
     };
     const double spread = scatter(lengths);
     allometry_ = kElasticPower;
-    if (lengths.size() >= kFewLimbs && spread > 0.0)
+    if (lengths.size() >= kFewBranches && spread > 0.0)
         allometry_ = std::clamp(scatter(radii) / spread, kLeastPower, kMostPower);
 }
 
@@ -67,11 +67,12 @@ void VariantMaker::set_age(Work& work, double age) const {
     work.gauge = portable::pow(work.size, allometry_);
 }
 
-bool VariantMaker::is_yet_to_grow(const Work& work, const Limb& limb, uint64_t key) const {
-    if (work.size >= 1.0 || limb.stem) return false;
-    // As many twigs as the crown's surface has room for; limbs that are twigs' length by now are all there.
+bool VariantMaker::is_yet_to_grow(const Work& work, const VariedBranch& branch, uint64_t key) const {
+    if (work.size >= 1.0 || branch.stem) return false;
+    // As many twigs as the crown's surface has room for; branches that are twigs' length by now are all
+    // there.
     double there = work.size;
-    if (limb.length > twig_length_ && twig_length_ > 0.0) there *= limb.length / twig_length_;
+    if (branch.length > twig_length_ && twig_length_ > 0.0) there *= branch.length / twig_length_;
     if (there >= 1.0) return false;
     Random random(key, 3);
     return random.uniform() >= there * there;

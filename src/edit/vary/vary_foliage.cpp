@@ -186,18 +186,18 @@ class CellTable {
 
 void VariantMaker::carry_foliage(const Foliage& foliage) {
     std::vector<DVec3> places(steps_.size());
-    std::vector<int32_t> limb_of(steps_.size());
-    for (size_t b = 0; b < limbs_.size(); b++) {
-        const Limb& limb = limbs_[b];
+    std::vector<int32_t> branch_of(steps_.size());
+    for (size_t b = 0; b < branches_.size(); b++) {
+        const VariedBranch& branch = branches_[b];
         DVec3 at = tree_.node(tree_.root()).position;
         if (b > 0) {
-            const Limb& parent = limbs_[limb.parent];
-            if (limb.attach >= 0) at = places[parent.begin + limb.attach];
+            const VariedBranch& parent = branches_[branch.parent];
+            if (branch.attach >= 0) at = places[parent.begin + branch.attach];
         }
-        for (int32_t k = limb.begin; k < limb.end; k++) {
+        for (int32_t k = branch.begin; k < branch.end; k++) {
             at += steps_[k];
             places[k] = at;
-            limb_of[k] = static_cast<int32_t>(b);
+            branch_of[k] = static_cast<int32_t>(b);
         }
     }
     CellTable table(foliage.cells.size());
@@ -207,20 +207,20 @@ void VariantMaker::carry_foliage(const Foliage& foliage) {
         in_crowd_.push_back(table.is_in_crowd(cell));
     const NodeGrid grid(places);
     std::vector<uint32_t> nearest(foliage.cells.size());
-    carried_begin_.assign(limbs_.size() + 1, 0);
+    carried_begin_.assign(branches_.size() + 1, 0);
     for (size_t c = 0; c < nearest.size(); c++) {
         nearest[c] = grid.nearest(foliage.centre(foliage.cells[c]));
-        carried_begin_[limb_of[nearest[c]] + 1]++;
+        carried_begin_[branch_of[nearest[c]] + 1]++;
     }
-    for (size_t b = 0; b < limbs_.size(); b++)
+    for (size_t b = 0; b < branches_.size(); b++)
         carried_begin_[b + 1] += carried_begin_[b];
     std::vector<int32_t> fill(carried_begin_.begin(), carried_begin_.end() - 1);
     carried_.resize(nearest.size());
     for (size_t c = 0; c < nearest.size(); c++) {
         const uint32_t node = nearest[c];
-        carried_[fill[limb_of[node]]++] = {static_cast<int32_t>(node) - limbs_[limb_of[node]].begin,
-                                           static_cast<uint32_t>(c),
-                                           foliage.centre(foliage.cells[c]) - places[node]};
+        carried_[fill[branch_of[node]]++] = {static_cast<int32_t>(node) - branches_[branch_of[node]].begin,
+                                             static_cast<uint32_t>(c),
+                                             foliage.centre(foliage.cells[c]) - places[node]};
     }
 }
 

@@ -8,15 +8,15 @@
 
 namespace treerec {
 
-// A limb that is to grow.
+// A branch that is to grow.
 struct VariantMaker::Slot {
-    int32_t limb = 0;  // whose shape it takes
+    int32_t branch = 0;  // whose shape it takes
     int32_t parent = 0;
-    DVec3 foot{0.0};
+    DVec3 base{0.0};
     DMat3 turn{1.0};     // of that shape's ways; may mirror
     double scale = 1.0;  // of its lengths,
     double gauge = 1.0;  // and of its radii
-    double drift = 1.0;  // what its own growth and that of the limbs below it multiply to
+    double drift = 1.0;  // what its own growth and that of the branches below it multiply to
     double parent_length = 0.0;
     uint64_t key = 0;
 };
@@ -37,7 +37,7 @@ struct VariantMaker::Work {
     double twist_start = 0.0, twist_even = 0.0, twist_swing = 0.0;
     std::vector<uint32_t> cells;  // of the foliage, and where they went
     std::vector<DVec3> places;
-    std::vector<DVec3> tilts;  // by node of the limb at work
+    std::vector<DVec3> tilts;  // by node of the branch at work
 };
 
 }  // namespace treerec

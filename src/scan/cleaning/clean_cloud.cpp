@@ -84,15 +84,20 @@ class Cleaning {
         report_.warnings.emplace_back(text.data());
     }
 
-    // Leaves one tree of several. Says so in the report.
-    void take_others(const Ground& ground, double spacing, const PickOptions& options,
-                     const Progress* progress) {
+    // Finds out which trees there are, and which is wanted. Says so in the report.
+    Separation tell_apart(const Ground& ground, double spacing, const PickOptions& options,
+                          const Progress* progress) {
         const std::vector<Vec3> left = points();
-        const Separation separation = separate_trees(left, ground, spacing, progress);
+        Separation separation = separate_trees(left, ground, spacing, progress);
         std::vector<uint32_t> weights;
         for (const uint32_t s : alive_)
             weights.push_back(weights_[s]);
         report_.pick = choose_tree(separation, left, weights, cloud_.frame, options, report_.warnings);
+        return separation;
+    }
+
+    // Leaves one tree of several.
+    void take_others(const Separation& separation) {
         if (report_.pick.trees.empty()) return;
         size_t removed = 0;
         size_t kept = 0;
@@ -100,10 +105,22 @@ class Cleaning {
             if (separation.of_point[i] == report_.pick.taken)
                 alive_[kept++] = alive_[i];
             else
-                removed += weights[i];
+                removed += weights_[alive_[i]];
         }
         alive_.resize(kept);
         report_.steps.push_back({"Other trees", removed});
+    }
+
+    // By point of the cloud.
+    std::vector<uint32_t> labels(const Separation& separation) const {
+        std::vector<uint32_t> of_sample(samples_.points.size(), kNoTree);
+        for (size_t i = 0; i < alive_.size(); i++)
+            of_sample[alive_[i]] = report_.pick.trees.empty() ? 0 : separation.of_point[i];
+        std::vector<uint32_t> of_point;
+        of_point.reserve(samples_.of_point.size());
+        for (const uint32_t s : samples_.of_point)
+            of_point.push_back(of_sample[s]);
+        return of_point;
     }
 
     // Leaves out what lies below the ground's surface at the foot. Counted as ground.
@@ -153,6 +170,24 @@ class Cleaning {
     std::vector<uint32_t> alive_;
 };
 
+// What is left out before the trees are told apart. spacing: as from find_outliers().
+Ground take_what_is_no_tree(Cleaning& cleaning, const CleanOptions& options, double& spacing,
+                            const Progress* progress) {
+    if (options.remove_outliers || options.remove_fragments || options.pick.enabled) {
+        const std::vector<uint8_t> outliers =
+            find_outliers(cleaning.points(), cleaning.ranges(), options.neighbours,
+                          options.outlier_deviations, spacing, progress);
+        if (options.remove_outliers) cleaning.take("Outliers", outliers);
+    }
+    // Before the fragments, which the ground would hold together.
+    Ground ground;
+    if (options.remove_ground) {
+        cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
+        cleaning.take_walls(progress);
+    }
+    return ground;
+}
+
 }  // namespace
 
 CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress* progress) {
@@ -169,21 +204,10 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     Cleaning cleaning(cloud, report, progress);
     step(0.3);
     double spacing = 0.0;
-    if (options.remove_outliers || options.remove_fragments || options.pick.enabled) {
-        const std::vector<uint8_t> outliers =
-            find_outliers(cleaning.points(), cleaning.ranges(), options.neighbours,
-                          options.outlier_deviations, spacing, progress);
-        if (options.remove_outliers) cleaning.take("Outliers", outliers);
-    }
+    const Ground ground = take_what_is_no_tree(cleaning, options, spacing, progress);
     step(0.7);
-    // Before the fragments, which the ground would hold together.
-    Ground ground;
-    if (options.remove_ground) {
-        cleaning.take("Ground", find_ground(cleaning.points(), ground, progress));
-        cleaning.take_walls(progress);
-    }
-    step(0.75);
-    if (options.pick.enabled) cleaning.take_others(ground, spacing, options.pick, progress);
+    if (options.pick.enabled)
+        cleaning.take_others(cleaning.tell_apart(ground, spacing, options.pick, progress));
     if (options.pick.position) cleaning.take_beside(ground, *options.pick.position, progress);
     // Not before: it holds the stems of a clump together.
     cleaning.take_below(ground);
@@ -201,6 +225,18 @@ CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress
     cleaning.apply(progress);
     step(1.0);
     return report;
+}
+
+std::vector<uint32_t> label_trees(PointCloud cloud, const CleanOptions& options, PickReport& report,
+                                  Progress* progress) {
+    if (cloud.empty()) throw Error("The cloud has no points.");
+    CleanReport cleaned;
+    Cleaning cleaning(cloud, cleaned, progress);
+    double spacing = 0.0;
+    const Ground ground = take_what_is_no_tree(cleaning, options, spacing, progress);
+    const Separation separation = cleaning.tell_apart(ground, spacing, options.pick, progress);
+    report = cleaned.pick;
+    return cleaning.labels(separation);
 }
 
 }  // namespace treerec

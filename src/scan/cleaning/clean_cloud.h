@@ -1,6 +1,8 @@
 // Turns a raw cloud upright and to metres, and removes what is not tree (Chen 2025, 3.2.1).
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -83,5 +85,12 @@ struct CleanReport {
 // with a warning; one tree of many is no such step. Throws Error for an empty cloud and for a tree that there
 // is not, Cancelled on request.
 CleanReport clean_cloud(PointCloud& cloud, const CleanOptions& options, Progress* progress = nullptr);
+
+// Which of the trees each point of an oriented cloud is given to: an index into report.trees (0 where the
+// cloud is taken for one tree), or kNoTree for what is left out before and for clutter. Colours are not
+// looked at. Throws as clean_cloud().
+inline constexpr uint32_t kNoTree = std::numeric_limits<uint32_t>::max();
+std::vector<uint32_t> label_trees(PointCloud cloud, const CleanOptions& options, PickReport& report,
+                                  Progress* progress = nullptr);
 
 }  // namespace treerec

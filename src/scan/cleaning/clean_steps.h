@@ -65,9 +65,9 @@ struct Ground {
 std::vector<uint8_t> find_ground(const std::vector<Vec3>& points, Ground& ground, const Progress* progress);
 
 // Walls and fences: upright planes, wide and filled, that keep to their plane more sharply than a crown's or
-// a hedge's face, with next to nothing right before or behind them. None of a room or a house, in which
-// there is no tree: with more than three walls, or with hardly more than walls and other flat surfaces.
-// points: without ground. walls: gets the length and the height of each.
+// a hedge's face, with next to nothing right before or behind them; and what hangs on them: sills, lamps.
+// None of a room or a house, in which there is no tree: with more than three walls, or with hardly more than
+// walls and other flat surfaces. points: without ground. walls: gets the length and the height of each.
 std::vector<uint8_t> find_walls(const std::vector<Vec3>& points, std::vector<DVec2>& walls,
                                 const Progress* progress);
 

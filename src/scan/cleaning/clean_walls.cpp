@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
+#include "geometry/bounds.h"
 #include "geometry/cell_grid.h"
 #include "geometry/covariance.h"
 #include "geometry/groups.h"
@@ -11,6 +13,7 @@
 #include "geometry/random.h"
 #include "scan/check_shape.h"
 #include "scan/cleaning/clean_steps.h"
+#include "scan/cleaning/samples.h"
 #include "scan/robust.h"
 
 namespace treerec {
@@ -23,6 +26,8 @@ constexpr double kSquare =
     0.0125;  // one point of each cube so wide tries planes: wide things count, dense don't
 constexpr double kLeastLong = 0.2;  // sides of a wall,
 constexpr double kLeastShort = 0.08;
+constexpr double kTouching = 0.025;  // what hangs on a wall: a gap in it, or between it and the wall,
+constexpr double kHangsOut = 0.15;   // and how far it reaches out
 constexpr double kThinnest = 0.001;  // what lies so far off it is of the wall, however even that is
 // Others.
 constexpr int kTrials = 500;
@@ -168,6 +173,9 @@ struct Wall {
     std::vector<uint32_t> points;
     double length = 0.0;
     double height = 0.0;
+    Plane plane;
+    Bounds bounds;  // of its points
+    double thick = 0.0;
 };
 
 // Which of the points are of the wall in that plane; none where there is none. left: ascending.
@@ -219,6 +227,8 @@ std::optional<Wall> wall_in(Plane plane, const std::vector<Vec3>& points, const 
     Wall wall;
     wall.length = span.x * cells.size;
     wall.height = span.y * cells.size;
+    wall.plane = plane;
+    wall.thick = thick;
     for (const uint32_t i : left) {
         if (std::abs(plane.off(points[i])) > thick) continue;
         // Beyond the cells, what is nearest to an edge of the wall counts as well.
@@ -227,9 +237,44 @@ std::optional<Wall> wall_in(Plane plane, const std::vector<Vec3>& points, const 
         if (u < -1.0 || v < -1.0 || u > cells.width + 1.0 || v > cells.height + 1.0) continue;
         const int x = std::clamp(static_cast<int>(u), 0, cells.width - 1);
         const int y = std::clamp(static_cast<int>(v), 0, cells.height - 1);
-        if (wide[static_cast<size_t>(y * cells.width + x)]) wall.points.push_back(i);
+        if (!wide[static_cast<size_t>(y * cells.width + x)]) continue;
+        wall.points.push_back(i);
+        wall.bounds.add(DVec3(points[i]));
     }
     return wall;
+}
+
+// Marks what hangs on the walls: sills, lamps, pipes. It touches nothing else, and does not reach far out.
+void find_hangings(const std::vector<Vec3>& points, const std::vector<uint32_t>& left,
+                   const std::vector<Wall>& walls, double extent, const std::array<Range, 3>& ranges,
+                   std::vector<uint8_t>& goes, const Progress* progress) {
+    std::vector<Vec3> rest;
+    for (const uint32_t i : left)
+        rest.push_back(points[i]);
+    if (rest.empty()) return;
+    const double cell = kTouching * extent;
+    const std::vector<uint32_t> label = connected_components(rest, ranges, cell, progress);
+    std::vector<size_t> size(*std::max_element(label.begin(), label.end()) + size_t{1});
+    for (const uint32_t l : label)
+        size[l]++;
+    const auto tree = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    for (const Wall& wall : walls) {
+        std::vector<double> nearest(size.size(), std::numeric_limits<double>::max());
+        std::vector<double> farthest(size.size(), 0.0);
+        for (size_t k = 0; k < rest.size(); k++) {
+            const DVec3 p(rest[k]);
+            const double off = std::abs(wall.plane.off(rest[k]));
+            const DVec3 beyond = glm::max(wall.bounds.min - p, p - wall.bounds.max);
+            const bool before = std::max({beyond.x, beyond.y, beyond.z}) < kHangsOut * extent;
+            nearest[label[k]] = std::min(nearest[label[k]], off);
+            farthest[label[k]] =
+                before ? std::max(farthest[label[k]], off) : std::numeric_limits<double>::max();
+        }
+        for (size_t k = 0; k < rest.size(); k++)
+            if (label[k] != tree && nearest[label[k]] < wall.thick + cell &&
+                farthest[label[k]] < kHangsOut * extent)
+                goes[left[k]] = 1;
+    }
 }
 
 }  // namespace
@@ -245,6 +290,7 @@ std::vector<uint8_t> find_walls(const std::vector<Vec3>& points, std::vector<DVe
     const CellGrid grid(points, {{ranges[0].low, ranges[1].low, ranges[2].low}, kSquare * extent}, progress);
     std::vector<uint32_t> left(points.size());
     std::iota(left.begin(), left.end(), 0U);
+    std::vector<Wall> found;
     Random random(1);
     for (;;) {
         if (progress) progress->check();
@@ -262,12 +308,13 @@ std::vector<uint8_t> find_walls(const std::vector<Vec3>& points, std::vector<DVe
         for (const uint32_t i : tried)
             near += std::abs(plane.off(points[i])) <= kNear * extent;
         if (static_cast<double>(near) < kLeastShare * static_cast<double>(tried.size())) break;
-        const std::optional<Wall> wall = wall_in(plane, points, left, extent);
+        std::optional<Wall> wall = wall_in(plane, points, left, extent);
         if (!wall) break;
         walls.emplace_back(wall->length, wall->height);
         for (const uint32_t i : wall->points)
             goes[i] = 1;
         std::erase_if(left, [&](uint32_t i) { return goes[i] != 0; });
+        found.push_back(std::move(*wall));
         if (walls.size() > kMostWalls) break;
     }
     std::vector<Vec3> rest;
@@ -280,6 +327,8 @@ std::vector<uint8_t> find_walls(const std::vector<Vec3>& points, std::vector<DVe
     if (no_tree) {
         walls.clear();
         goes.assign(points.size(), 0);
+    } else if (!found.empty()) {
+        find_hangings(points, left, found, extent, ranges, goes, progress);
     }
     return goes;
 }

@@ -8,8 +8,8 @@
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "scan/cleaning/samples.h"
-#include "scan/stems/round_stems.h"
 #include "scan/stems/separate_trees.h"
+#include "scan/stems/stem_rules.h"
 
 namespace treerec {
 
@@ -21,36 +21,22 @@ constexpr double kLookedAt = 0.48;     // up to here
 constexpr double kLatestStart = 0.05;  // a stem starts below this
 constexpr double kLatestStartInThicket = 0.22;
 constexpr double kLatestStartInAir = 0.04;
-constexpr double kShortest = 0.18;    // a stem goes up for this long
-constexpr double kWidest = 0.03;      // root mean square radius of a stem
-constexpr double kCore = 0.01;        // across the densest spot
-constexpr double kThicket = 0.05;     // what is wider is no trunk of which a limb could be part
-constexpr double kClosest = 0.05;     // between the feet of two trees
-constexpr double kHighestFork = 0.6;  // where a limb that touches the ground meets its trunk
+constexpr double kShortest = 0.18;  // a stem goes up for this long
+constexpr double kStraight = 0.14;  // of it is taken for straight
+constexpr double kWidest = 0.03;    // root mean square radius of a stem
+constexpr double kCore = 0.01;      // across the densest spot
+constexpr double kThicket = 0.05;   // what is wider is no trunk of which a limb could be part
 constexpr double kClosestInThicket = 0.1;
-constexpr double kClosestMetres = 0.6;
 // Others.
 constexpr double kLeastFilled = 0.6;  // share of a stem's slices in which it is seen
 constexpr double kLeastFilledInBranches = 0.8;
-constexpr double kSteepest = 0.6;       // run over rise, from slice to slice
-constexpr double kMostLean = 0.45;      // the same of a whole stem
-constexpr double kThinnest = 0.25;      // of a thick stem's radius
+constexpr double kSteepest = 1.0;       // run over rise, from slice to slice
 constexpr double kThinnestInAir = 0.4;  // where no ground tells what stands on it
 constexpr double kCoreContrast = 4.0;   // how much denser it is than the rest
 constexpr size_t kFewestPoints = 4;     // of a slice
 constexpr double kRoundSpread = 0.08;   // of its radius: how far half of the points lie off round bark,
 constexpr double kRoundCoverage = 0.8;  // seen from all sides,
 constexpr double kRoundInside = 0.05;   // and the share of the points within
-
-// The searches for round bark in a plot: between needles, and by a mobile scanner.
-constexpr std::array<RoundStemSearch, 2> kRoundSearches{{{}, kRoughBark}};
-constexpr size_t kFewestRound = 16;
-constexpr double kAlike = 0.1;      // of the thicker stem's radius: two culms, or a bundle and one
-constexpr double kRoundUpTo = 0.5;  // of the height
-constexpr size_t kMostRound = 200;
-constexpr double kStemRoom = 15.0;          // square metres of a plot for each of them
-constexpr double kApartRadii = 2.0;         // of both stems: between two that stand from the ground up
-constexpr double kStandsRoundBelow = 0.06;  // of the height: where the bark of such a stem begins
 
 struct Cluster {
     DVec2 centre{0.0};
@@ -215,13 +201,17 @@ std::vector<Track> follow_up(const std::vector<std::vector<Cluster>>& slices, do
     return tracks;
 }
 
-// A least-squares line through the slices, down to where the stem starts; false where it leans too much.
+// A least-squares line through the lowest slices, down to where the stem starts; false where it leans too
+// much. Further up, the slices may hold others' branches, and lead into them.
 bool find_foot(const Track& track, const std::vector<Vec3>& points, Stem& stem) {
     DVec3 mean(0.0);
     std::vector<DVec3> centres;
     double squares = 0.0;
     double base = std::numeric_limits<double>::max();
+    const size_t last = track.clusters.front()->slice + static_cast<size_t>(kSeed / kSlice);
+    const size_t straight = track.clusters.front()->slice + static_cast<size_t>(kStraight / kSlice);
     for (const Cluster* cluster : track.clusters) {
+        if (cluster->slice > straight && centres.size() > 2) break;
         double y = 0.0;
         for (const uint32_t i : cluster->points) {
             y += points[i].y;
@@ -230,7 +220,8 @@ bool find_foot(const Track& track, const std::vector<Vec3>& points, Stem& stem) 
         y /= static_cast<double>(cluster->points.size());
         centres.emplace_back(cluster->centre.x, y, cluster->centre.y);
         mean += centres.back();
-        stem.seed.insert(stem.seed.end(), cluster->points.begin(), cluster->points.end());
+        if (cluster->slice <= last)
+            stem.seed.insert(stem.seed.end(), cluster->points.begin(), cluster->points.end());
     }
     const double n = static_cast<double>(centres.size());
     mean /= n;
@@ -243,7 +234,7 @@ bool find_foot(const Track& track, const std::vector<Vec3>& points, Stem& stem) 
     lean /= yy;
     if (glm::length(lean) > kMostLean) return false;
     stem.lean = lean;
-    const DVec2 at = DVec2(mean.x, mean.z) + (base - mean.y) * lean;
+    const DVec2 at = DVec2(centres[0].x, centres[0].z) + (base - centres[0].y) * lean;
     stem.foot = {at.x, base, at.y};
     // Across the axis: a slice of a leaning stem is drawn out.
     for (size_t k = 0; k < centres.size(); k++) {
@@ -257,72 +248,6 @@ bool find_foot(const Track& track, const std::vector<Vec3>& points, Stem& stem) 
     }
     stem.radius = std::sqrt(squares / n);
     return true;
-}
-
-// Whether the two axes come together below `highest` above the feet: a limb that leans on the ground.
-bool meet(const Stem& a, const Stem& b, double slack, double highest) {
-    const DVec2 apart(b.foot.x - a.foot.x, b.foot.z - a.foot.z);
-    const DVec2 at_foot = apart - (b.foot.y - a.foot.y) * b.lean;
-    const DVec2 drift = b.lean - a.lean;
-    const double speed = glm::dot(drift, drift);
-    const double height = speed > 1e-9 ? std::clamp(-glm::dot(at_foot, drift) / speed, 0.0, highest) : 0.0;
-    return glm::length(at_foot + height * drift) < 2.0 * (a.radius + b.radius) + slack;
-}
-
-// closest: what lies between the feet of two trees at least, as a share of the height.
-bool of_one_tree(const Stem& a, const Stem& b, double closest, double height) {
-    const double least =
-        std::max({3.0 * (a.radius + b.radius), closest * height, std::min(kClosestMetres, 0.15 * height)});
-    const DVec2 apart(b.foot.x - a.foot.x, b.foot.z - a.foot.z);
-    return glm::length(apart) < least || meet(a, b, 0.01 * height, kHighestFork * height);
-}
-
-void take_in(Stem& stem, const Stem& other) {
-    stem.seed.insert(stem.seed.end(), other.seed.begin(), other.seed.end());
-    stem.feet.insert(stem.feet.end(), other.feet.begin(), other.feet.end());
-}
-
-struct Barked {
-    Stem stem;
-    bool stands = false;  // seen from the ground up
-};
-
-// Thickest first. standing: the points, by their height above the ground.
-std::vector<Barked> find_barked(const std::vector<Vec3>& standing, const std::vector<Vec3>& points,
-                                double height, const Progress* progress) {
-    const std::array<Range, 3> ranges = robust_ranges(standing, progress);
-    const double room =
-        std::min(ranges[0].size() * ranges[2].size() / kStemRoom, static_cast<double>(kMostRound));
-    std::vector<Barked> found;
-    for (RoundStemSearch search : kRoundSearches) {
-        search.most = std::max(kFewestRound, static_cast<size_t>(room));
-        search.highest = kRoundUpTo;
-        for (const RoundStem& round : find_round_stems(standing, progress, search)) {
-            Barked barked;
-            Stem& stem = barked.stem;
-            const StemRing &low = round.front(), &high = round.back();
-            stem.lean = (high.centre - low.centre) / (high.y - low.y);
-            stem.radius = round[round.size() / 2].radius;
-            if (glm::length(stem.lean) > kMostLean) continue;
-            const DVec2 foot = low.centre - low.y * stem.lean;
-            const std::vector<uint8_t> on = points_on_stems(standing, {round});
-            double base = std::numeric_limits<double>::max();
-            for (uint32_t i = 0; i < points.size(); i++) {
-                if (!on[i]) continue;
-                stem.seed.push_back(i);
-                base = std::min<double>(base, points[i].y - standing[i].y);
-            }
-            stem.foot = {foot.x, base, foot.y};
-            barked.stands = low.y < kStandsRoundBelow * height;
-            found.push_back(std::move(barked));
-        }
-    }
-    if (found.empty()) return found;
-    std::stable_sort(found.begin(), found.end(),
-                     [](const Barked& a, const Barked& b) { return a.stem.radius > b.stem.radius; });
-    const double thick = found[found.size() / 4].stem.radius;
-    std::erase_if(found, [&](const Barked& b) { return b.stem.radius < kThinnest * thick; });
-    return found;
 }
 
 }  // namespace
@@ -364,7 +289,7 @@ std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<
     for (Candidate& c : found) {
         Stem* same = nullptr;
         for (Stem& stem : stems) {
-            if (of_one_tree(stem, c.stem, c.from_thicket ? kClosestInThicket : kClosest, height))
+            if (stand_together(stem, c.stem, c.from_thicket ? kClosestInThicket : kClosest, height))
                 same = &stem;
         }
         c.stem.feet.emplace_back(c.stem.foot.x, c.stem.foot.z);
@@ -375,68 +300,6 @@ std::vector<Stem> find_stems(const std::vector<Vec3>& points, const std::vector<
     }
     join_clumps(stems, height);
     return stems;
-}
-
-void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& above, double height,
-                     std::vector<Stem>& stems, const Progress* progress) {
-    std::vector<Vec3> standing(points);
-    for (size_t i = 0; i < points.size(); i++)
-        standing[i].y = above[i];
-    std::vector<Barked> found = find_barked(standing, points, height, progress);
-    if (found.empty()) return;
-    // Bark that goes up from the ground says more than what is dense there.
-    std::vector<Stem> all;
-    for (Barked& barked : found) {
-        if (!barked.stands) continue;
-        const auto same = std::find_if(all.begin(), all.end(), [&](const Stem& other) {
-            const DVec3 apart = other.foot - barked.stem.foot;
-            return glm::length(DVec2(apart.x, apart.z)) <
-                   std::max(kApartRadii * (other.radius + barked.stem.radius),
-                            std::min(kClosestMetres, 0.15 * height));
-        });
-        barked.stem.feet.emplace_back(barked.stem.foot.x, barked.stem.foot.z);
-        if (same == all.end())
-            all.push_back(std::move(barked.stem));
-        else
-            take_in(*same, barked.stem);
-    }
-    const std::vector<Stem> from_ground = all;
-    const auto known = [&](const std::vector<Stem>& others, const Stem& stem) {
-        return std::any_of(others.begin(), others.end(),
-                           [&](const Stem& other) { return of_one_tree(other, stem, kClosest, height); });
-    };
-    for (Stem& stem : stems) {
-        if (!all.empty()) stem.radius = std::min(stem.radius, all.front().radius);
-        if (!known(from_ground, stem)) all.push_back(std::move(stem));
-    }
-    for (Barked& barked : found) {
-        if (barked.stands || known(all, barked.stem)) continue;
-        barked.stem.feet.emplace_back(barked.stem.foot.x, barked.stem.foot.z);
-        all.push_back(std::move(barked.stem));
-    }
-    stems = std::move(all);
-    join_clumps(stems, height);
-}
-
-void join_clumps(std::vector<Stem>& stems, double height) {
-    const double least = std::min(kClosestMetres, 0.15 * height);
-    const auto chained = [&](const Stem& a, const Stem& b) {
-        if (std::min(a.radius, b.radius) < kAlike * std::max(a.radius, b.radius)) return false;
-        return std::any_of(a.feet.begin(), a.feet.end(), [&](const DVec2& foot) {
-            return std::any_of(b.feet.begin(), b.feet.end(),
-                               [&](const DVec2& other) { return glm::distance(foot, other) < least; });
-        });
-    };
-    for (size_t a = 0; a < stems.size(); a++)
-        for (size_t b = a + 1; b < stems.size();) {
-            if (!chained(stems[a], stems[b])) {
-                b++;
-                continue;
-            }
-            take_in(stems[a], stems[b]);
-            stems.erase(stems.begin() + static_cast<ptrdiff_t>(b));
-            b = a + 1;  // its feet may lead on to those that were too far away
-        }
 }
 
 std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<float>& above, double height,

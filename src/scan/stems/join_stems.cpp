@@ -8,14 +8,19 @@
 #include "geometry/groups.h"
 #include "geometry/point_tree.h"
 #include "scan/stems/separate_trees.h"
+#include "scan/stems/stem_rules.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kLook = 4.0;     // of a limb's thickness: how far it is looked along, to both sides
+constexpr double kHighestFork = 0.6;  // of the height: where a limb that touches the ground meets its trunk
+constexpr double kAlike = 0.1;        // of the thicker stem's radius: two culms, or a bundle and one
+constexpr double kLook = 4.0;         // of a limb's thickness: how far it is looked along, to both sides
 constexpr double kSlender = 2.0;  // variance along a limb over that across: of a ball it is .5, of a sheet 1
 constexpr double kThick = 0.5;    // of the thinner stem's radius: a limb that may bear it
+// Of the trunk's radius: as thick as its root or limb gets.
+constexpr double kMostAlike = 0.4;
 constexpr double kBothSides = 0.5;   // of the look: the limb goes on that far to either side
 constexpr double kReach = 2.5;       // voxels: what is no further away is beside, as the scan has gaps
 constexpr size_t kFewestAcross = 8;  // voxels where a limb is cut through
@@ -82,20 +87,58 @@ std::vector<Border> find_borders(const std::vector<Vec3>& centres, const PointTr
 
 }  // namespace
 
+bool stand_together(const Stem& a, const Stem& b, double closest, double height) {
+    const double least =
+        std::max({3.0 * (a.radius + b.radius), closest * height, std::min(kClosestMetres, 0.15 * height)});
+    return glm::length(DVec2(b.foot.x - a.foot.x, b.foot.z - a.foot.z)) < least;
+}
+
+bool lean_together(const Stem& a, const Stem& b, double height) {
+    const DVec2 apart(b.foot.x - a.foot.x, b.foot.z - a.foot.z);
+    const DVec2 at_foot = apart - (b.foot.y - a.foot.y) * b.lean;
+    const DVec2 drift = b.lean - a.lean;
+    const double speed = glm::dot(drift, drift);
+    const double at =
+        speed > 1e-9 ? std::clamp(-glm::dot(at_foot, drift) / speed, 0.0, kHighestFork * height) : 0.0;
+    return glm::length(at_foot + at * drift) < 2.0 * (a.radius + b.radius) + 0.01 * height;
+}
+
+void take_in(Stem& stem, const Stem& other) {
+    stem.seed.insert(stem.seed.end(), other.seed.begin(), other.seed.end());
+    stem.feet.insert(stem.feet.end(), other.feet.begin(), other.feet.end());
+}
+
+void join_clumps(std::vector<Stem>& stems, double height) {
+    const double least = std::min(kClosestMetres, 0.15 * height);
+    const auto chained = [&](const Stem& a, const Stem& b) {
+        if (std::min(a.radius, b.radius) < kAlike * std::max(a.radius, b.radius)) return false;
+        return std::any_of(a.feet.begin(), a.feet.end(), [&](const DVec2& foot) {
+            return std::any_of(b.feet.begin(), b.feet.end(),
+                               [&](const DVec2& other) { return glm::distance(foot, other) < least; });
+        });
+    };
+    for (size_t a = 0; a < stems.size(); a++)
+        for (size_t b = a + 1; b < stems.size();) {
+            if (!chained(stems[a], stems[b])) {
+                b++;
+                continue;
+            }
+            take_in(stems[a], stems[b]);
+            stems.erase(stems.begin() + static_cast<ptrdiff_t>(b));
+            b = a + 1;  // its feet may lead on to those that were too far away
+        }
+}
+
 std::vector<uint32_t> joined_by_wood(const std::vector<Stem>& stems, const std::vector<Vec3>& centres,
                                      const std::vector<uint32_t>& tree, double voxel,
                                      const Progress* progress) {
-    // Numbered from the thickest, so that a group's name is its thickest stem.
     std::vector<uint32_t> by_radius(stems.size());
     for (uint32_t s = 0; s < stems.size(); s++)
         by_radius[s] = s;
     std::stable_sort(by_radius.begin(), by_radius.end(),
                      [&](uint32_t a, uint32_t b) { return stems[a].radius > stems[b].radius; });
-    std::vector<uint32_t> rank(stems.size());
-    for (uint32_t r = 0; r < by_radius.size(); r++)
-        rank[by_radius[r]] = r;
     const PointTree places(centres, progress);
-    Groups trees(stems.size());
+    std::vector<std::vector<uint32_t>> leads_to(stems.size());
     for (const Border& border : find_borders(centres, places, tree, kReach * voxel, progress)) {
         if (progress) progress->check();
         const double thinner = std::min(stems[border.a].radius, stems[border.b].radius);
@@ -130,12 +173,26 @@ std::vector<uint32_t> joined_by_wood(const std::vector<Stem>& stems, const std::
             behind = std::max(behind, -t);
         }
         if (along > kSlender * across && std::sqrt(across) > kThick * thinner &&
-            std::min(ahead, behind) > kBothSides * look)
-            trees.join(rank[border.a], rank[border.b]);
+            std::min(ahead, behind) > kBothSides * look) {
+            leads_to[border.a].push_back(border.b);
+            leads_to[border.b].push_back(border.a);
+        }
     }
-    std::vector<uint32_t> joined(stems.size());
-    for (uint32_t s = 0; s < stems.size(); s++)
-        joined[s] = by_radius[trees.find(rank[s])];
+    // From the thickest on: what is reached by way of roots alone.
+    std::vector<uint32_t> joined(stems.size(), Separation::kNone);
+    for (const uint32_t trunk : by_radius) {
+        if (joined[trunk] != Separation::kNone) continue;
+        joined[trunk] = trunk;
+        std::vector<uint32_t> members{trunk};
+        for (size_t m = 0; m < members.size(); m++)
+            for (const uint32_t other : leads_to[members[m]]) {
+                if (joined[other] != Separation::kNone ||
+                    stems[other].radius > kMostAlike * stems[trunk].radius)
+                    continue;
+                joined[other] = trunk;
+                members.push_back(other);
+            }
+    }
     return joined;
 }
 

@@ -24,10 +24,9 @@ constexpr double kThinnest = 1.0 / 500.0;
 constexpr double kLatestStart = 0.4;
 constexpr double kShortest = 0.12;
 // The search for circles.
-constexpr size_t kFewest = 12;       // points of a slice
-constexpr size_t kMostPoints = 200;  // that are looked at, per stem
-constexpr int kTrials = 16;          // circles per point that they are tried through
-constexpr size_t kKept = 2;          // circles of a slice, per stem
+constexpr size_t kFewest = 12;  // points of a slice
+constexpr int kTrials = 16;     // circles per point that they are tried through
+constexpr size_t kKept = 2;     // circles of a slice, per stem
 constexpr size_t kSeedsPerCheck = 256;
 constexpr double kRow = 4.0;       // times the widest stem's radius: the depth of a row
 constexpr double kCorners = 1.42;  // a circle about a square reaches so much further than it
@@ -387,7 +386,7 @@ std::vector<RoundStem> find_round_stems(const std::vector<Vec3>& points, const P
             if (slices[i].y > low + search.highest * height) continue;
             std::vector<DVec2>& own = members[i];
             // Evenly from all sides: the points are in the order of cells.
-            const size_t every = own.size() / (kMostPoints * search.most) + 1;
+            const size_t every = own.size() / (search.points * search.most) + 1;
             for (size_t k = 0; k * every < own.size(); k++)
                 own[k] = own[k * every];
             own.resize((own.size() + every - 1) / every);

@@ -24,11 +24,13 @@ struct RoundStemSearch {
     double slice = 0.25;   // metres: a slice is no thicker
     double rough = 0.006;  // metres: how far the points lie off the bark, besides a share of its radius
     size_t seeds = 50;     // per stem and slice: points that circles are tried through
+    size_t points = 200;   // per stem and slice: what is looked at of them, evenly
     double highest = 1.0;  // share of the height that is looked at
 };
 
-// Mobile scanners are out by a centimetre or two, and see a stem by few points.
-inline constexpr RoundStemSearch kRoughBark{.slice = 0.5, .rough = 0.015, .seeds = 150};
+// Mobile scanners are out by a centimetre or two, and see a stem by few points: among many leaves, few of
+// these few would be left if a thick slice were thinned as a thin one.
+inline constexpr RoundStemSearch kRoughBark{.slice = 0.5, .rough = 0.015, .seeds = 150, .points = 500};
 
 // Circles through the arcs of bark that a scanner sees between the leaves, one slice after another
 // (as Olofsson et al. 2014, "Tree stem and height measurements using terrestrial laser scanning and the

@@ -16,16 +16,19 @@ namespace treerec {
 namespace {
 
 constexpr double kVoxel = 0.006;       // of the height
-constexpr double kSideways = 2.0;      // what a metre sideways costs more than one upwards
+constexpr size_t kNeighbours = 8;      // of a voxel
+constexpr double kTurn = 8.0;          // what a step costs more by one less the cosine that it turns by
+constexpr double kMemory = 0.02;       // of the height: so long a path remembers the way that it came
 constexpr double kWidestCrown = 0.45;  // of the height: further from its foot nothing belongs to a tree
 constexpr double kLowTop = 0.4;        // of the height: what stands on the ground and ends below is clutter
 constexpr double kStands = 0.04;       // of the height: above the ground
 constexpr double kLeastTree = 0.25;    // of the height: lower ones are clutter
 constexpr double kLeastInBranches = 0.6;  // the same, of what has low branches all around its stem
 constexpr double kLeastShare = 0.02;      // of the largest tree's voxels, likewise
+constexpr double kLowest = 0.0005;        // of the points: dust below all feet
 constexpr double kFarWider = 2.5;         // than high: where tops count instead of stems
 
-// The occupied voxels, and which touch.
+// The means of the occupied voxels, and which are near to each other.
 struct Voxels {
     Voxels(const std::vector<Vec3>& points, double size, const Progress* progress)
         : grid(points, layout_for(points, size, progress), progress), centre(grid.size()) {
@@ -35,17 +38,26 @@ struct Voxels {
                 sum += DVec3(points[i]);
             centre[c] = Vec3(sum / static_cast<double>(grid.in_cell(c).size()));
         }
-        begin.assign(grid.size() + 1, 0);
-        grid.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
-            begin[c + 1] += static_cast<uint32_t>(last - first);
-        });
+        // Each and its nearest ones, to both sides: what touches leads on, and gaps are bridged.
+        if (centre.size() <= kNeighbours) {
+            begin.assign(centre.size() + 1, 0);
+            return;
+        }
+        const std::vector<uint32_t> nearest =
+            PointTree(centre, progress).nearest_of_all(kNeighbours, progress ? *progress : Progress());
+        begin.assign(centre.size() + 1, 0);
+        for (size_t k = 0; k < nearest.size(); k++) {
+            begin[k / kNeighbours + 1]++;
+            begin[nearest[k] + 1]++;
+        }
         std::partial_sum(begin.begin(), begin.end(), begin.begin());
         neighbour.resize(begin.back());
         std::vector<uint32_t> at(begin.begin(), begin.end() - 1);
-        grid.for_neighbour_runs([&](size_t c, size_t first, size_t last) {
-            for (size_t other = first; other < last; other++)
-                neighbour[at[c]++] = static_cast<uint32_t>(other);
-        });
+        for (size_t k = 0; k < nearest.size(); k++) {
+            const auto c = static_cast<uint32_t>(k / kNeighbours);
+            neighbour[at[c]++] = nearest[k];
+            neighbour[at[nearest[k]]++] = c;
+        }
     }
 
     static CellLayout layout_for(const std::vector<Vec3>& points, double size, const Progress* progress) {
@@ -55,55 +67,60 @@ struct Voxels {
 
     CellGrid grid;
     std::vector<Vec3> centre;
-    std::vector<uint32_t> begin;  // of each voxel's neighbours, itself among them
+    std::vector<uint32_t> begin;  // of each voxel's neighbours; those near to each other stand there twice
     std::vector<uint32_t> neighbour;
 };
 
-// Dijkstra's shortest paths from all stems at once; ties go to the voxel of the smaller index.
+// Dijkstra's shortest paths from all stems at once; ties go to the voxel of the smaller index. A step costs
+// the third power of its length, so that a path follows wood or a spray of leaves and jumps from crown to
+// crown only where nothing else leads on; and the more the further it turns off the way that the path came,
+// as branches cross. All trees are scaled alike by that.
+// down: the seeds are tops.
 std::vector<uint32_t> grow(const Voxels& voxels, const std::vector<Vec3>& points,
-                           const std::vector<Stem>& stems, double height, const Progress* progress) {
+                           const std::vector<Stem>& stems, double height, bool down,
+                           const Progress* progress) {
     std::vector<uint32_t> tree(voxels.centre.size(), Separation::kNone);
     std::vector<float> cost(voxels.centre.size(), std::numeric_limits<float>::max());
+    std::vector<Vec3> way(voxels.centre.size(), Vec3(0.0F));  // that the path came, of late
     using Entry = std::pair<float, uint32_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
     for (size_t s = 0; s < stems.size(); s++) {
+        const DVec2& lean = stems[s].lean;
+        const DVec3 up(glm::normalize(DVec3(lean.x, 1.0, lean.y)));
         for (const uint32_t i : stems[s].seed) {
             const uint64_t key = voxels.grid.layout.key(points[i]);
             const auto [c, next] = voxels.grid.cells_between(key, key);
-            if (cost[c] == 0.0F || c == next) continue;
+            if (c == next || cost[c] == 0.0F) continue;
             cost[c] = 0.0F;
             tree[c] = static_cast<uint32_t>(s);
+            way[c] = Vec3(down ? -up : up);
             open.emplace(0.0F, static_cast<uint32_t>(c));
         }
     }
-    // The thicker stem has the larger crown, by the 2/3 power of its diameter (West, Brown and Enquist 1999).
-    double thickest = 0.0;
-    for (const Stem& stem : stems)
-        thickest = std::max(thickest, stem.radius);
-    std::vector<float> slowness;
-    for (const Stem& stem : stems)
-        slowness.push_back(thickest > 0.0 ? static_cast<float>(portable::pow(
-                                                thickest / std::max(stem.radius, 0.05 * thickest), 2.0 / 3.0))
-                                          : 1.0F);
-    const float widest = static_cast<float>(kWidestCrown * height);
+    const double widest = kWidestCrown * height;
+    const auto memory = static_cast<float>(kMemory * height);
     size_t steps = 0;
     while (!open.empty()) {
         const auto [reached, c] = open.top();
         open.pop();
         if (progress && (++steps & 0xFFFF) == 0) progress->check();
         if (reached > cost[c]) continue;
-        const DVec3& foot = stems[tree[c]].foot;
+        const Stem& stem = stems[tree[c]];
         for (uint32_t n = voxels.begin[c]; n < voxels.begin[c + 1]; n++) {
             const uint32_t other = voxels.neighbour[n];
-            const Vec3 way = voxels.centre[other] - voxels.centre[c];
-            const float side = static_cast<float>(kSideways) * portable::hypot(way.x, way.z);
-            const float total = reached + slowness[tree[c]] * std::sqrt(way.y * way.y + side * side);
+            if (reached >= cost[other]) continue;
+            const Vec3 step = voxels.centre[other] - voxels.centre[c];
+            const float length = glm::length(step);
+            const float turn = length - glm::dot(step, way[c]);
+            const float total = reached + length * length * (length + static_cast<float>(kTurn) * turn);
             if (total >= cost[other]) continue;
-            if (portable::hypot(voxels.centre[other].x - static_cast<float>(foot.x),
-                                voxels.centre[other].z - static_cast<float>(foot.z)) > widest)
-                continue;
+            const DVec3 at = DVec3(voxels.centre[other]) - stem.foot;
+            if (glm::length(DVec2(at.x, at.z) - at.y * stem.lean) > widest) continue;
             cost[other] = total;
             tree[other] = tree[c];
+            const float kept = memory / (memory + length);
+            way[other] =
+                Vec3(normalized_or(DVec3(kept * way[c] + (1.0F - kept) / length * step), DVec3(way[c])));
             open.emplace(total, other);
         }
     }
@@ -188,10 +205,14 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
                           const Progress* progress) {
     Separation result;
     if (points.size() < 200) return result;
-    const std::array<Range, 3> ranges = robust_ranges(points, progress);
+    std::vector<float> levels;
+    for (const Vec3& p : points)
+        levels.push_back(p.y);
+    // Dust below the feet is no matter.
+    const double low = quantile(levels, kLowest);
     std::vector<float> above(points.size());
     for (size_t i = 0; i < points.size(); i++)
-        above[i] = static_cast<float>(ground.found ? ground.above(points[i]) : points[i].y - ranges[1].low);
+        above[i] = static_cast<float>(ground.found ? ground.above(points[i]) : points[i].y - low);
     std::vector<float> heights = above;
     const double height = quantile(heights, 0.999);
     if (!(height > 0.0)) return result;
@@ -217,7 +238,7 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
     std::vector<uint32_t> tree;
     std::vector<Size> sizes;
     for (;;) {
-        tree = grow(voxels, points, stems, height, progress);
+        tree = grow(voxels, points, stems, height, by_tops, progress);
         take_in_the_rest(voxels, low_above, height, ground.found && !by_tops, tree, progress);
         sizes = measure_trees(tree, low_above, stems.size());
         const double least = kLeastShare * static_cast<double>(sizes.front().voxels);
@@ -227,6 +248,12 @@ Separation separate_trees(const std::vector<Vec3>& points, const Ground& ground,
             stays[s.stem] =
                 static_cast<double>(s.top) >= lowest * height && static_cast<double>(s.voxels) >= least;
         }
+        // Bark is looked at again when what shows none has gone.
+        bool doubtful = false;
+        for (size_t s = 0; s < stems.size(); s++)
+            doubtful = doubtful || (!stays[s] && !stems[s].bark);
+        for (size_t s = 0; doubtful && s < stems.size(); s++)
+            stays[s] = stays[s] || stems[s].bark;
         // What was no tree belongs to the trees around it.
         size_t kept = 0;
         for (size_t s = 0; s < stems.size(); s++) {

@@ -13,11 +13,11 @@ namespace {
 constexpr double kStretch = 12.0;     // radii: so far down a measured stretch is continued
 constexpr double kBentEnd = 4.0;      // radii: so near to the root, a circle is drawn towards it
 constexpr double kSample = 6.0;       // radii: the length of stem that tells the direction
-constexpr double kBaseStretch = 6.0;  // radii: so far down a limb's measured stretch is continued
+constexpr double kBaseStretch = 6.0;  // radii: so far down a branch's measured stretch is continued
 constexpr double kBaseSkip = 1.0;     // radii: so long, the first circles are still bent
 constexpr double kBaseFar = 2.5;      // and at most so long, if they
 constexpr double kBaseBend = 0.3;     // radii bend away
-constexpr double kBaseSample = 5.0;   // radii: the length of limb that tells the direction
+constexpr double kBaseSample = 5.0;   // radii: the length of branch that tells the direction
 constexpr double kLeastSample = 1.5;  // radii
 constexpr double kBaseMove = 4.0;     // radii that a station may move
 constexpr double kAround = 4.0;       // parent's radii to each side, where the fork may be
@@ -37,29 +37,29 @@ void straighten(std::vector<Station>& line, size_t first) {
            glm::distance(line[from].position, line[to].position) < kSample * line[from].radius)
         to++;
     if (to == from) return;
-    const DVec3 foot = line[from].position;
-    const DVec3 up = normalized_or(line[to].position - foot, DVec3(0, 1, 0));
+    const DVec3 base = line[from].position;
+    const DVec3 up = normalized_or(line[to].position - base, DVec3(0, 1, 0));
     double below = 0.0;
     for (size_t i = from; i-- > first;) {
-        below = std::max(below, glm::dot(foot - line[i].position, up));
-        line[i].position = foot - below * up;
+        below = std::max(below, glm::dot(base - line[i].position, up));
+        line[i].position = base - below * up;
         line[i].radius = line[from].radius;
     }
 }
 
-// Where the line from `foot` along `back` comes nearest to the parent's axis.
+// Where the line from `base` along `back` comes nearest to the parent's axis.
 struct Meeting {
     int32_t station = -1;
     double miss = 0.0;  // metres
-    double way = 0.0;   // metres from `foot`
+    double way = 0.0;   // metres from `base`
 };
 
-Meeting meet(const DVec3& foot, const DVec3& back, const std::vector<Station>& parent, int32_t attach) {
+Meeting meet(const DVec3& base, const DVec3& back, const std::vector<Station>& parent, int32_t attach) {
     const double reach = kAround * parent[attach].radius;
     const int32_t last = static_cast<int32_t>(parent.size()) - 1;
     Meeting best;
     auto look = [&](int32_t j) {
-        const DVec3 offset = parent[j].position - foot;
+        const DVec3 offset = parent[j].position - base;
         const double way = std::max(0.0, glm::dot(offset, back));
         const double miss = glm::length(offset - way * back);
         if (best.station < 0 || miss < best.miss) best = {j, miss, way};
@@ -80,8 +80,9 @@ Meeting meet(const DVec3& foot, const DVec3& back, const std::vector<Station>& p
     return best;
 }
 
-// Lays the first stations of a limb on the line of its first measured stretch.
-void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<Limb>& limbs,
+// Lays the first stations of a branch on the line of its first measured stretch.
+void straighten_base(SkeletonBranch& branch, std::vector<Station>& line,
+                     const std::vector<SkeletonBranch>& branches,
                      const std::vector<std::vector<Station>>& axes) {
     const size_t count = line.size();
     size_t first = 0;
@@ -120,18 +121,18 @@ void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<L
     }
     if (!is_long(from, to)) return;
     const double radius = line[from].radius;
-    const DVec3 foot = line[from].position;
-    const DVec3 back = normalized_or(foot - line[to].position, DVec3(0, -1, 0));
-    int32_t origin = limb.parent;
-    Meeting meeting = meet(foot, back, axes[origin], limb.attach);
+    const DVec3 base = line[from].position;
+    const DVec3 back = normalized_or(base - line[to].position, DVec3(0, -1, 0));
+    int32_t origin = branch.parent;
+    Meeting meeting = meet(base, back, axes[origin], branch.attach);
     const auto misses = [&] {
         return meeting.miss > kMiss * std::max(axes[origin][meeting.station].radius, radius) ||
                meeting.way <= 0.0;
     };
-    // Of limbs that leave a fork together, one may hang on another's base.
-    while (misses() && meeting.station == 0 && limbs[origin].parent >= 0) {
-        meeting = meet(foot, back, axes[limbs[origin].parent], limbs[origin].attach);
-        origin = limbs[origin].parent;
+    // Of branches that leave a fork together, one may hang on another's base.
+    while (misses() && meeting.station == 0 && branches[origin].parent >= 0) {
+        meeting = meet(base, back, axes[branches[origin].parent], branches[origin].attach);
+        origin = branches[origin].parent;
     }
     if (misses()) return;
     const std::vector<Station>& parent = axes[origin];
@@ -151,34 +152,34 @@ void straighten_base(Limb& limb, std::vector<Station>& line, const std::vector<L
     std::vector<DVec3> place(from);
     double way = 0.0;
     for (size_t i = from; i-- > 0;) {
-        way = std::max(way, std::min(glm::dot(line[i].position - foot, back), end));
-        place[i] = foot + way * back;
+        way = std::max(way, std::min(glm::dot(line[i].position - base, back), end));
+        place[i] = base + way * back;
         if (glm::distance(place[i], line[i].position) > kBaseMove * radius) return;
     }
     if (from == 0) return;
-    if (end > way) place[0] = foot + end * back;
+    if (end > way) place[0] = base + end * back;
     for (size_t i = 0; i < from; i++)
         line[i].position = place[i];
-    limb.parent = origin;
-    limb.attach = meeting.station;
+    branch.parent = origin;
+    branch.attach = meeting.station;
 }
 
 }  // namespace
 
-void straighten_stems(const std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes) {
+void straighten_stems(const std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes) {
     bool several = false;
-    for (const Limb& limb : limbs)
-        several = several || (limb.parent == 0 && limb.attach == 0);
+    for (const SkeletonBranch& branch : branches)
+        several = several || (branch.parent == 0 && branch.attach == 0);
     if (!several) return;
-    for (size_t l = 0; l < limbs.size(); l++)
-        if (limbs[l].parent < 0 || (limbs[l].parent == 0 && limbs[l].attach == 0))
-            straighten(axes[l], limbs[l].parent < 0 ? 1 : 0);
+    for (size_t l = 0; l < branches.size(); l++)
+        if (branches[l].parent < 0 || (branches[l].parent == 0 && branches[l].attach == 0))
+            straighten(axes[l], branches[l].parent < 0 ? 1 : 0);
 }
 
-void straighten_bases(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes) {
-    for (size_t l = 0; l < limbs.size(); l++)
-        if (limbs[l].parent > 0 || (limbs[l].parent == 0 && limbs[l].attach > 0))
-            straighten_base(limbs[l], axes[l], limbs, axes);
+void straighten_bases(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes) {
+    for (size_t l = 0; l < branches.size(); l++)
+        if (branches[l].parent > 0 || (branches[l].parent == 0 && branches[l].attach > 0))
+            straighten_base(branches[l], axes[l], branches, axes);
 }
 
 }  // namespace treerec

@@ -27,14 +27,14 @@ double recent_median(const std::vector<double>& values) {
     return recent[kReference / 2];
 }
 
-// The radii of one limb.
+// The radii of one branch.
 struct Belief {
     std::vector<double> radius;  // by station; 0 where unknown
     std::vector<double> limit;   // what wood below the station allows; 0 where unknown
 };
 
 // Wood does not grow thicker outward, so a circle much wider than those below it goes round several branches.
-// limit: at the limb's base, 0 where unknown.
+// limit: at the branch's base, 0 where unknown.
 Belief believed_radii(const std::vector<Station>& stations, double limit) {
     Belief belief;
     belief.limit.resize(stations.size());
@@ -99,14 +99,16 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
         const LocalScale trial = scaled(factor);
         const Slices slices = cut_slices(points, graph, trial, paths, root, progress);
         progress.check();
-        std::vector<Limb> limbs = find_limbs(slices, points, trial, options.limbs, progress);
+        std::vector<SkeletonBranch> branches =
+            branches_of_slices(slices, points, trial, options.branches, progress);
         const std::vector<std::vector<Station>> axes =
-            fit_axes(limbs, slices, points, trial, axis_options, progress);
-        std::vector<Belief> beliefs(limbs.size());
-        for (size_t l = 0; l < limbs.size(); l++) {
+            fit_axes(branches, slices, points, trial, axis_options, progress);
+        std::vector<Belief> beliefs(branches.size());
+        for (size_t l = 0; l < branches.size(); l++) {
             progress.check();
-            const int32_t parent = limbs[l].parent;
-            beliefs[l] = believed_radii(axes[l], parent < 0 ? 0.0 : beliefs[parent].limit[limbs[l].attach]);
+            const int32_t parent = branches[l].parent;
+            beliefs[l] =
+                believed_radii(axes[l], parent < 0 ? 0.0 : beliefs[parent].limit[branches[l].attach]);
             const std::vector<double>& radius = beliefs[l].radius;
             auto raise = [&](int32_t slice, size_t station) {
                 const double r = radius[station];
@@ -116,10 +118,10 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
                             kOnSurface * r + trial.spacing[v])
                         ring[v] = std::max(ring[v], static_cast<float>(kRingScale * r));
             };
-            for (size_t i = 0; i < limbs[l].slices.size(); i++)
-                raise(limbs[l].slices[i], i);
-            for (size_t a = 0; a < limbs[l].absorbed.size(); a++)
-                raise(limbs[l].absorbed[a], static_cast<size_t>(limbs[l].absorbed_at[a]));
+            for (size_t i = 0; i < branches[l].slices.size(); i++)
+                raise(branches[l].slices[i], i);
+            for (size_t a = 0; a < branches[l].absorbed.size(); a++)
+                raise(branches[l].absorbed[a], static_cast<size_t>(branches[l].absorbed_at[a]));
         }
     }
     LocalScale result = scaled(kFineScale);

@@ -6,7 +6,7 @@
 namespace treerec {
 
 struct ThicknessOptions {
-    LimbOptions limbs;
+    BranchOptions branches;
     AxisOptions axes;
 };
 

@@ -21,7 +21,7 @@ constexpr double kLeastCoverage = 0.5;  // of the circle's sectors
 constexpr double kMostSpread = 0.12;    // median residual over radius
 constexpr double kLeastArc = 0.31;      // the same for one that is seen from one side
 constexpr double kArcSpread = 0.03;
-constexpr size_t kArcPoints = 24;       // which is enough of a stem's foot if the radius'
+constexpr size_t kArcPoints = 24;       // which is enough of a stem's base if the radius'
 constexpr double kArcError = 0.12;      // standard error is so small a share of it
 constexpr double kMostInside = 0.08;    // share of points well inside: a crown, not a stem
 constexpr double kWideSpread = 0.09;    // the same for one that is wide for its tree: bark keeps to its
@@ -35,23 +35,23 @@ constexpr double kEndCut = 1.5;      // radii: so near to an end, no circle is w
 constexpr double kEndStretch = 3.0;  // radii: so far a fitted stretch is continued to an end
 constexpr int kSmoothings = 3;
 
-// One limb while its axis is fitted.
-class LimbFitter {
+// One branch while its axis is fitted.
+class BranchFitter {
   public:
-    LimbFitter(const Limb& limb, const Slices& slices, const std::vector<Vec3>& points,
-               const LocalScale& scale, const AxisOptions& options, uint64_t stream)
+    BranchFitter(const SkeletonBranch& branch, const Slices& slices, const std::vector<Vec3>& points,
+                 const LocalScale& scale, const AxisOptions& options, uint64_t stream)
         : slices_(slices),
           points_(points),
           options_(options),
           stream_(stream),
-          is_first_(limb.parent < 0),
-          count_(limb.slices.size()) {
-        collect(limb);
+          is_first_(branch.parent < 0),
+          count_(branch.slices.size()) {
+        collect(branch);
         start_.resize(count_);
         spacing_.assign(count_, 0.0);
         stations_.resize(count_);
         for (size_t i = 0; i < count_; i++) {
-            const int32_t slice = limb.slices[i];
+            const int32_t slice = branch.slices[i];
             start_[i] = slices.centre[slice];
             if (own_[i] > begin_[i]) {
                 DVec3 sum(0.0);
@@ -86,30 +86,30 @@ class LimbFitter {
 
   private:
     // The points of each station, those of absorbed side chains included.
-    void collect(const Limb& limb) {
+    void collect(const SkeletonBranch& branch) {
         begin_.assign(count_ + 1, 0);
         for (size_t i = 0; i < count_; i++)
-            begin_[i + 1] += slices_.points_of(limb.slices[i]).size();
-        for (size_t m = 0; m < limb.merged.size(); m++)
-            begin_[limb.merged_at[m] + 1] += slices_.points_of(limb.merged[m]).size();
-        for (size_t a = 0; a < limb.absorbed.size(); a++)
-            begin_[limb.absorbed_at[a] + 1] += slices_.points_of(limb.absorbed[a]).size();
+            begin_[i + 1] += slices_.points_of(branch.slices[i]).size();
+        for (size_t m = 0; m < branch.merged.size(); m++)
+            begin_[branch.merged_at[m] + 1] += slices_.points_of(branch.merged[m]).size();
+        for (size_t a = 0; a < branch.absorbed.size(); a++)
+            begin_[branch.absorbed_at[a] + 1] += slices_.points_of(branch.absorbed[a]).size();
         for (size_t i = 0; i < count_; i++)
             begin_[i + 1] += begin_[i];
         members_.resize(begin_[count_]);
         std::vector<size_t> fill(begin_.begin(), begin_.end() - 1);
         own_.resize(count_);
         for (size_t i = 0; i < count_; i++)
-            for (const uint32_t v : slices_.points_of(limb.slices[i]))
+            for (const uint32_t v : slices_.points_of(branch.slices[i]))
                 members_[fill[i]++] = v;
-        for (size_t m = 0; m < limb.merged.size(); m++)
-            for (const uint32_t v : slices_.points_of(limb.merged[m]))
-                members_[fill[limb.merged_at[m]]++] = v;
+        for (size_t m = 0; m < branch.merged.size(); m++)
+            for (const uint32_t v : slices_.points_of(branch.merged[m]))
+                members_[fill[branch.merged_at[m]]++] = v;
         for (size_t i = 0; i < count_; i++)
             own_[i] = fill[i];
-        for (size_t a = 0; a < limb.absorbed.size(); a++)
-            for (const uint32_t v : slices_.points_of(limb.absorbed[a]))
-                members_[fill[limb.absorbed_at[a]]++] = v;
+        for (size_t a = 0; a < branch.absorbed.size(); a++)
+            for (const uint32_t v : slices_.points_of(branch.absorbed[a]))
+                members_[fill[branch.absorbed_at[a]]++] = v;
     }
 
     void measure_arc() {
@@ -118,7 +118,7 @@ class LimbFitter {
             arc_[i] = arc_[i - 1] + glm::distance(stations_[i].position, stations_[i - 1].position);
     }
 
-    // The stations within `reach` of station i along the limb, as [first, last].
+    // The stations within `reach` of station i along the branch, as [first, last].
     std::pair<size_t, size_t> window(size_t i, double reach) const {
         size_t first = i;
         size_t last = i;
@@ -141,8 +141,8 @@ class LimbFitter {
         double reach = std::max(radius, 1.5 * spacing_[i]);
         auto [first, last] = window(i, reach);
         // Of a sparse stem, a longer piece tells what a short one cannot.
-        const bool stem_foot = is_first_ && arc_[i] <= kStemShare * arc_.back();
-        const bool stem = stem_foot && options_.long_windows && spacing_[i] > kSparseStem * radius;
+        const bool stem_base = is_first_ && arc_[i] <= kStemShare * arc_.back();
+        const bool stem = stem_base && options_.long_windows && spacing_[i] > kSparseStem * radius;
         const size_t wanted = stem ? kWantedOfStem : kWantedPoints;
         for (int grow = 0; grow < (stem ? 6 : 3) && begin_[last + 1] - begin_[first] < wanted; grow++) {
             reach *= 1.6;
@@ -177,7 +177,7 @@ class LimbFitter {
                 return circle;
             if (circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
             // Of a noisy stem that is seen from one side, many points tell what few cannot.
-            if (stem_foot && !wide && circle->coverage >= kLeastArc && spread <= kMostSpread &&
+            if (stem_base && !wide && circle->coverage >= kLeastArc && spread <= kMostSpread &&
                 flat.size() >= kArcPoints && circle->error <= kArcError * circle->radius)
                 return circle;
         }
@@ -288,7 +288,7 @@ class LimbFitter {
         }
     }
 
-    // The slices at the ends of a limb are cut off: half rings, whose centres lie beside the axis. So the
+    // The slices at the ends of a branch are cut off: half rings, whose centres lie beside the axis. So the
     // ends continue the nearest fitted stretch straight on, and a tip reaches as far as its points do.
     void finish_ends() {
         measure_arc();
@@ -356,17 +356,18 @@ class LimbFitter {
 
 }  // namespace
 
-void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<Station>& parent) {
-    const double radius = parent[limb.attach].radius;
+void move_attach(SkeletonBranch& branch, const std::vector<Station>& own,
+                 const std::vector<Station>& parent) {
+    const double radius = parent[branch.attach].radius;
     size_t ahead = 0;
     while (ahead + 1 < own.size() && glm::distance(own[ahead].position, own[0].position) < 2.0 * radius)
         ahead++;
     if (ahead == 0 || own[0].bridged) return;
     const DVec3 direction = normalized_or(own[ahead].position - own[0].position, DVec3(0.0));
-    const DVec3 from = parent[limb.attach].position;
+    const DVec3 from = parent[branch.attach].position;
     double best = -2.0;
-    int32_t best_station = limb.attach;
-    for (int32_t j = limb.attach; j >= 0 && glm::distance(parent[j].position, from) <= 3.0 * radius; j--) {
+    int32_t best_station = branch.attach;
+    for (int32_t j = branch.attach; j >= 0 && glm::distance(parent[j].position, from) <= 3.0 * radius; j--) {
         const double straight =
             glm::dot(normalized_or(own[0].position - parent[j].position, DVec3(0.0)), direction);
         if (straight > best + 1e-6) {
@@ -374,21 +375,21 @@ void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<
             best_station = j;
         }
     }
-    limb.attach = best_station;
+    branch.attach = best_station;
 }
 
-std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slices& slices,
+std::vector<std::vector<Station>> fit_axes(std::vector<SkeletonBranch>& branches, const Slices& slices,
                                            const std::vector<Vec3>& points, const LocalScale& scale,
                                            const AxisOptions& options, Progress& progress) {
-    std::vector<std::vector<Station>> axes(limbs.size());
-    parallel_for(limbs.size(), 4, [&](size_t begin, size_t end) {
+    std::vector<std::vector<Station>> axes(branches.size());
+    parallel_for(branches.size(), 4, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             progress.check();
-            axes[i] = LimbFitter(limbs[i], slices, points, scale, options, i).run();
+            axes[i] = BranchFitter(branches[i], slices, points, scale, options, i).run();
         }
     });
-    for (Limb& limb : limbs)
-        if (limb.parent >= 0) move_attach(limb, axes[&limb - limbs.data()], axes[limb.parent]);
+    for (SkeletonBranch& branch : branches)
+        if (branch.parent >= 0) move_attach(branch, axes[&branch - branches.data()], axes[branch.parent]);
     return axes;
 }
 

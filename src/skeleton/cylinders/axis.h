@@ -1,15 +1,15 @@
-// Moves the limbs from the bark into the wood and measures how thick it is.
+// Moves the branches from the bark into the wood and measures how thick it is.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "progress.h"
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 
 namespace treerec {
 
-// A station of a limb: where the axis passes a slice.
+// A station of a branch: where the axis passes a slice.
 struct Station {
     DVec3 position{0.0};
     double radius = 0.0;    // metres; 0 where no points told anything
@@ -27,16 +27,17 @@ struct AxisOptions {
     int rounds = 2;             // fit, then fit again across the better axis
 };
 
-// One list of stations per limb. The axis runs through the centres of circles fitted to the cross-sections
+// One list of stations per branch. The axis runs through the centres of circles fitted to the cross-sections
 // wherever the points surround it well enough (AdTree, Du et al. 2019, 2.4, fits cylinders to the trunk
 // alone), in between through the slices' centres moved by as much as their fitted neighbours, smoothed.
-// Also moves each limb's `attach` along its parent to where the limb, continued backwards, meets the axis.
-std::vector<std::vector<Station>> fit_axes(std::vector<Limb>& limbs, const Slices& slices,
+// Also moves each branch's `attach` along its parent to where the branch, continued backwards, meets the
+// axis.
+std::vector<std::vector<Station>> fit_axes(std::vector<SkeletonBranch>& branches, const Slices& slices,
                                            const std::vector<Vec3>& points, const LocalScale& scale,
                                            const AxisOptions& options, Progress& progress);
 
-// Moves the limb's `attach` back along its parent to where the limb, continued backwards, meets the axis most
-// nearly straight. own, parent: the stations of the limb and of its parent.
-void move_attach(Limb& limb, const std::vector<Station>& own, const std::vector<Station>& parent);
+// Moves the branch's `attach` back along its parent to where the branch, continued backwards, meets the axis
+// most nearly straight. own, parent: the stations of the branch and of its parent.
+void move_attach(SkeletonBranch& branch, const std::vector<Station>& own, const std::vector<Station>& parent);
 
 }  // namespace treerec

@@ -61,31 +61,33 @@ struct Bark::Nearest {
     }
     void look_at(uint32_t candidate) {
         const Piece& piece = bark.pieces_[candidate];
-        if (except != nullptr && (*except)[piece.limb] != 0) return;
+        if (except != nullptr && (*except)[piece.branch] != 0) return;
         double t;
         const double distance = std::sqrt(square_to_segment(p, piece.from, piece.to, t));
         const double radius = piece.from_radius + t * (piece.to_radius - piece.from_radius);
         const double outside = distance - radius;
         if (outside > best.outside()) return;
-        if (outside == best.outside() && (best.limb < 0 || candidate > index)) return;
-        best = {piece.limb, t < 0.5 ? piece.from_station : piece.to_station, distance, radius};
+        if (outside == best.outside() && (best.branch < 0 || candidate > index)) return;
+        best = {piece.branch, t < 0.5 ? piece.from_station : piece.to_station, distance, radius};
         index = candidate;
     }
 };
 
-Bark::Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes)
-    : limbs_(limbs), axes_(axes) {
+Bark::Bark(const std::vector<SkeletonBranch>& branches, const std::vector<std::vector<Station>>& axes)
+    : branches_(branches), axes_(axes) {
     for (size_t l = 0; l < axes.size(); l++) {
         const std::vector<Station>& line = axes[l];
-        const int32_t limb = static_cast<int32_t>(l);
+        const int32_t branch = static_cast<int32_t>(l);
         const Station& first = line.front();
-        const bool forks = limbs[l].parent >= 0;
+        const bool forks = branches[l].parent >= 0;
         if (forks || line.size() == 1) {
-            const DVec3& from = forks ? axes[limbs[l].parent][limbs[l].attach].position : first.position;
-            add({from, first.position, first.radius, first.radius, limb, 0, 0});
+            const DVec3& from =
+                forks ? axes[branches[l].parent][branches[l].attach].position : first.position;
+            add({from, first.position, first.radius, first.radius, branch, 0, 0});
         }
         for (int32_t i = 1; i < static_cast<int32_t>(line.size()); i++)
-            add({line[i - 1].position, line[i].position, line[i - 1].radius, line[i].radius, limb, i - 1, i});
+            add({line[i - 1].position, line[i].position, line[i - 1].radius, line[i].radius, branch, i - 1,
+                 i});
     }
     if (pieces_.empty()) return;
     std::vector<Vec3> middles;
@@ -109,14 +111,14 @@ void Bark::add(const Piece& piece) {
     reach_.push_back(static_cast<float>(reach));
 }
 
-BarkPlace Bark::on_limb(int32_t limb, int32_t station, const DVec3& p) const {
-    const std::vector<Station>& line = axes_[limb];
+BarkPlace Bark::on_branch(int32_t branch, int32_t station, const DVec3& p) const {
+    const std::vector<Station>& line = axes_[branch];
     BarkPlace place = place_near(line, station, p);
-    place.limb = limb;
-    if (station > 0 || limbs_[limb].parent < 0) return place;
-    const DVec3& fork = axes_[limbs_[limb].parent][limbs_[limb].attach].position;
+    place.branch = branch;
+    if (station > 0 || branches_[branch].parent < 0) return place;
+    const DVec3& fork = axes_[branches_[branch].parent][branches_[branch].attach].position;
     const double distance = distance_to_segment(p, fork, line[0].position);
-    if (distance < place.distance) place = {limb, 0, distance, line[0].radius};
+    if (distance < place.distance) place = {branch, 0, distance, line[0].radius};
     return place;
 }
 
@@ -134,15 +136,15 @@ BarkPlace Bark::nearest(const Vec3& p, double within, uint32_t& hint,
     return nearest.best;
 }
 
-std::vector<int32_t> Bark::limbs_by_place() const {
+std::vector<int32_t> Bark::branches_by_place() const {
     std::vector<int32_t> order;
     if (!tree_) return order;
-    order.reserve(limbs_.size());
+    order.reserve(branches_.size());
     for (size_t group = 0; group < tree_->group_count(); group++)
         for (const uint32_t i : tree_->in_group(group)) {
             const Piece& piece = pieces_[i];
-            if (static_cast<size_t>(piece.to_station) + 1 == axes_[piece.limb].size())
-                order.push_back(piece.limb);
+            if (static_cast<size_t>(piece.to_station) + 1 == axes_[piece.branch].size())
+                order.push_back(piece.branch);
         }
     return order;
 }
@@ -152,28 +154,29 @@ double required_escape(double least_escape, double radius) {
     return std::max(least_escape, kStub * kThick) + kWhisker * (radius - kThick);
 }
 
-void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, double least_escape) {
-    const Bark bark(limbs, axes);
-    std::vector<uint32_t> bears(limbs.size(), 0);
-    for (const Limb& limb : limbs)
-        if (limb.parent >= 0) bears[limb.parent]++;
+void drop_strips(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
+                 double least_escape) {
+    const Bark bark(branches, axes);
+    std::vector<uint32_t> bears(branches.size(), 0);
+    for (const SkeletonBranch& branch : branches)
+        if (branch.parent >= 0) bears[branch.parent]++;
     // All bark farther away is escaped.
     const double far = required_escape(least_escape, bark.thickest());
-    // A place that no limb but `except` explains.
+    // A place that no branch but `except` explains.
     const auto escapes = [&](const std::vector<Station>& line, const std::vector<uint8_t>& except) {
         uint32_t hint = 0;
         return std::any_of(line.rbegin(), line.rend(), [&](const Station& station) {
             const BarkPlace place = bark.nearest(Vec3(station.position), far, hint, &except);
-            return place.limb < 0 || place.outside() >= required_escape(least_escape, place.radius);
+            return place.branch < 0 || place.outside() >= required_escape(least_escape, place.radius);
         });
     };
-    // What is clear of all others stays. Of the rest, the last limbs go first, and then hold nothing any
+    // What is clear of all others stays. Of the rest, the last branches go first, and then hold nothing any
     // more.
-    std::vector<uint8_t> doubtful(limbs.size(), 0);
-    // Limbs side by side are compared with much the same ones, which memory then still has at hand.
-    const std::vector<int32_t> order = bark.limbs_by_place();
+    std::vector<uint8_t> doubtful(branches.size(), 0);
+    // Branches side by side are compared with much the same ones, which memory then still has at hand.
+    const std::vector<int32_t> order = bark.branches_by_place();
     parallel_for(order.size(), 64, [&](size_t begin, size_t end) {
-        std::vector<uint8_t> except(limbs.size(), 0);
+        std::vector<uint8_t> except(branches.size(), 0);
         for (size_t i = begin; i < end; i++) {
             const int32_t l = order[i];
             if (l == 0) continue;
@@ -182,29 +185,29 @@ void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& ax
             except[l] = 0;
         }
     });
-    std::vector<uint8_t> goes(limbs.size(), 0);
-    for (size_t l = limbs.size(); l-- > 1;) {
+    std::vector<uint8_t> goes(branches.size(), 0);
+    for (size_t l = branches.size(); l-- > 1;) {
         if (bears[l] > 0 || doubtful[l] == 0) continue;
         goes[l] = 1;  // nor is it looked at itself
         if (escapes(axes[l], goes)) {
             goes[l] = 0;
             continue;
         }
-        bears[limbs[l].parent]--;
+        bears[branches[l].parent]--;
     }
-    std::vector<int32_t> now(limbs.size());
+    std::vector<int32_t> now(branches.size());
     size_t kept = 0;
-    for (size_t l = 0; l < limbs.size(); l++) {
+    for (size_t l = 0; l < branches.size(); l++) {
         if (goes[l] != 0) continue;
         now[l] = static_cast<int32_t>(kept);
-        if (limbs[l].parent >= 0) limbs[l].parent = now[limbs[l].parent];
+        if (branches[l].parent >= 0) branches[l].parent = now[branches[l].parent];
         if (kept != l) {
-            limbs[kept] = std::move(limbs[l]);
+            branches[kept] = std::move(branches[l]);
             axes[kept] = std::move(axes[l]);
         }
         kept++;
     }
-    limbs.resize(kept);
+    branches.resize(kept);
     axes.resize(kept);
 }
 

@@ -1,48 +1,48 @@
-// The surface of the limbs found so far: which of them a point lies on.
+// The surface of the branches found so far: which of them a point lies on.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "geometry/point_tree.h"
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 #include "skeleton/cylinders/axis.h"
 
 namespace treerec {
 
-// Where a point lies against a limb.
+// Where a point lies against a branch.
 struct BarkPlace {
-    int32_t limb = -1;
+    int32_t branch = -1;
     int32_t station = 0;
     double distance = 0.0;  // metres to the axis
-    double radius = 0.0;    // metres, of the limb there
+    double radius = 0.0;    // metres, of the branch there
 
     double outside() const { return distance - radius; }
 };
 
-// The nearest place on the line within a few stations of `station`; its limb is not set.
+// The nearest place on the line within a few stations of `station`; its branch is not set.
 BarkPlace place_near(const std::vector<Station>& line, int32_t station, const DVec3& p);
 
 class Bark {
   public:
-    // Keeps references; the limbs that are there now are looked through, later ones are not.
-    Bark(const std::vector<Limb>& limbs, const std::vector<std::vector<Station>>& axes);
+    // Keeps references; the branches that are there now are looked through, later ones are not.
+    Bark(const std::vector<SkeletonBranch>& branches, const std::vector<std::vector<Station>>& axes);
 
-    // The nearest place around a limb's station, or on the way to it from its parent's axis.
-    BarkPlace on_limb(int32_t limb, int32_t station, const DVec3& p) const;
+    // The nearest place around a branch's station, or on the way to it from its parent's axis.
+    BarkPlace on_branch(int32_t branch, int32_t station, const DVec3& p) const;
 
-    // The place of all limbs whose surface is nearest to p, those marked in `except` left aside; limb -1
-    // where none is left that is nearer than `within` metres. Of equally near ones, that of the first limb.
+    // The place of all branches whose surface is nearest to p, those marked in `except` left aside; branch -1
+    // where none is left that is nearer than `within` metres. Of equally near ones, that of the first branch.
     // hint: 0, or what an earlier call left there, best for a place nearby: that makes the search faster and
     // changes nothing else.
     BarkPlace nearest(const Vec3& p, double within, uint32_t& hint,
                       const std::vector<uint8_t>* except = nullptr) const;
 
-    // Metres, of all limbs.
+    // Metres, of all branches.
     double thickest() const { return thickest_; }
 
-    // All limbs, those whose tips are near each other one after another.
-    std::vector<int32_t> limbs_by_place() const;
+    // All branches, those whose tips are near each other one after another.
+    std::vector<int32_t> branches_by_place() const;
 
   private:
     // What lies between two stations, or on the way to a first one from its parent's axis.
@@ -51,14 +51,14 @@ class Bark {
         DVec3 to;
         double from_radius;  // metres
         double to_radius;
-        int32_t limb;
+        int32_t branch;
         int32_t from_station;
         int32_t to_station;
     };
     struct Nearest;
     void add(const Piece& piece);
 
-    const std::vector<Limb>& limbs_;
+    const std::vector<SkeletonBranch>& branches_;
     const std::vector<std::vector<Station>>& axes_;
     std::vector<Piece> pieces_;
     double thickest_ = 0.0;
@@ -70,7 +70,9 @@ class Bark {
 // What leaves the bark must reach at least so far out of it: less is relief, or a strip of the bark itself.
 double required_escape(double least_escape, double radius);
 
-// Takes away the limbs that bear nothing and lie on the bark of others: strips of it that the slices parted.
-void drop_strips(std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, double least_escape);
+// Takes away the branches that bear nothing and lie on the bark of others: strips of it that the slices
+// parted.
+void drop_strips(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
+                 double least_escape);
 
 }  // namespace treerec

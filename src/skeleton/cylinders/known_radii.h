@@ -38,7 +38,7 @@ class KnownRadii {
 };
 
 // Links wood of known radius (scale.radius) to the nearest other wood that is about as thick or thicker,
-// within a few radii: a limb may well be seen from where it leaves the trunk's bark on, or not where others
+// within a few radii: a branch may well be seen from where it leaves the trunk's bark on, or not where others
 // stand before it, and the nearest points to its end are all its own. points: metres. Throws Cancelled.
 void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, double spacing,
                      PointGraph& graph, const Progress& progress);

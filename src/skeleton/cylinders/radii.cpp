@@ -19,14 +19,14 @@ constexpr double kNoiseMedian = 0.67;
 constexpr double kMadToSigma = 1.4826;
 constexpr size_t kLeastMeasured = 8;  // stations that the noise and the slenderness are estimated from
 constexpr double kTaper = 1.5;        // thin wood tapers so much faster than what can be measured
-constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured limb is a stump
+constexpr double kEndStretch = 20.0;  // radii: nearer to a tip, a measured branch is a stump
 constexpr double kSoftWeight = 0.05;  // of an unmeasured station beside a measured one
 constexpr double kCut = 0.03;         // metres: no wood ends by itself so thick
 constexpr double kAlike = 0.25;       // of the radius
 constexpr double kCutScatter = 0.2;   // likewise, of the points on what was cut
-constexpr double kFoot = 6.0;         // radii of the base: how far up its flare may reach
+constexpr double kBase = 6.0;         // radii of the base: how far up its flare may reach
 constexpr int kMedianWindow = 4;      // stations to each side
-constexpr size_t kLimbsPerTask = 64;
+constexpr size_t kBranchesPerTask = 64;
 
 struct Block {
     double value;
@@ -86,8 +86,8 @@ double without_noise(double median, double noise, double to_tip) {
     return std::max(std::min(median, least), square > 0.0 ? std::sqrt(square) : 0.0);
 }
 
-// How thick this tree's limbs are for their length, as the measured stations tell: the median of radius over
-// the distance to the tip.
+// How thick this tree's branches are for their length, as the measured stations tell: the median of radius
+// over the distance to the tip.
 double slenderness_of(const std::vector<std::vector<Station>>& axes) {
     std::vector<double> seen;
     for (const std::vector<Station>& stations : axes) {
@@ -105,12 +105,12 @@ double slenderness_of(const std::vector<std::vector<Station>>& axes) {
     return std::clamp(kTaper * *middle, kThinSlenderness, kSlenderness);
 }
 
-// A foot narrows evenly between stations whose radius was measured. values: by station.
-void span_foot(const std::vector<Station>& stations, std::vector<double>& values) {
+// A base narrows evenly between stations whose radius was measured. values: by station.
+void span_stem_base(const std::vector<Station>& stations, std::vector<double>& values) {
     size_t last = stations.size();
     double way = 0.0;   // from the base,
     double from = 0.0;  // and there to the last measured station
-    for (size_t i = 0; i < stations.size() && way < kFoot * values[0]; i++) {
+    for (size_t i = 0; i < stations.size() && way < kBase * values[0]; i++) {
         if (i > 0) way += glm::distance(stations[i].position, stations[i - 1].position);
         if (!stations[i].measured) continue;
         double at = from;
@@ -200,10 +200,11 @@ void keep_width(std::vector<Station>& stem) {
         stem[i].radius = stem[last - 1].radius;
 }
 
-void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs, bool last) {
+void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
+                 bool last) {
     const double noise = noise_of(axes);
     const double slenderness = slenderness_of(axes);
-    parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
+    parallel_for(axes.size(), kBranchesPerTask, [&](size_t begin, size_t end) {
         std::vector<double> values;
         std::vector<double> weights;
         std::vector<double> to_tip;
@@ -211,7 +212,7 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
             std::vector<Station>& stations = axes[l];
             running_median(stations);
             estimate(stations, noise, slenderness, last, values, weights, to_tip);
-            if (limbs[l].parent < 0) span_foot(stations, values);
+            if (branches[l].parent < 0) span_stem_base(stations, values);
             const std::vector<double> fitted = falling_fit(values, weights);
             for (size_t i = 0; i < stations.size(); i++)
                 stations[i].radius = fitted[i];
@@ -219,7 +220,7 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Limb
     });
     for (size_t l = 0; l < axes.size(); l++) {
         double limit = std::numeric_limits<double>::max();
-        if (limbs[l].parent >= 0) limit = axes[limbs[l].parent][limbs[l].attach].radius;
+        if (branches[l].parent >= 0) limit = axes[branches[l].parent][branches[l].attach].radius;
         for (Station& station : axes[l]) {
             limit = std::max(kThinnest, std::min(limit, station.radius));
             station.radius = limit;

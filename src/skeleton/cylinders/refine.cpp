@@ -19,8 +19,8 @@ namespace {
 constexpr int kRounds = 2;
 constexpr int kNearSegments =
     3;  // to each side of a point's own station, where its nearest one is looked for
-constexpr int kNearStations = 3;      // between a side limb and the points that may belong to it
-constexpr int kFirstSegments = 6;     // of a side limb, which may hold points of its parent
+constexpr int kNearStations = 3;      // between a side branch and the points that may belong to it
+constexpr int kFirstSegments = 6;     // of a side branch, which may hold points of its parent
 constexpr size_t kWantedPoints = 16;  // per window
 constexpr size_t kLeastPoints = 5;
 constexpr int kWidestWindow = 4;  // stations to each side, where points are few
@@ -41,7 +41,7 @@ constexpr double kThinTwig = 0.003;  // metres
 constexpr double kThinnest = 0.001;  // metres
 constexpr double kRounding = 1e-6;   // metres, more than that of what is compared with a box
 
-// A point as its limb sees it.
+// A point as its branch sees it.
 struct Sample {
     float x;  // unit vector from the axis to the point, in the station's frame
     float y;
@@ -129,29 +129,29 @@ T median_of(std::vector<T>& values) {
     return *middle;
 }
 
-// Indices by the limb that they belong to, ascending.
+// Indices by the branch that they belong to, ascending.
 struct Members {
     std::vector<uint32_t> begin;
     std::vector<int32_t> index;
 
-    // limb: by index, -1 for none.
-    Members(std::span<const int32_t> limb, size_t limbs) : begin(limbs + 1, 0) {
-        for (const int32_t l : limb)
+    // branch: by index, -1 for none.
+    Members(std::span<const int32_t> branch, size_t branches) : begin(branches + 1, 0) {
+        for (const int32_t l : branch)
             if (l >= 0) begin[static_cast<size_t>(l) + 1]++;
-        for (size_t l = 0; l < limbs; l++)
+        for (size_t l = 0; l < branches; l++)
             begin[l + 1] += begin[l];
         index.resize(begin.back());
         std::vector<uint32_t> fill(begin.begin(), begin.end() - 1);
-        for (size_t i = 0; i < limb.size(); i++)
-            if (limb[i] >= 0) index[fill[static_cast<size_t>(limb[i])]++] = static_cast<int32_t>(i);
+        for (size_t i = 0; i < branch.size(); i++)
+            if (branch[i] >= 0) index[fill[static_cast<size_t>(branch[i])]++] = static_cast<int32_t>(i);
     }
 
-    std::span<int32_t> of(size_t limb) {
-        return std::span(index).subspan(begin[limb], begin[limb + 1] - begin[limb]);
+    std::span<int32_t> of(size_t branch) {
+        return std::span(index).subspan(begin[branch], begin[branch + 1] - begin[branch]);
     }
 };
 
-// What limbs refined one after another take turns with.
+// What branches refined one after another take turns with.
 struct Scratch {
     explicit Scratch(const Progress& p) : progress(p) {}
 
@@ -166,16 +166,17 @@ struct Scratch {
     std::vector<DVec3> shift;
 };
 
-// One limb in one round. Reads the axes of the round before.
-class LimbRefiner {
+// One branch in one round. Reads the axes of the round before.
+class BranchRefiner {
   public:
-    LimbRefiner(size_t index, const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
-                std::span<const int32_t> sides, const std::vector<Bounds>& bases, const PointPlaces& places,
-                std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
-                double least_noise, Scratch& scratch)
+    BranchRefiner(size_t index, const std::vector<std::vector<Station>>& axes,
+                  const std::vector<SkeletonBranch>& branches, std::span<const int32_t> sides,
+                  const std::vector<Bounds>& bases, const PointPlaces& places,
+                  std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
+                  double least_noise, Scratch& scratch)
         : axes_(axes),
-          limbs_(limbs),
-          limb_(limbs[index]),
+          branches_(branches),
+          branch_(branches[index]),
           sides_(sides),
           bases_(bases),
           places_(places),
@@ -190,9 +191,9 @@ class LimbRefiner {
     std::vector<Station> run() {
         if (count_ < 2) return line_;
         lay_frames();
-        if (limb_.parent >= 0)
-            parent_bark_ = around_bark(axes_[limb_.parent], limb_.attach - kNearStations - 1,
-                                       limb_.attach + 1 + kNearStations);
+        if (branch_.parent >= 0)
+            parent_bark_ = around_bark(axes_[branch_.parent], branch_.attach - kNearStations - 1,
+                                       branch_.attach + 1 + kNearStations);
         collect();
         round_.assign(line_.size(), 0);
         std::vector<Station> result = line_;
@@ -213,7 +214,7 @@ class LimbRefiner {
 
   private:
     bool stays(int i) const {
-        return line_[i].bridged || (i + 1 < count_ && line_[i + 1].bridged) || (i == 0 && limb_.parent < 0);
+        return line_[i].bridged || (i + 1 < count_ && line_[i + 1].bridged) || (i == 0 && branch_.parent < 0);
     }
 
     DVec3 direction(int i) const {
@@ -234,7 +235,8 @@ class LimbRefiner {
     }
 
     // The segment with the nearest axis among [first, last] of a line, where segment j ends at station j. (To
-    // choose by the surface would lead points inside of it to far segments, and make the limb seem thicker.)
+    // choose by the surface would lead points inside of it to far segments, and make the branch seem
+    // thicker.)
     static Hit nearest(const DVec3& p, const std::vector<Station>& line, int first, int last, int& at) {
         first = std::max(first, 1);
         last = std::min(last, static_cast<int>(line.size()) - 1);
@@ -254,20 +256,21 @@ class LimbRefiner {
         return hit_segment(p, line[at - 1].position, line[at - 1].radius, line[at].position, line[at].radius);
     }
 
-    // Whether a point belongs to the parent or to a side limb rather than to this one.
+    // Whether a point belongs to the parent or to a side branch rather than to this one.
     bool is_foreign(const DVec3& p, int station, double off) const {
         int ignored = 0;
-        if (limb_.parent >= 0 && station <= kNearStations && is_near(parent_bark_, p, off)) {
-            const Hit hit = nearest(p, axes_[limb_.parent], limb_.attach - kNearStations,
-                                    limb_.attach + 1 + kNearStations, ignored);
+        if (branch_.parent >= 0 && station <= kNearStations && is_near(parent_bark_, p, off)) {
+            const Hit hit = nearest(p, axes_[branch_.parent], branch_.attach - kNearStations,
+                                    branch_.attach + 1 + kNearStations, ignored);
             if (std::abs(hit.off) < off) return true;
         }
-        for (auto it = std::lower_bound(sides_.begin(), sides_.end(), station - kNearStations,
-                                        [&](int32_t side, int from) { return limbs_[side].attach < from; });
-             it != sides_.end() && limbs_[*it].attach <= station + kNearStations; ++it) {
+        for (auto it =
+                 std::lower_bound(sides_.begin(), sides_.end(), station - kNearStations,
+                                  [&](int32_t side, int from) { return branches_[side].attach < from; });
+             it != sides_.end() && branches_[*it].attach <= station + kNearStations; ++it) {
             if (!is_near(bases_[*it], p, off)) continue;
             const std::vector<Station>& side = axes_[*it];
-            const Station& fork = line_[limbs_[*it].attach];
+            const Station& fork = line_[branches_[*it].attach];
             const Hit base = hit_segment(p, fork.position, side[0].radius, side[0].position, side[0].radius);
             if (std::abs(base.off) < off) return true;
             if (std::abs(nearest(p, side, 1, kFirstSegments, ignored).off) < off) return true;
@@ -414,11 +417,11 @@ class LimbRefiner {
     }
 
     const std::vector<std::vector<Station>>& axes_;
-    const std::vector<Limb>& limbs_;
-    const Limb& limb_;
+    const std::vector<SkeletonBranch>& branches_;
+    const SkeletonBranch& branch_;
     std::span<const int32_t> sides_;  // by attach
     const std::vector<Bounds>& bases_;
-    Bounds parent_bark_;  // where the limb begins
+    Bounds parent_bark_;  // where the branch begins
     const PointPlaces& places_;
     std::span<const int32_t> own_points_;
     const std::vector<Vec3>& points_;
@@ -434,31 +437,31 @@ class LimbRefiner {
     std::vector<uint8_t>& round_ = scratch_.round;  // by station
 };
 
-// By limb: around the bark that may hold points of its parent, from the fork on.
+// By branch: around the bark that may hold points of its parent, from the fork on.
 std::vector<Bounds> bark_of_bases(const std::vector<std::vector<Station>>& axes,
-                                  const std::vector<Limb>& limbs) {
+                                  const std::vector<SkeletonBranch>& branches) {
     std::vector<Bounds> bases(axes.size());
     for (size_t l = 0; l < axes.size(); l++) {
-        if (limbs[l].parent < 0) continue;
+        if (branches[l].parent < 0) continue;
         bases[l] = around_bark(axes[l], 0, kFirstSegments);
-        bases[l].add(axes[limbs[l].parent][limbs[l].attach].position, axes[l][0].radius);
+        bases[l].add(axes[branches[l].parent][branches[l].attach].position, axes[l][0].radius);
     }
     return bases;
 }
 
 }  // namespace
 
-void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                  const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress,
                  double least_noise) {
-    Members own_points(places.limb, limbs.size());
-    std::vector<int32_t> parent(limbs.size());
-    for (size_t l = 0; l < limbs.size(); l++)
-        parent[l] = limbs[l].parent;
-    Members sides(parent, limbs.size());
+    Members own_points(places.branch, branches.size());
+    std::vector<int32_t> parent(branches.size());
+    for (size_t l = 0; l < branches.size(); l++)
+        parent[l] = branches[l].parent;
+    Members sides(parent, branches.size());
     for (int round = 0; round < kRounds; round++) {
         const double noise = noise_of(axes);
-        const std::vector<Bounds> bases = bark_of_bases(axes, limbs);
+        const std::vector<Bounds> bases = bark_of_bases(axes, branches);
         std::vector<std::vector<Station>> next(axes.size());
         parallel_for(axes.size(), 16, [&](size_t from, size_t to) {
             Scratch scratch(progress);
@@ -467,10 +470,10 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Limb
                 const std::span<int32_t> own_sides = sides.of(l);
                 if (round == 0)
                     std::sort(own_sides.begin(), own_sides.end(), [&](int32_t a, int32_t b) {
-                        return std::pair(limbs[a].attach, a) < std::pair(limbs[b].attach, b);
+                        return std::pair(branches[a].attach, a) < std::pair(branches[b].attach, b);
                     });
-                next[l] = LimbRefiner(l, axes, limbs, own_sides, bases, places, own_points.of(l), points,
-                                      noise, least_noise, scratch)
+                next[l] = BranchRefiner(l, axes, branches, own_sides, bases, places, own_points.of(l), points,
+                                        noise, least_noise, scratch)
                               .run();
             }
         });

@@ -13,19 +13,19 @@ constexpr double kMargin = 1.05;     // times the shortest branch: simplificatio
 
 }  // namespace
 
-void draw_back_tips(std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+void draw_back_tips(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                     double minimum_branch) {
-    std::vector<int32_t> last_fork(limbs.size(), -1);
-    for (const Limb& limb : limbs)
-        if (limb.parent >= 0) last_fork[limb.parent] = std::max(last_fork[limb.parent], limb.attach);
+    std::vector<int32_t> last_fork(branches.size(), -1);
+    for (const SkeletonBranch& branch : branches)
+        if (branch.parent >= 0) last_fork[branch.parent] = std::max(last_fork[branch.parent], branch.attach);
     for (size_t l = 0; l < axes.size(); l++) {
         std::vector<Station>& line = axes[l];
         if (line.back().measured || line.back().radius > kThickest) continue;
         const size_t fork = static_cast<size_t>(std::max(0, last_fork[l]));
-        // With no fork of its own, the limb's way begins on its parent.
+        // With no fork of its own, the branch's way begins on its parent.
         double length = 0.0;
-        if (last_fork[l] < 0 && limbs[l].parent >= 0)
-            length = glm::distance(axes[limbs[l].parent][limbs[l].attach].position, line[0].position);
+        if (last_fork[l] < 0 && branches[l].parent >= 0)
+            length = glm::distance(axes[branches[l].parent][branches[l].attach].position, line[0].position);
         for (size_t i = fork; i + 1 < line.size(); i++)
             length += glm::distance(line[i].position, line[i + 1].position);
         double back =

@@ -202,8 +202,8 @@ std::vector<DelaunayVertex> simplify_skeleton(const std::vector<Vec3>& points,
 }
 
 void branches_of(const std::vector<DelaunayVertex>& vertices, const TrunkCylinder& trunk, double longest_edge,
-                 std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes) {
-    limbs.clear();
+                 std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes) {
+    branches.clear();
     axes.clear();
     const size_t count = vertices.size();
     std::vector<int32_t> goes_on(count, -1);
@@ -211,19 +211,19 @@ void branches_of(const std::vector<DelaunayVertex>& vertices, const TrunkCylinde
         int32_t& best = goes_on[vertices[v].parent];
         if (best < 0 || vertices[v].weight > vertices[best].weight) best = static_cast<int32_t>(v);
     }
-    std::vector<int32_t> limb(count, -1), station(count, -1);
+    std::vector<int32_t> branch(count, -1), station(count, -1);
     for (size_t v = 0; v < count; v++) {
         const DelaunayVertex& vertex = vertices[v];
         if (vertex.parent >= 0 && goes_on[vertex.parent] == static_cast<int32_t>(v)) {
-            limb[v] = limb[vertex.parent];
+            branch[v] = branch[vertex.parent];
         } else {
-            limb[v] = static_cast<int32_t>(limbs.size());
-            Limb made;
+            branch[v] = static_cast<int32_t>(branches.size());
+            SkeletonBranch made;
             if (vertex.parent >= 0) {
-                made.parent = limb[vertex.parent];
+                made.parent = branch[vertex.parent];
                 made.attach = station[vertex.parent];
             }
-            limbs.push_back(made);
+            branches.push_back(made);
             axes.emplace_back();
         }
         Station here;
@@ -231,13 +231,13 @@ void branches_of(const std::vector<DelaunayVertex>& vertices, const TrunkCylinde
         here.radius = allometric_radius(trunk, vertex.reach);
         here.scatter = trunk.scatter;
         // Only the piece that the cylinder was fitted to.
-        here.measured = trunk.measured && limb[v] == 0 &&
+        here.measured = trunk.measured && branch[v] == 0 &&
                         std::abs(glm::dot(vertex.position - trunk.middle, trunk.axis)) < 2.0 * trunk.radius;
         here.bridged = vertex.parent >= 0 &&
                        glm::distance(vertex.position, vertices[vertex.parent].position) > longest_edge;
-        station[v] = static_cast<int32_t>(axes[limb[v]].size());
-        limbs[limb[v]].slices.push_back(-1);
-        axes[limb[v]].push_back(here);
+        station[v] = static_cast<int32_t>(axes[branch[v]].size());
+        branches[branch[v]].slices.push_back(-1);
+        axes[branch[v]].push_back(here);
     }
 }
 

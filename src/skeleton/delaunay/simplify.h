@@ -31,6 +31,6 @@ std::vector<DelaunayVertex> simplify_skeleton(const std::vector<Vec3>& points,
 // the trunk's cylinder and, from there on, allometric (Du et al. 2019, 3.3). longest_edge: metres; a longer
 // one crosses a gap.
 void branches_of(const std::vector<DelaunayVertex>& vertices, const TrunkCylinder& trunk, double longest_edge,
-                 std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes);
+                 std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes);
 
 }  // namespace treerec

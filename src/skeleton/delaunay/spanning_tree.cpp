@@ -1,6 +1,5 @@
 #include "skeleton/delaunay/spanning_tree.h"
 
-#include <bit>
 #include <limits>
 
 #include "skeleton/geodesics/heap.h"
@@ -17,12 +16,8 @@ PathTree spanning_tree(const PointGraph& graph, uint32_t root, SpanningTreeKind 
     std::vector<float> cost(count, std::numeric_limits<float>::max());
     std::vector<uint8_t> done(count, 0);
     LeastFirst queue;
-    // The bits of positive floats are in the order of their values, so that one integer holds an entry.
-    const auto entry = [](float value, uint32_t vertex) {
-        return (static_cast<uint64_t>(std::bit_cast<uint32_t>(value)) << 32) | vertex;
-    };
     cost[root] = 0.0F;
-    queue.push(entry(0.0F, root));
+    queue.push(heap_entry(0.0F, root));
     while (!queue.empty()) {
         const auto v = static_cast<uint32_t>(queue.pop());
         if (done[v]) continue;
@@ -39,7 +34,7 @@ PathTree spanning_tree(const PointGraph& graph, uint32_t root, SpanningTreeKind 
             cost[n] = through;
             tree.parent[n] = static_cast<int32_t>(v);
             tree.step[n] = length;
-            queue.push(entry(through, n));
+            queue.push(heap_entry(through, n));
         }
     }
     return tree;

@@ -176,12 +176,12 @@ std::optional<TrunkCylinder> fit_trunk_cylinder(const std::vector<Vec3>& points,
     if (!low.empty() && !high.empty()) c.axis = normalized_or(mean(high) - mean(low), c.axis);
     // The paths lead up one side of stout bark and around it, and rings of them are aslant. Of a slab across,
     // the halves' middles lie on the axis however slanting its faces are.
-    const std::vector<uint32_t> near_foot = ring_of(skeleton, 0.0, 2.0 * at);  // no boughs that hang down
+    const std::vector<uint32_t> near_base = ring_of(skeleton, 0.0, 2.0 * at);  // no boughs that hang down
     for (int i = 0; i < kSlabs; i++) {
         low.clear();
         high.clear();
         std::vector<DVec3> slab;
-        for (const uint32_t v : near_foot) {
+        for (const uint32_t v : near_base) {
             const DVec3 off = DVec3(points[v]) - c.middle;
             const double up = glm::dot(off, c.axis);
             if (std::abs(up) > half || glm::length(off - up * c.axis) > kWidest * longest) continue;

@@ -6,16 +6,13 @@
 #include <string>
 
 #include "skeleton/cylinders/bark.h"
-#include "skeleton/cylinders/foot.h"
-#include "skeleton/cylinders/known_radii.h"
 #include "skeleton/cylinders/radii.h"
+#include "skeleton/cylinders/stem_base.h"
 #include "skeleton/cylinders/tips.h"
-#include "skeleton/flood/flood_limbs.h"
+#include "skeleton/flood/flood_branches.h"
 #include "skeleton/flood/flood_paper.h"
 #include "skeleton/flood/flood_twigs.h"
-#include "skeleton/geodesics/root.h"
 #include "skeleton/simplify/assemble.h"
-#include "tree/trunk.h"
 
 namespace treerec {
 
@@ -115,53 +112,29 @@ std::string fine_voxel_warning(double fitting) {
     return text.data();
 }
 
-}  // namespace
+// The voxels that are flooded, of the stated size or one that fits.
+FloodGrid make_grid(SkeletonWork& work, Progress& progress) {
+    SkeletonResult& result = work.result;
+    const double fitting = automatic_voxel(work.points(), result.spacing, work.options.one_stem, progress);
+    result.voxel = work.options.voxel > 0.0 ? work.options.voxel : fitting;
+    if (result.voxel < kFineVoxel * fitting)
+        result.warnings.push_back(fine_voxel_warning(fitting / work.factor));
+    FloodGrid grid(work.points(), result.voxel, progress);
+    progress.check();
+    return grid;
+}
 
-void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, const SkeletonOptions& options,
-                    double factor, SkeletonResult& result, StageClock& clock, Progress* listener) {
-    SubProgress gridding(listener, 0.1, 0.4);
-    gridding.update(0.0, "Voxels");
-    const double fitting_voxel = automatic_voxel(points, result.spacing, options.one_stem, gridding);
-    result.voxel = options.voxel > 0.0 ? options.voxel : fitting_voxel;
-    if (result.voxel < kFineVoxel * fitting_voxel)
-        result.warnings.push_back(fine_voxel_warning(fitting_voxel / factor));
-    const FloodGrid grid(points, result.voxel, gridding);
-    gridding.check();
-    const LocalScale scale = local_scale(grid.graph, result.voxel);
-    const RootGuess root = find_root(grid.means, grid.graph, scale, options.foot, gridding);
-    clock.stop("Voxels", grid.size());
-
-    SubProgress flooding(listener, 0.4, 0.8);
-    flooding.update(0.0, "Flooding");
-    FloodOptions flood_options;
-    flood_options.seed = options.seed;
-    flood_options.keep_steps = options.keep_steps;
-    FloodResult flooded =
-        flood(grid, points, root.position, vertices_of(root.seeds), flood_options, flooding);
-    if (options.keep_raw) result.raw = raw_tree(flooded.nodes);
-    result.kind = flooded.kind;
-    result.kind_told = flooded.kind_told;
-    clock.stop("Flooding", flooded.nodes.size());
-
-    SubProgress fitting(listener, 0.8, 0.95);
-    fitting.update(0.0, "Refinement");
-    FloodLimbs made = limbs_of(flooded, grid, points.size());
-    if (options.one_stem) {
-        made.limbs.resize(1);
-        made.axes.resize(1);
-        for (int32_t& limb : made.places.limb)
-            if (limb > 0) limb = -1;
-    }
-    double extent = 0.0;
-    for (const Vec3& p : points)
-        extent = std::max(extent, glm::distance(DVec3(p), root.position));
-    const double least_branch =
-        options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
-    const bool solid = flooded.kind == CloudKind::kSolid;
-    if (solid) trust_radii(made.axes, result.voxel);
-    infer_radii(made.axes, made.limbs);
+// Finer branches, better axes and radii, and none of the branches that are bark or noise.
+void refine_branches(SkeletonWork& work, const FloodGrid& grid, bool solid, FloodBranches& made,
+                     Progress& progress) {
+    const std::vector<Vec3>& points = work.points();
+    const SkeletonOptions& options = work.options;
+    const double voxel = work.result.voxel;
+    const double least_branch = work.least_branch();
+    if (solid) trust_radii(made.axes, voxel);
+    infer_radii(made.axes, made.branches);
     const double noise = std::max(noise_of(made.axes), options.noise);
-    const double escape = std::max({kLeastEscape, kBranchVoxels * result.voxel, kNoiseEscape * noise});
+    const double escape = std::max({kLeastEscape, kBranchVoxels * voxel, kNoiseEscape * noise});
     double least_escape = escape;
     // Voxels that hold several points are fine enough for the wood.
     const bool sparse = static_cast<double>(points.size()) < kResolved * static_cast<double>(grid.size());
@@ -169,53 +142,79 @@ void flood_skeleton(const std::vector<Vec3>& points, const PointCloud& cloud, co
         // Voxels are too coarse to tell a short branch from a strip of bark, but what is left over then is
         // finer.
         drop_flood_strips(made, escape);
-        TwigOptions twigs;
-        twigs.minimum_branch = least_branch;
-        twigs.least_escape = std::max(kLeastEscape, kNoiseEscape * noise);
-        add_flood_twigs(points, grid, scale, root, twigs, made, fitting);
-        infer_radii(made.axes, made.limbs);
-        least_escape = 0.5 * twigs.least_escape;
+        work.twig_options.minimum_branch = least_branch;
+        work.twig_options.least_escape = std::max(kLeastEscape, kNoiseEscape * noise);
+        add_flood_twigs(points, grid, work.scale, work.root, work.twig_options, made, progress);
+        infer_radii(made.axes, made.branches);
+        least_escape = 0.5 * work.twig_options.least_escape;
     }
     if (options.fit_radii && !solid) {
         for (int pass = 0; pass < kPasses; pass++) {
-            refine_axes(made.axes, made.limbs, made.places, points, fitting, options.noise);
-            infer_radii(made.axes, made.limbs);
+            refine_axes(made.axes, made.branches, made.places, points, progress, options.noise);
+            infer_radii(made.axes, made.branches);
         }
+        KnownRadii(work.cloud, work.result.spacing, &progress).tell(made.axes);
+        if (!work.root.lying) limit_stem_base(made.axes.front());
+        infer_radii(made.axes, made.branches, true);
     }
-    if (options.fit_radii && !solid) {
-        KnownRadii(cloud, result.spacing, &fitting).tell(made.axes);
-        if (!root.lying) limit_foot(made.axes.front());
-        infer_radii(made.axes, made.limbs, true);
-    }
-    drop_strips(made.limbs, made.axes, least_escape);
+    drop_strips(made.branches, made.axes, least_escape);
     // Around wood that is thicker than a voxel, the flood's first lines lie too far from the axis for that.
-    drop_beside_stout(made, result.voxel, escape);
+    drop_beside_stout(made, voxel, escape);
     drop_short(made, least_branch);
-    draw_back_tips(made.axes, made.limbs, least_branch);
-    clock.stop("Refinement", made.limbs.size());
+    draw_back_tips(made.axes, made.branches, least_branch);
+}
+
+}  // namespace
+
+void flood_skeleton(SkeletonWork& work) {
+    const std::vector<Vec3>& points = work.points();
+    const SkeletonOptions& options = work.options;
+    SkeletonResult& result = work.result;
+    SubProgress gridding(work.listener, 0.1, 0.4);
+    gridding.update(0.0, "Voxels");
+    const FloodGrid grid = make_grid(work, gridding);
+    work.scale = local_scale(grid.graph, result.voxel);
+    work.root = find_root(grid.means, grid.graph, work.scale, options.stem_base, gridding);
+    work.clock.stop("Voxels", grid.size());
+
+    SubProgress flooding(work.listener, 0.4, 0.8);
+    flooding.update(0.0, "Flooding");
+    FloodOptions flood_options;
+    flood_options.seed = options.seed;
+    flood_options.keep_steps = options.keep_steps;
+    FloodResult flooded =
+        flood(grid, points, work.root.position, vertices_of(work.root.seeds), flood_options, flooding);
+    if (options.keep_raw) result.raw = raw_tree(flooded.nodes);
+    result.kind = flooded.kind;
+    result.kind_told = flooded.kind_told;
+    work.clock.stop("Flooding", flooded.nodes.size());
+
+    SubProgress fitting(work.listener, 0.8, 0.95);
+    fitting.update(0.0, "Refinement");
+    FloodBranches made = flood_branches(flooded, grid, points.size());
+    if (options.one_stem) {
+        made.branches.resize(1);
+        made.axes.resize(1);
+        for (int32_t& branch : made.places.branch)
+            if (branch > 0) branch = -1;
+    }
+    work.extent = extent_from(points, work.root.position);
+    refine_branches(work, grid, flooded.kind == CloudKind::kSolid, made, fitting);
+    work.clock.stop("Refinement", made.branches.size());
 
     fitting.update(1.0, "Simplification");
-    result.tree = assemble_tree(made.axes, made.limbs, options.simplify_distance);
+    result.tree = assemble_tree(made.axes, made.branches, options.simplify_distance);
     if (options.flood == FloodKind::kPaper) {
-        result.tree = printed_tree(points, root.position, options, result, flooded.steps, fitting);
+        result.tree = printed_tree(points, work.root.position, options, result, flooded.steps, fitting);
         if (options.keep_raw) result.raw = result.tree;
     }
-    mark_trunk(result.tree);
-    result.tree.set_frame(cloud.frame);
-    const DVec3 base = result.tree.node(result.tree.root()).position;
-    result.tree.rebase(base);
-    if (options.keep_raw) {
-        result.raw.set_frame(cloud.frame);
-        result.raw.rebase(base);
-    }
     result.steps = std::move(flooded.steps);
+    const DVec3 base = finish(work);
     for (FloodStep& step : result.steps) {
         step.position -= base;
         for (Vec3& voxel : step.voxels)
             voxel = Vec3(DVec3(voxel) - base);
     }
-    clock.stop("Simplification", result.tree.size());
-    if (listener) listener->update(1.0, "Skeleton");
 }
 
 }  // namespace treerec

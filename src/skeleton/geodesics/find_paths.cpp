@@ -15,10 +15,9 @@ void find_paths(SkeletonWork& work) {
     const std::vector<Vec3>& points = work.points();
     work.progress.update(0.55, "Shortest paths");
     work.progress.check();
-    work.root = find_root(points, work.graph, work.first_scale, work.options.foot, work.progress);
+    work.root = find_root(points, work.graph, work.first_scale, work.options.stem_base, work.progress);
     work.progress.check();
-    for (const Vec3& p : points)
-        work.extent = std::max(work.extent, glm::distance(DVec3(p), work.root.position));
+    work.extent = extent_from(points, work.root.position);
     work.paths = shortest_paths(work.graph, work.first_scale, work.root.seeds, work.progress);
     WideGaps gaps;
     for (int round = 0; round < kGapRounds; round++) {

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace treerec {
+
+// A vertex by what it costs to reach, at least 0, as one number: the bits of positive floats are in the order
+// of their values. Ties go to the smaller vertex.
+inline uint64_t heap_entry(float cost, uint32_t vertex) {
+    return (static_cast<uint64_t>(std::bit_cast<uint32_t>(cost)) << 32) | vertex;
+}
 
 // A heap with four children to a node, which is half as deep as std::priority_queue. Numbers that differ come
 // out in one order only, whatever the heap.

@@ -49,17 +49,13 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
     tree.along.assign(count, 0.0f);
     tree.order.reserve(count);
     std::vector<float> cost(count, std::numeric_limits<float>::max());
-    // The bits of positive floats are in the order of their values, so that one integer holds an entry.
     LeastFirst queue;
-    const auto entry = [](float value, uint32_t vertex) {
-        return (static_cast<uint64_t>(std::bit_cast<uint32_t>(value)) << 32) | vertex;
-    };
     for (const PathSeed& seed : seeds) {
         const float distance = static_cast<float>(std::max(0.0, seed.distance));
         if (distance >= cost[seed.vertex]) continue;
         cost[seed.vertex] = distance;
         tree.along[seed.vertex] = distance;
-        queue.push(entry(distance, seed.vertex));
+        queue.push(heap_entry(distance, seed.vertex));
     }
     std::vector<float> edge_cost = edge_costs(graph, scale, progress);
     for (const SureLink& link : sure)
@@ -80,7 +76,7 @@ PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const 
                 cost[n] = through;
                 tree.parent[n] = static_cast<int32_t>(v);
                 tree.step[n] = graph.length[e];
-                queue.push(entry(through, n));
+                queue.push(heap_entry(through, n));
             }
         }
     }

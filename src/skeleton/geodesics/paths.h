@@ -31,7 +31,7 @@ struct PathTree {
 // length * (length / reach)^2 beyond it, so that a path takes the wood rather than a gap (AdTree, Du et al.
 // 2019, 2.2, finds the same with plain lengths on complete scans). Where the wood's radius is known
 // (scale.radius), a gap is wide by that measure, too, and a way from thin wood to thicker costs as much as
-// many times the difference: no limb grows out of a twig. Ties are broken by vertex number. seeds: at least
+// many times the difference: no branch grows out of a twig. Ties are broken by vertex number. seeds: at least
 // one. sure: edges over gaps that wood is known to cross, with their costs.
 PathTree shortest_paths(const PointGraph& graph, const LocalScale& scale, const std::vector<PathSeed>& seeds,
                         Progress& progress, const std::vector<SureLink>& sure = {});

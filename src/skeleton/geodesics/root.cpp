@@ -13,15 +13,16 @@ namespace treerec {
 
 namespace {
 
-constexpr double kLyingRatio = 0.55;   // height over width below which there may be no upright trunk
-constexpr double kUpright = 0.7;       // the least sine of such a trunk's slope at its foot,
-constexpr double kFootShare = 0.1;     // and of the height: how far up the foot may be
-constexpr double kFaceShare = 0.02;    // of the diagonal: what belongs to a branch's cut face
-constexpr double kGroupShare = 0.002;  // of the points: a smaller group is no trunk
-constexpr size_t kGroupLeast = 6;      // points
-constexpr double kSlabShare = 0.006;   // of the height: the slice that counts as the base
-constexpr double kFootReach = 0.03;  // of the height: what lies so far from a known foot belongs to its stem,
-constexpr double kFootAbove = 0.1;   // and so far above or below
+constexpr double kLyingRatio = 0.55;    // height over width below which there may be no upright trunk
+constexpr double kUpright = 0.7;        // the least sine of such a trunk's slope at its base,
+constexpr double kStemBaseShare = 0.1;  // and of the height: how far up the base may be
+constexpr double kFaceShare = 0.02;     // of the diagonal: what belongs to a branch's cut face
+constexpr double kGroupShare = 0.002;   // of the points: a smaller group is no trunk
+constexpr size_t kGroupLeast = 6;       // points
+constexpr double kSlabShare = 0.006;    // of the height: the slice that counts as the base
+constexpr double kStemBaseReach =
+    0.03;  // of the height: what lies so far from a known base belongs to its stem,
+constexpr double kStemBaseAbove = 0.1;  // and so far above or below
 constexpr double kStemGapShare = 0.12;  // of the height: stems further from the base are other trees
 
 constexpr double kWidestStump = 1.5;    // radius, of the height
@@ -79,11 +80,12 @@ std::optional<CircleFit> find_stump(const std::vector<Vec3>& points, const std::
 }
 
 // The lowest slab of the stem that stands there; without seeds where none does.
-RootGuess root_at_foot(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood, const DVec3& foot,
-                       double height) {
+RootGuess root_at_base(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood,
+                       const DVec3& stem_base, double height) {
     const auto beside = [&](size_t v) {
-        return wood[v] && std::abs(points[v].y - foot.y) < kFootAbove * height &&
-               portable::hypot(points[v].x - foot.x, points[v].z - foot.z) < kFootReach * height;
+        return wood[v] && std::abs(points[v].y - stem_base.y) < kStemBaseAbove * height &&
+               portable::hypot(points[v].x - stem_base.x, points[v].z - stem_base.z) <
+                   kStemBaseReach * height;
     };
     RootGuess root;
     std::vector<float> heights;
@@ -107,7 +109,7 @@ RootGuess root_at_foot(const std::vector<Vec3>& points, const std::vector<uint8_
 }  // namespace
 
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                    const std::optional<DVec3>& foot, Progress& progress) {
+                    const std::optional<DVec3>& stem_base, Progress& progress) {
     const std::vector<uint32_t> group = linked_groups(graph, scale);
     std::vector<size_t> members(points.size(), 0);
     std::vector<float> heights(points.size());
@@ -127,8 +129,8 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         if (wood[v]) bounds.add(DVec3(points[v]));
     }
     const DVec3 size = bounds.size();
-    if (foot) {
-        RootGuess root = root_at_foot(points, wood, *foot, size.y);
+    if (stem_base) {
+        RootGuess root = root_at_base(points, wood, *stem_base, size.y);
         if (!root.seeds.empty()) return root;
     }
     if (size.y < kLyingRatio * std::max(size.x, size.z)) {
@@ -138,7 +140,7 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         const BaseEnd base = find_base_end(of_wood, progress);
         // A spreading tree is wider than high, too.
         const bool stands =
-            base.direction.y > kUpright && base.position.y < bounds.min.y + kFootShare * size.y;
+            base.direction.y > kUpright && base.position.y < bounds.min.y + kStemBaseShare * size.y;
         if (!stands)
             return root_at_end(points, wood, graph, scale, base.position, kFaceShare * bounds.diagonal(),
                                progress);
@@ -193,6 +195,13 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
     root.position = sum / static_cast<double>(root.seeds.size());
     root.position.y = base;
     return root;
+}
+
+double extent_from(const std::vector<Vec3>& points, const DVec3& root) {
+    double extent = 0.0;
+    for (const Vec3& p : points)
+        extent = std::max(extent, glm::distance(DVec3(p), root));
+    return extent;
 }
 
 }  // namespace treerec

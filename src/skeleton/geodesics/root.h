@@ -17,9 +17,12 @@ struct RootGuess {
 
 // The base is not the lowest point, which may be a stray one: it is the lowest part of the lowest group of
 // linked points that is large enough to be wood. Where the cloud is much wider than high (a scanned branch),
-// it is where find_base_end() says, unless a trunk stands there. foot: where a stem is known to stand; then
-// it is the lowest part beside it, if there is any. points: tree space, metres.
+// it is where find_base_end() says, unless a trunk stands there. stem_base: where a stem is known to stand;
+// then it is the lowest part beside it, if there is any. points: tree space, metres.
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                    const std::optional<DVec3>& foot, Progress& progress);
+                    const std::optional<DVec3>& stem_base, Progress& progress);
+
+// Metres from the root to the farthest of the points.
+double extent_from(const std::vector<Vec3>& points, const DVec3& root);
 
 }  // namespace treerec

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRelativeTolerance = 0.1;  // of the local radius
 constexpr double kLeastTolerance = 0.003;   // metres
 constexpr double kLongestSegment = 0.2;     // metres
-constexpr size_t kLimbsPerTask = 64;
+constexpr size_t kBranchesPerTask = 64;
 
 // How far station i is off the straight cone between a and b.
 double deviation(const Station& station, const Station& a, const Station& b) {
@@ -70,12 +70,12 @@ NodeId taper_over_gap(Tree& tree, NodeId last, const Station& from, const Statio
 
 }  // namespace
 
-Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                    double simplify_distance) {
     std::vector<std::vector<uint8_t>> keep(axes.size());
     for (size_t l = 0; l < axes.size(); l++) {
         keep[l].assign(axes[l].size(), 0);
-        if (limbs[l].parent < 0) keep[l].front() = 1;
+        if (branches[l].parent < 0) keep[l].front() = 1;
         keep[l].back() = 1;
         for (size_t i = 0; i < axes[l].size(); i++)
             if (axes[l][i].bridged) {
@@ -83,17 +83,17 @@ Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vec
                 if (i > 0) keep[l][i - 1] = 1;
             }
     }
-    for (const Limb& limb : limbs)
-        if (limb.parent >= 0) keep[limb.parent][limb.attach] = 1;
+    for (const SkeletonBranch& branch : branches)
+        if (branch.parent >= 0) keep[branch.parent][branch.attach] = 1;
 
     // The line that is simplified starts on the parent's axis.
-    parallel_for(axes.size(), kLimbsPerTask, [&](size_t begin, size_t end) {
+    parallel_for(axes.size(), kBranchesPerTask, [&](size_t begin, size_t end) {
         std::vector<Station> line;
         std::vector<uint8_t> kept;
         for (size_t l = begin; l < end; l++) {
             line.clear();
-            if (limbs[l].parent >= 0) {
-                line.push_back(axes[limbs[l].parent][limbs[l].attach]);
+            if (branches[l].parent >= 0) {
+                line.push_back(axes[branches[l].parent][branches[l].attach]);
                 line.back().radius = axes[l].front().radius;
             }
             const auto first = static_cast<ptrdiff_t>(line.size());
@@ -114,7 +114,7 @@ Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vec
     std::vector<std::vector<NodeId>> ids(axes.size());
     for (size_t l = 0; l < axes.size(); l++) {
         ids[l].assign(axes[l].size(), kNoNode);
-        NodeId last = limbs[l].parent >= 0 ? ids[limbs[l].parent][limbs[l].attach] : kNoNode;
+        NodeId last = branches[l].parent >= 0 ? ids[branches[l].parent][branches[l].attach] : kNoNode;
         for (size_t i = 0; i < axes[l].size(); i++) {
             if (!keep[l][i]) continue;
             const Station& station = axes[l][i];

@@ -1,4 +1,4 @@
-// From fitted limbs to the Tree.
+// From fitted branches to the Tree.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace treerec {
 // and Peucker 1973; AdTree, Du et al. 2019, 2.3); 0: a tenth of the local radius, at least 2 mm. Forks, tips
 // and both ends of bridges stay, and no segment grows longer than 20 cm. The tree's nodes are in depth-first
 // order.
-Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<Limb>& limbs,
+Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                    double simplify_distance);
 
 }  // namespace treerec

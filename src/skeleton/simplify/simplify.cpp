@@ -18,14 +18,15 @@ constexpr double kGapShare = 0.04;  // and of the tree's extent
 // A sentence about the widest gap that was bridged, if it is a remarkable one.
 // factor: by how much the cloud was enlarged.
 std::vector<std::string> gap_warnings(const std::vector<std::vector<Station>>& axes,
-                                      const std::vector<Limb>& limbs, double extent, double factor) {
+                                      const std::vector<SkeletonBranch>& branches, double extent,
+                                      double factor) {
     double widest = 0.0;
     int gaps = 0;
     const double least = std::max(kLeastGap, kGapShare * extent);
     for (size_t l = 0; l < axes.size(); l++)
-        for (size_t i = limbs[l].parent < 0 ? 1 : 0; i < axes[l].size(); i++) {
+        for (size_t i = branches[l].parent < 0 ? 1 : 0; i < axes[l].size(); i++) {
             if (!axes[l][i].bridged) continue;
-            const Station& before = i > 0 ? axes[l][i - 1] : axes[limbs[l].parent][limbs[l].attach];
+            const Station& before = i > 0 ? axes[l][i - 1] : axes[branches[l].parent][branches[l].attach];
             const double width = glm::distance(axes[l][i].position, before.position);
             if (width < least) continue;
             gaps++;
@@ -44,24 +45,9 @@ Tree stump_tree(const std::vector<TrunkRing>& rings, const SkeletonOptions& opti
     std::vector<Station> axis;
     for (const TrunkRing& ring : rings)
         axis.push_back({ring.centre, ring.radius, ring.scatter, options.fit_radii});
-    Limb limb;
-    limb.slices.resize(axis.size());
-    return assemble_tree({axis}, {limb}, options.simplify_distance);
-}
-
-// The trunk, the cloud's frame, and the root at the origin.
-void finish(SkeletonWork& work) {
-    SkeletonResult& result = work.result;
-    mark_trunk(result.tree);
-    result.tree.set_frame(work.cloud.frame);
-    const DVec3 base = result.tree.node(result.tree.root()).position;
-    result.tree.rebase(base);
-    if (result.raw.size() > 0) {
-        result.raw.set_frame(work.cloud.frame);
-        result.raw.rebase(base);
-    }
-    work.clock.stop("Simplification", result.tree.size());
-    work.progress.update(1.0, "Skeleton");
+    SkeletonBranch branch;
+    branch.slices.resize(axis.size());
+    return assemble_tree({axis}, {branch}, options.simplify_distance);
 }
 
 }  // namespace
@@ -78,10 +64,24 @@ bool take_stump(SkeletonWork& work) {
 }
 
 void simplify(SkeletonWork& work) {
-    work.result.warnings = gap_warnings(work.axes, work.limbs, work.extent, work.factor);
+    work.result.warnings = gap_warnings(work.axes, work.branches, work.extent, work.factor);
     work.progress.update(0.95, "Simplification");
-    work.result.tree = assemble_tree(work.axes, work.limbs, work.options.simplify_distance);
+    work.result.tree = assemble_tree(work.axes, work.branches, work.options.simplify_distance);
     finish(work);
+}
+
+DVec3 finish(SkeletonWork& work) {
+    SkeletonResult& result = work.result;
+    mark_trunk(result.tree);
+    const DVec3 base = result.tree.node(result.tree.root()).position;
+    for (Tree* tree : {&result.tree, &result.raw}) {
+        if (tree->size() == 0) continue;
+        tree->set_frame(work.cloud.frame);
+        tree->rebase(base);
+    }
+    work.clock.stop("Simplification", result.tree.size());
+    work.progress.update(1.0, "Skeleton");
+    return base;
 }
 
 }  // namespace treerec

@@ -14,14 +14,14 @@ constexpr double kNoiseEscape = 2.5;  // and times the scan's noise
 }  // namespace
 
 void find_twigs(SkeletonWork& work) {
-    work.twig_options.minimum_branch = work.limb_options.minimum_branch;
+    work.twig_options.minimum_branch = work.branch_options.minimum_branch;
     work.twig_options.least_escape =
         work.options.one_stem
             ? std::numeric_limits<double>::max()
             : std::max(kTwigEscape, kNoiseEscape * std::max(noise_of(work.axes), work.options.noise));
     work.places = add_twigs(work.points(), work.graph, work.first_scale, work.paths, work.slices,
-                            work.twig_options, work.limbs, work.axes, work.progress);
-    work.clock.stop("Twigs", work.limbs.size());
+                            work.twig_options, work.branches, work.axes, work.progress);
+    work.clock.stop("Twigs", work.branches.size());
 }
 
 }  // namespace treerec

@@ -97,7 +97,7 @@ class TwigGrower {
         if (!escapes) return;
 
         gather();
-        Limb twig;
+        SkeletonBranch twig;
         twig.parent = parent;
         twig.attach = field_.station[foot_];
         std::vector<Station> line = smooth_line(axis(parent)[twig.attach].position);
@@ -364,7 +364,7 @@ GrownTwigs put_in_order(std::vector<GrownTwigs>& grown, const std::vector<int32_
     all.tips.reserve(order.size());
     for (const Twig& twig : order) {
         number[twig.task][twig.at] = given + static_cast<int32_t>(all.limbs.size());
-        Limb& limb = all.limbs.emplace_back(std::move(grown[twig.task].limbs[twig.at]));
+        SkeletonBranch& limb = all.limbs.emplace_back(std::move(grown[twig.task].limbs[twig.at]));
         // Twigs grow on earlier ones of their own thicket.
         if (limb.parent >= given) limb.parent = number[twig.task][limb.parent - given];
         all.axes.push_back(std::move(grown[twig.task].axes[twig.at]));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "progress.h"
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 #include "skeleton/cylinders/axis.h"
 #include "skeleton/cylinders/bark.h"
 #include "skeleton/geodesics/paths.h"
@@ -56,7 +56,7 @@ inline uint64_t farthest_first(float length, uint32_t vertex) {
 }
 
 struct GrownTwigs {
-    std::vector<Limb> limbs;  // their parents are limbs given, or these, numbered on
+    std::vector<SkeletonBranch> limbs;  // their parents are limbs given, or these, numbered on
     std::vector<std::vector<Station>> axes;
     std::vector<uint64_t> tips;  // of each twig, ascending: the entry that it grew from
 };

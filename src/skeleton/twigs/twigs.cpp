@@ -24,7 +24,7 @@ constexpr double kMostBlur = 0.02;   // metres off the bark
 class TwigFinder {
   public:
     TwigFinder(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-               const PathTree& paths, const TwigOptions& options, std::vector<Limb>& limbs,
+               const PathTree& paths, const TwigOptions& options, std::vector<SkeletonBranch>& limbs,
                std::vector<std::vector<Station>>& axes)
         : field_{points, graph, scale, paths, options, axes}, limbs_(limbs), axes_(axes), bark_(limbs, axes) {
         field_.limb.assign(points.size(), -1);
@@ -37,12 +37,12 @@ class TwigFinder {
     void take_slices(const Slices& slices, const Progress& progress) {
         auto take = [&](int32_t slice, int32_t limb, int32_t at) {
             for (const uint32_t v : slices.points_of(static_cast<size_t>(slice)))
-                claim(v, bark_.on_limb(limb, at, DVec3(points_[v])));
+                claim(v, bark_.on_branch(limb, at, DVec3(points_[v])));
         };
         parallel_for(limbs_.size(), 16, [&](size_t begin, size_t end) {
             progress.check();
             for (size_t l = begin; l < end; l++) {
-                const Limb& limb = limbs_[l];
+                const SkeletonBranch& limb = limbs_[l];
                 const int32_t index = static_cast<int32_t>(l);
                 for (size_t i = 0; i < limb.slices.size(); i++)
                     take(limb.slices[i], index, static_cast<int32_t>(i));
@@ -79,7 +79,7 @@ class TwigFinder {
                 if (field_.limb[v] >= 0) continue;
                 const BarkPlace place = bark_.nearest(points_[v], far, hint);
                 field_.outside[v] = std::numeric_limits<float>::infinity();
-                if (place.limb < 0) continue;
+                if (place.branch < 0) continue;
                 claim(static_cast<uint32_t>(v), place);
                 if (field_.limb[v] < 0) claim_stump(static_cast<uint32_t>(v), place);
                 field_.outside[v] = static_cast<float>(place.outside());
@@ -132,7 +132,7 @@ class TwigFinder {
     // Notes that the point lies on the bark of the limb, if it does.
     void claim(uint32_t v, const BarkPlace& place) {
         if (place.distance > (1.0 + kBarkRelief) * place.radius + field_.tolerance(v)) return;
-        field_.limb[v] = place.limb;
+        field_.limb[v] = place.branch;
         field_.station[v] = place.station;
     }
 
@@ -140,7 +140,7 @@ class TwigFinder {
     // ahead of the thicker stations behind its place lies on that.
     void claim_stump(uint32_t v, const BarkPlace& place) {
         const DVec3 p(points_[v]);
-        int32_t limb = place.limb;
+        int32_t limb = place.branch;
         int32_t at = place.station;
         for (int step = 0; step < kStumpSteps; step++) {
             const std::vector<Station>& line = axes_[limb];
@@ -170,7 +170,7 @@ class TwigFinder {
     TwigField field_;
     const std::vector<Vec3>& points_ = field_.points;
     const PathTree& paths_ = field_.paths;
-    std::vector<Limb>& limbs_;
+    std::vector<SkeletonBranch>& limbs_;
     std::vector<std::vector<Station>>& axes_;
     const Bark bark_;  // of the limbs that are given
 };
@@ -179,7 +179,8 @@ class TwigFinder {
 
 PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                       const PathTree& paths, const Slices& slices, const TwigOptions& options,
-                      std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress) {
+                      std::vector<SkeletonBranch>& limbs, std::vector<std::vector<Station>>& axes,
+                      Progress& progress) {
     TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
     finder.take_slices(slices, progress);
     finder.run(progress);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "skeleton/branches/limbs.h"
+#include "skeleton/branches/skeleton_branches.h"
 #include "skeleton/branches/slices.h"
 #include "skeleton/cylinders/axis.h"
 #include "skeleton/cylinders/refine.h"
@@ -25,6 +25,7 @@ struct TwigOptions {
 // beside the bark included.
 PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                       const PathTree& paths, const Slices& slices, const TwigOptions& options,
-                      std::vector<Limb>& limbs, std::vector<std::vector<Station>>& axes, Progress& progress);
+                      std::vector<SkeletonBranch>& limbs, std::vector<std::vector<Station>>& axes,
+                      Progress& progress);
 
 }  // namespace treerec

@@ -14,7 +14,7 @@ const BarkScene := preload("bark_scene.gd")
 const TOOL: StringName = &"paint_bark"
 const NONE: int = -1
 # The first growth has edges that are so many times as long, but not longer than this share of the
-# trunk's radius at its foot.
+# trunk's radius at its base.
 const _COARSE: float = 3.5
 const _LONGEST: float = 0.65
 # It isn't worth it below.

@@ -24,14 +24,14 @@ func close() -> void:
 func _build() -> void:
 	title = "Measurements"
 	tooltip_text = "What a forester would measure on this tree."
-	_add(body, &"height", "Height", "From the tree's foot to its highest tip.")
+	_add(body, &"height", "Height", "From the tree's base to its highest tip.")
 	_add(
 		body,
 		&"dbh",
 		"Trunk (DBH)",
 		"Diameter at breast height: how thick the trunk is 1.3 metres above the ground."
 	)
-	_add(body, &"stems", "Stems", "How many trunks stand on the same foot.")
+	_add(body, &"stems", "Stems", "How many trunks stand on the same base.")
 	_add(body, &"crown", "Crown width", "How wide the crown is, on average over all directions.")
 	_add(body, &"crown_base", "Crown begins at", "How high above the ground the crown begins.")
 	_add(body, &"length", "Length of wood", "All branches laid end to end.")
@@ -67,7 +67,7 @@ func _build() -> void:
 		_selected,
 		&"place",
 		"Place",
-		"Where the node is, in metres from the tree's foot: right, up, to the front."
+		"Where the node is, in metres from the tree's base: right, up, to the front."
 	)
 	_add(
 		_selected,

@@ -97,16 +97,16 @@ func _draw() -> void:
 	var width: float = 2.0 * EditorInterface.get_editor_scale()
 	for i: int in _trees.size():
 		var box: AABB = _trees[i].get_aabb()
-		var foot: Vector3 = _place + offsets[i]
+		var base: Vector3 = _place + offsets[i]
 		var radius: float = maxf(maxf(box.size.x, box.size.z) * 0.5, _LEAST_RADIUS)
-		var middle: Vector3 = foot + Vector3(box.get_center().x, 0.0, box.get_center().z)
+		var middle: Vector3 = base + Vector3(box.get_center().x, 0.0, box.get_center().z)
 		var last: Vector3 = middle + Vector3(radius, 0.0, 0.0)
 		for k: int in range(1, _CIRCLE + 1):
 			var angle: float = TAU * k / _CIRCLE
 			var next: Vector3 = middle + Vector3(cos(angle), 0.0, sin(angle)) * radius
 			_line(camera, last, next, color, width)
 			last = next
-		_line(camera, foot, foot + Vector3(0.0, box.end.y, 0.0), color, width)
+		_line(camera, base, base + Vector3(0.0, box.end.y, 0.0), color, width)
 
 
 func _line(camera: Camera3D, from: Vector3, to: Vector3, color: Color, width: float) -> void:

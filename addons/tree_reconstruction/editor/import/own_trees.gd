@@ -67,7 +67,7 @@ func is_of(provenance: Dictionary, scan: String, fresh: Dictionary) -> bool:
 	return was.get("points_read", 0) == now.get("points_read", -1) and _is_same_place(was, now)
 
 
-# The foot of the tree, in the scan's own coordinates. Other options move it a little.
+# The base of the tree, in the scan's own coordinates. Other options move it a little.
 static func _is_same_place(was: Dictionary, now: Dictionary) -> bool:
 	var before: Array = was.get("origin", [])
 	var after: Array = now.get("origin", [])

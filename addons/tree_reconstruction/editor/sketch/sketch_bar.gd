@@ -54,7 +54,7 @@ func _init() -> void:
 			"Draw in the 3D View",
 			(
 				"Draws strokes right in the 3D view, over nothing, a scan or a photo, on the upright plane"
-				+ " through the tree's foot that faced you with the first stroke. Drag with the left button;"
+				+ " through the tree's base that faced you with the first stroke. Drag with the left button;"
 				+ " the others move the view as always. The tree becomes as large as it was drawn."
 			),
 			&"3D"

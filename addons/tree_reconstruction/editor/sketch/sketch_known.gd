@@ -15,9 +15,9 @@ class Entry:
 	## By a stroke's id.
 	var strokes: Dictionary[int, Dictionary] = {}
 	var remarks: PackedStringArray = []
-	## The pixel of the canvas at the trunk's foot, and how long a pixel is, in metres; 0 where no tree
+	## The pixel of the canvas at the trunk's base, and how long a pixel is, in metres; 0 where no tree
 	## came of it.
-	var foot: Vector2
+	var stem_base: Vector2
 	var pixel: float = 0.0
 	## Why it is no tree.
 	var sentence: String = ""
@@ -42,7 +42,7 @@ func add(sketch: TreeSketch, report: Dictionary, session: Session, sentence: Str
 		stroke["fault"] = Session.Sentences.translate(stroke.get("fault", ""), domain)
 		entry.strokes[ids[i]] = stroke
 	entry.sentence = Session.Sentences.translate(sentence, domain)
-	entry.foot = foot_of(report)
+	entry.stem_base = stem_base_of(report)
 	entry.pixel = report.get("metres_per_pixel", 0.0)
 	for remark: String in report.get("remarks", []):
 		entry.remarks.append(Session.Sentences.translate(remark, domain))
@@ -66,10 +66,10 @@ func get_faults(sketch: TreeSketch) -> PackedStringArray:
 	return faults
 
 
-## The pixel of the canvas at the trunk's foot.
-func get_foot(sketch: TreeSketch) -> Vector2:
+## The pixel of the canvas at the trunk's base.
+func get_stem_base(sketch: TreeSketch) -> Vector2:
 	var entry: Entry = _find(sketch)
-	return entry.foot if entry != null else Vector2.ZERO
+	return entry.stem_base if entry != null else Vector2.ZERO
 
 
 ## How long a pixel of the canvas is, in metres; 0 where that isn't known.
@@ -78,9 +78,9 @@ func get_pixel(sketch: TreeSketch) -> float:
 	return entry.pixel if entry != null else 0.0
 
 
-## The pixel at the trunk's foot in a report.
-static func foot_of(report: Dictionary) -> Vector2:
-	var at: Array = report.get("foot", [0.0, 0.0])
+## The pixel at the trunk's base in a report.
+static func stem_base_of(report: Dictionary) -> Vector2:
+	var at: Array = report.get("base", [0.0, 0.0])
 	return Vector2(at[0], at[1])
 
 

@@ -18,7 +18,7 @@ const Rerun := preload("../dock/rerun.gd")
 const ViewPlane := preload("view_plane.gd")
 # In metres, of a tree that is made to see how high it would be.
 const _TRIED_HEIGHT: float = 10.0
-# A tree whose foot is drawn by less off where it was, in pixels of the canvas, stays there.
+# A tree whose base is drawn by less off where it was, in pixels of the canvas, stays there.
 const _LEAST_MOVE: float = 0.05
 
 
@@ -44,7 +44,7 @@ class Order:
 
 	## Where the tree stands that was drawn on a sheet, in the world.
 	func get_place() -> Transform3D:
-		var at: Array = report.get("foot", [plane.foot.x, plane.foot.y])
+		var at: Array = report.get("base", [plane.stem_base.x, plane.stem_base.y])
 		return (plane.moved_to(Vector2(at[0], at[1])) as ViewPlane).frame
 
 	## The same as a transform of [param node]; [code]null[/code] where that stands there already.

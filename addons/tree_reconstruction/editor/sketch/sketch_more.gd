@@ -51,7 +51,7 @@ func _init() -> void:
 		Widgets.line(
 			"Trunk",
 			(
-				"How thick the trunk is at its foot. 0 is as drawn with two lines, or else as the"
+				"How thick the trunk is at its base. 0 is as drawn with two lines, or else as the"
 				+ " twigs' tree has it, or a fortieth of the height."
 			),
 			trunk_radius

@@ -291,7 +291,7 @@ func _put_on_paper() -> void:
 	options.show_sketch(_current, canvas.selected)
 	view.show_sketch(_current, canvas.understood, get_node_drawn_on(), _base())
 	view.selected = canvas.selected
-	view.set_scale_of_base(_known.get_foot(_base()), _known.get_pixel(_base()))
+	view.set_scale_of_base(_known.get_stem_base(_base()), _known.get_pixel(_base()))
 	bar.update(not _current.strokes.is_empty())
 	message.tell(_known, _current)
 
@@ -389,7 +389,7 @@ func _follow_pen() -> void:
 
 func _on_followed(order: Maker.Order, tree: TreeReconstruction) -> void:
 	var node: TreeInstance3D = get_node_drawn_on()
-	# With another foot it would stand elsewhere, which it does once the stroke is finished.
+	# With another base it would stand elsewhere, which it does once the stroke is finished.
 	var is_there: bool = order.plane == null or order.get_place_of(node) == null
 	if is_drawing() and _may_follow and node != null and is_there:
 		_follow.show(node.reconstruction, tree)

@@ -48,7 +48,7 @@ static func draw(overlay: Control, camera: Camera3D, view: ViewStrokes) -> void:
 static func _draw_ground(overlay: Control, camera: Camera3D, plane: ViewPlane) -> void:
 	var away: Vector2 = Vector2(ViewPlane.CANVAS.x * 0.3, 0.0)
 	var line: PackedVector2Array = plane.line_to_screen(
-		camera, overlay.size, [plane.foot - away, plane.foot, plane.foot + away]
+		camera, overlay.size, [plane.stem_base - away, plane.stem_base, plane.stem_base + away]
 	)
 	if line.size() == 3:
 		overlay.draw_dashed_line(line[0], line[2], _GROUND, Widgets.px(1), Widgets.px(6))

@@ -15,18 +15,18 @@ const _EDGE: Rect2 = Rect2(10.0, 10.0, 980.0, 980.0)
 const _SHARE: float = 0.8
 const _LEAST_SHARE: float = 0.4
 
-## In the world: the foot is at the origin, X goes to the right along the sheet, Y up, and Z towards
+## In the world: the base is at the origin, X goes to the right along the sheet, Y up, and Z towards
 ## who sees it.
 var frame: Transform3D
 ## The pixel of the canvas that lies at the origin of [member frame].
-var foot: Vector2
+var stem_base: Vector2
 ## How long a pixel of the canvas is, in metres of [member frame].
 var pixel: float
 
 
 func _init(sheet: Transform3D, at: Vector2, metres: float) -> void:
 	frame = sheet
-	foot = at
+	stem_base = at
 	pixel = metres
 
 
@@ -42,10 +42,10 @@ static func is_steep(camera: Transform3D) -> bool:
 	return Vector2(back.x, back.z).length() < LEAST_FACING
 
 
-## The same sheet, with the origin at another pixel of the canvas: so far was the foot from where it
+## The same sheet, with the origin at another pixel of the canvas: so far was the base from where it
 ## was taken for.
 func moved_to(at: Vector2) -> RefCounted:
-	var off: Vector3 = Vector3((at.x - foot.x) * pixel, (foot.y - at.y) * pixel, 0.0)
+	var off: Vector3 = Vector3((at.x - stem_base.x) * pixel, (stem_base.y - at.y) * pixel, 0.0)
 	return _like(frame.translated_local(off), at, pixel)
 
 
@@ -57,7 +57,7 @@ func is_slanted(camera: Transform3D) -> bool:
 
 ## The place in the world of a pixel of the canvas.
 func to_world(at: Vector2) -> Vector3:
-	return frame * Vector3((at.x - foot.x) * pixel, (foot.y - at.y) * pixel, 0.0)
+	return frame * Vector3((at.x - stem_base.x) * pixel, (stem_base.y - at.y) * pixel, 0.0)
 
 
 ## Where a pixel of the canvas is seen. Behind the camera it is [constant Vector2.INF].
@@ -99,7 +99,7 @@ func to_canvas(camera: Camera3D, size: Vector2, position: Vector2) -> Vector2:
 	var v: float = (m00 * r1 - r0 * m10) / det
 	if u * clip.x.w + v * clip.y.w + clip.w.w <= 1e-6:
 		return Vector2.INF
-	return Vector2(foot.x + u / pixel, foot.y - v / pixel)
+	return Vector2(stem_base.x + u / pixel, stem_base.y - v / pixel)
 
 
 ## How a drawing that takes [param box] of the canvas comes to lie well on it, as a scale and what
@@ -117,7 +117,7 @@ static func fit(box: Rect2) -> Transform2D:
 
 ## The sheet of a canvas whose drawing was moved by what [method fit] returned.
 func fitted(by: Transform2D) -> RefCounted:
-	return _like(frame, by * foot, pixel / by.x.x)
+	return _like(frame, by * stem_base, pixel / by.x.x)
 
 
 static func _like(sheet: Transform3D, at: Vector2, metres: float) -> RefCounted:
@@ -125,8 +125,8 @@ static func _like(sheet: Transform3D, at: Vector2, metres: float) -> RefCounted:
 
 
 func _seen(clip: Projection, size: Vector2, at: Vector2) -> Vector2:
-	var u: float = (at.x - foot.x) * pixel
-	var v: float = (foot.y - at.y) * pixel
+	var u: float = (at.x - stem_base.x) * pixel
+	var v: float = (stem_base.y - at.y) * pixel
 	var place: Vector4 = clip.x * u + clip.y * v + clip.w
 	if place.w <= 1e-6:
 		return Vector2.INF

@@ -28,9 +28,9 @@ const ViewPlane := preload("view_plane.gd")
 # has to be.
 const _SHORTEST: float = 6.0
 const _NEAR: float = 9.0
-# Where the foot is on a canvas that nothing is drawn on, and so far off is a sheet without a
+# Where the base is on a canvas that nothing is drawn on, and so far off is a sheet without a
 # ground.
-const _FOOT: Vector2 = Vector2(500.0, 960.0)
+const _BASE: Vector2 = Vector2(500.0, 960.0)
 const _AHEAD: float = 10.0
 # So many steps can be undone with the sheet of each known.
 const _MOST: int = 64
@@ -66,7 +66,7 @@ var _was_accumulated: bool = true
 # The tree that stands, the strokes that it was made of, and their sheet in its space.
 var _node: WeakRef = weakref(null)
 var _base: TreeSketch
-var _foot: Vector2
+var _stem_base: Vector2
 var _pixel: float = 0.0
 # The sheets of sketches that no tree was made of yet: [sketch, sheet].
 var _sheets: Array[Array] = []
@@ -96,10 +96,10 @@ func show_sketch(
 	changed.emit()
 
 
-## What is known of the tree that stands: at which pixel of its canvas its foot is, and how long a
+## What is known of the tree that stands: at which pixel of its canvas its base is, and how long a
 ## pixel is, in metres.
-func set_scale_of_base(foot: Vector2, pixel: float) -> void:
-	_foot = foot
+func set_scale_of_base(stem_base: Vector2, pixel: float) -> void:
+	_stem_base = stem_base
 	_pixel = pixel
 	changed.emit()
 
@@ -108,7 +108,7 @@ func set_scale_of_base(foot: Vector2, pixel: float) -> void:
 func plane_of(of: TreeSketch) -> ViewPlane:
 	var node: TreeInstance3D = _node.get_ref() as TreeInstance3D
 	if is_same(of, _base) and _pixel > 0.0 and node != null and node.is_inside_tree():
-		return ViewPlane.new(node.global_transform, _foot, _pixel)
+		return ViewPlane.new(node.global_transform, _stem_base, _pixel)
 	for i: int in range(_sheets.size() - 1, -1, -1):
 		if is_same(_sheets[i][0], of):
 			return _sheets[i][1]
@@ -351,22 +351,22 @@ func _lowest() -> Vector2:
 	return lowest
 
 
-# A sheet for strokes that have none, or that come down elsewhere than on that: through the foot of
+# A sheet for strokes that have none, or that come down elsewhere than on that: through the base of
 # the scan or of the photos' tree that they are drawn over, else through the ground below them.
 func _put_up(before: ViewPlane) -> ViewPlane:
 	var over: TreeInstance3D = _find_over()
 	_over = weakref(over)
-	var foot: Vector3
+	var stem_base: Vector3
 	if over != null:
 		var tree: TreeReconstruction = over.reconstruction
-		foot = over.global_transform * tree.get_node_position(tree.get_root())
+		stem_base = over.global_transform * tree.get_node_position(tree.get_root())
 	else:
 		var ground: Variant = (
 			find_ground.call(camera, _size, _lowest()) if find_ground.is_valid() else null
 		)
 		if ground == null and before != null:
 			return before
-		foot = ground if ground != null else _ahead()
+		stem_base = ground if ground != null else _ahead()
 		if ground == null:
 			(
 				said
@@ -376,7 +376,7 @@ func _put_up(before: ViewPlane) -> ViewPlane:
 					)
 				)
 			)
-	var frame: Transform3D = ViewPlane.facing(camera.global_transform, foot)
+	var frame: Transform3D = ViewPlane.facing(camera.global_transform, stem_base)
 	if before != null and not before.is_slanted(camera.global_transform):
 		# It faces who drew the first stroke.
 		frame.basis = before.frame.basis.orthonormalized()
@@ -387,7 +387,7 @@ func _put_up(before: ViewPlane) -> ViewPlane:
 		var high: Vector2 = unit.to_canvas(camera, _size, at)
 		if high.is_finite():
 			seen = maxf(seen, absf(high.y))
-	return ViewPlane.new(frame, _FOOT, clampf(seen, 0.1, 100.0) / ViewPlane.CANVAS.y)
+	return ViewPlane.new(frame, _BASE, clampf(seen, 0.1, 100.0) / ViewPlane.CANVAS.y)
 
 
 func _find_over() -> TreeInstance3D:

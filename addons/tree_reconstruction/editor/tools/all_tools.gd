@@ -20,7 +20,7 @@ const _TOOLS: Array[GDScript] = [
 	preload("leaf_rule.gd"),
 	preload("length.gd"),
 	preload("complete.gd"),
-	preload("limb.gd"),
+	preload("draw_branch.gd"),
 	preload("paint_bark.gd"),
 	preload("doubt.gd"),
 	preload("unfit.gd"),

@@ -29,7 +29,7 @@ func get_title() -> String:
 func get_tooltip() -> String:
 	return tr(
 		(
-			"Click two places of the scan between which you know the length, such as the foot of the"
+			"Click two places of the scan between which you know the length, such as the base of the"
 			+ " trunk and a mark on it, and type it below the viewport: the tree gets its true size."
 			+ " Photos have no scale."
 		)

@@ -1,6 +1,6 @@
 @tool
 extends RefCounted
-## A camera of the scene as the pinhole that [method TreeReconstructor.draw_limb] asks for, in a
+## A camera of the scene as the pinhole that [method TreeReconstructor.sketch_branch] asks for, in a
 ## tree's space.
 ##
 ## An orthogonal camera becomes a pinhole so far behind it that what it sees is the same within a
@@ -34,7 +34,7 @@ func _init(
 	var pose: Transform3D = frame.affine_inverse() * of.get_camera_transform()
 	if not _is_even(pose.basis):
 		sentence = tr(
-			"The node is scaled unevenly: a limb can be drawn only where all its axes are scaled alike."
+			"The node is scaled unevenly: a branch can be drawn only where all its axes are scaled alike."
 		)
 		return
 	# Metres of the tree to one of the scene.
@@ -66,7 +66,7 @@ func _init(
 		if away < _LEAST_FAR * across_tree:
 			sentence = tr(
 				(
-					"This orthogonal view is too near to draw a limb in it: go farther away, or look with"
+					"This orthogonal view is too near to draw a branch in it: go farther away, or look with"
 					+ " perspective."
 				)
 			)

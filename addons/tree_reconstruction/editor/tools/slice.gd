@@ -30,7 +30,7 @@ func get_title() -> String:
 func get_tooltip() -> String:
 	return tr(
 		(
-			"Drag a line over the tree to cut off what lies beyond it, seen from the foot, or a rectangle"
+			"Drag a line over the tree to cut off what lies beyond it, seen from the base, or a rectangle"
 			+ " around what shall go. It is shown in red; Enter cuts it, Escape lets it be. The faces"
 			+ " of a box have handles to drag them."
 		)
@@ -233,9 +233,9 @@ func _take_line(from: Vector3, to: Vector3) -> void:
 	if _normal == Vector3.ZERO:
 		_ends = []
 		return
-	# The foot stays: what lies on its side of the line can't go.
-	var foot: Vector3 = session.tree.get_node_position(session.tree.get_root())
-	if _normal.dot(foot - _ends[0]) > 0.0:
+	# The base stays: what lies on its side of the line can't go.
+	var base: Vector3 = session.tree.get_node_position(session.tree.get_root())
+	if _normal.dot(base - _ends[0]) > 0.0:
 		_normal = -_normal
 
 

@@ -152,7 +152,7 @@ const PATTERNS: PackedStringArray = [
 		+ " axis by hand."
 	),
 	(
-		"Leaves hide much of the wood: %s % of the limbs in the crown were guessed from the paths"
+		"Leaves hide much of the wood: %s % of the branches in the crown were guessed from the paths"
 		+ " through the leaves."
 	),
 	"The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.",
@@ -268,8 +268,8 @@ const PATTERNS: PackedStringArray = [
 		"The photos were not matched pixel by pixel, so that it is not known what stands before the"
 		+ " trunk."
 	),
-	"The tree has no piece of trunk below its first limb that bark could be taken from.",
-	"No photo shows the trunk below its first limb from the front.",
+	"The tree has no piece of trunk below its first branch that bark could be taken from.",
+	"No photo shows the trunk below its first branch from the front.",
 	"None of the photos that show the trunk can be read.",
 	(
 		"The photos show the bark with pixels of %s mm, and a picture of it needs %s mm or less: take"
@@ -414,14 +414,14 @@ const PATTERNS: PackedStringArray = [
 ]
 const TwigSentences := preload("twig_sentences.gd")
 const SketchSentences := preload("sketch_sentences.gd")
-const LimbSentences := preload("limb_sentences.gd")
+const BranchSentences := preload("branch_sentences.gd")
 const GrowthSentences := preload("growth_sentences.gd")
 const SkeletonSentences := preload("skeleton_sentences.gd")
 const _ALL: PackedStringArray = (
 	PATTERNS
 	+ TwigSentences.PATTERNS
 	+ SketchSentences.PATTERNS
-	+ LimbSentences.PATTERNS
+	+ BranchSentences.PATTERNS
 	+ GrowthSentences.PATTERNS
 	+ SkeletonSentences.PATTERNS
 )

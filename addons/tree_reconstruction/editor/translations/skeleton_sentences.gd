@@ -12,7 +12,7 @@ const PATTERNS: PackedStringArray = [
 		+ " none."
 	),
 	(
-		"The points around the foot lie on no cylinder, so all radii are guesses by how far the tree"
+		"The points around the base lie on no cylinder, so all radii are guesses by how far the tree"
 		+ " reaches."
 	),
 ]

@@ -46,7 +46,7 @@ const PATTERNS: PackedStringArray = [
 		+ " ground up, or the outline of the crown."
 	),
 	"The crown's outline encloses nothing; draw it around the crown.",
-	"Nothing is drawn above the trunk's foot; draw the tree from the ground up.",
+	"Nothing is drawn above the trunk's base; draw the tree from the ground up.",
 	"The density of twigs must be from 0 to 4.",
 	"The trunk's radius must be from 0 to a fifth of the tree's height.",
 	"There are no twigs of %s for a sketch; use one of: %s.",

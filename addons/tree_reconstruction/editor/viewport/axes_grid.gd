@@ -1,6 +1,6 @@
 @tool
 extends RefCounted
-## The tree's axes with a scale of metres, and squares of a metre at its foot with a person beside
+## The tree's axes with a scale of metres, and squares of a metre at its base with a person beside
 ## it, as layers of the gizmo.
 
 const Session: GDScript = preload("../session.gd")

@@ -248,7 +248,7 @@ func _turn_home(menu: PopupMenu, camera: Camera3D) -> void:
 		_choose(menu, _PERSPECTIVE)
 
 
-# The editor centres on the node's origin, which is the tree's foot: so the node is lifted while it
+# The editor centres on the node's origin, which is the tree's base: so the node is lifted while it
 # does. Nobody sees it.
 func _centre(menu: PopupMenu) -> void:
 	var node: TreeInstance3D = _session.node

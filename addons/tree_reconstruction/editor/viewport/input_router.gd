@@ -157,7 +157,7 @@ func _press(event: InputEventKey) -> bool:
 		return _cancel()
 	if action not in [&"edit_skeleton", &"view_selection"] and not _session.view.editing:
 		# The editor's own keys, as those of its tools, are not touched then. But it would look at
-		# the tree's foot alone.
+		# the tree's base alone.
 		return false
 	asked.emit(action)
 	return true

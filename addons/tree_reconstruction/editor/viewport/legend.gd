@@ -120,8 +120,14 @@ func _add_channel(channel: int) -> void:
 			key = Meaning.new(tr("Branch Level"))
 			_add_orders(key)
 			key.add(_NOTHING, tr("Leaves, without one"))
-		TreeWind.Channel.LIMB, TreeWind.Channel.BOUGH:
-			key = Meaning.new(tr("Limbs") if channel == TreeWind.Channel.LIMB else tr("Boughs"))
+		TreeWind.Channel.PRIMARY_BRANCH, TreeWind.Channel.SECONDARY_BRANCH:
+			key = Meaning.new(
+				(
+					tr("Primary Branches")
+					if channel == TreeWind.Channel.PRIMARY_BRANCH
+					else tr("Secondary Branches")
+				)
+			)
 			key.set_ramp(_GREY, [tr("Base"), tr("Far out")])
 			for i: int in 3:
 				key.add(_hue(i / 3.0), tr("One of them"))
@@ -207,8 +213,8 @@ static func _draw_bar(overlay: Control, colors: PackedColorArray, box: Rect2, in
 static func _write(overlay: Control, text: String, at: Vector2, color: Color) -> void:
 	var font: Font = overlay.get_theme_default_font()
 	var size: int = overlay.get_theme_default_font_size()
-	var foot: Vector2 = at + Vector2(0.0, font.get_ascent(size))
-	overlay.draw_string(font, foot, text, HORIZONTAL_ALIGNMENT_LEFT, -1, size, color)
+	var baseline: Vector2 = at + Vector2(0.0, font.get_ascent(size))
+	overlay.draw_string(font, baseline, text, HORIZONTAL_ALIGNMENT_LEFT, -1, size, color)
 
 
 static func _width_of(overlay: Control, text: String) -> float:

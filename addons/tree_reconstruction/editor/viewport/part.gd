@@ -25,7 +25,12 @@ const AllTools: GDScript = preload("../tools/all_tools.gd")
 
 # Our keys over a photo.
 const _OVER_PHOTOS: Array[StringName] = [
-	&"compare_photos", &"show_mesh", &"show_leaves", &"screenshot", &"tool_limb", &"tool_select"
+	&"compare_photos",
+	&"show_mesh",
+	&"show_leaves",
+	&"screenshot",
+	&"tool_draw_branch",
+	&"tool_select"
 ]
 
 var _plugin: EditorPlugin
@@ -179,7 +184,7 @@ func _make_input() -> void:
 	_router.missed.connect(_give_back)
 	for id: StringName in _session.tools:
 		_session.tools[id].changed.connect(_on_tool_wants)
-	for id: StringName in [&"select", &"limb"]:
+	for id: StringName in [&"select", &"draw_branch"]:
 		if _session.tools.has(id):
 			_session.tools[id].set(&"give_back", _give_back)
 	_picker.set(&"are_arrows_shown", _transform_tools.are_shown)

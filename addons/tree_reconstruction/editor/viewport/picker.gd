@@ -49,10 +49,10 @@ func is_near(camera: Camera3D, position: Vector2) -> bool:
 func is_on_arrows(camera: Camera3D, position: Vector2) -> bool:
 	if are_arrows_shown.is_valid() and not are_arrows_shown.call():
 		return false
-	var foot: Vector2 = project_place(camera, Vector3.ZERO)
+	var base: Vector2 = project_place(camera, Vector3.ZERO)
 	# They shrink in low viewports.
 	var low: float = minf(get_size(camera).y / _LOW, 1.0)
-	return foot.distance_to(position) <= _ARROWS * get_scale() * low
+	return base.distance_to(position) <= _ARROWS * get_scale() * low
 
 
 ## The nodes that are seen in a rectangle.

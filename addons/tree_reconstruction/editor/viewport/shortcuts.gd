@@ -37,6 +37,9 @@ const _KEYS: Dictionary[StringName, Array] = {
 	&"cancel": [KEY_ESCAPE],
 }
 
+# What older versions called actions in the settings, where users may have set their own keys.
+const _OLD_NAMES: Dictionary[StringName, StringName] = {&"tool_draw_branch": &"tool_limb"}
+
 # By the action: what stands in for the editor's settings in tests, too.
 var _shortcuts: Dictionary[StringName, Shortcut] = {}
 var _settings: EditorSettings
@@ -103,4 +106,7 @@ func _add(action: StringName, keys: Array) -> void:
 	shortcut.resource_name = action.capitalize()
 	_shortcuts[action] = shortcut
 	if _settings != null and not _settings.has_shortcut(_SECTION + action):
+		var old: StringName = _OLD_NAMES.get(action, NONE)
+		if old != NONE and _settings.has_shortcut(_SECTION + old):
+			shortcut.events = _settings.get_shortcut(_SECTION + old).events
 		_settings.add_shortcut(_SECTION + action, shortcut)

@@ -146,8 +146,8 @@ func _add_channels() -> void:
 		tr("Ambient Occlusion"),
 		tr("Pivot"),
 		tr("Branch Level"),
-		tr("Limbs"),
-		tr("Boughs"),
+		tr("Primary Branches"),
+		tr("Secondary Branches"),
 		tr("Motion"),
 	]
 	for title: String in titles:

@@ -248,8 +248,8 @@ func _make(level: int, key: Vector2i, place: int) -> void:
 			continue
 		for row: int in cell.rows[kind]:
 			var at: int = Stand.FLOATS * row
-			var foot: Vector3 = stand.place_of_row(row)
-			box = box.expand(foot) if not buffer.is_empty() else AABB(foot, Vector3.ZERO)
+			var base: Vector3 = stand.place_of_row(row)
+			box = box.expand(base) if not buffer.is_empty() else AABB(base, Vector3.ZERO)
 			buffer.append_array(stand.buffer.slice(at, at + Stand.FLOATS))
 	var scale: float = turns[place][level].scale
 	if scale != 1.0:
@@ -271,13 +271,13 @@ func _make(level: int, key: Vector2i, place: int) -> void:
 	_fill(part, buffer, turns[place][level], box)
 
 
-func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, feet: AABB) -> void:
+func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, bases: AABB) -> void:
 	var multimesh: MultiMesh = part.multimesh
 	multimesh.mesh = turn.mesh
 	@warning_ignore("integer_division")
 	multimesh.instance_count = buffer.size() / Stand.FLOATS
 	multimesh.buffer = buffer
-	# Trees turn about their feet and grow by their scale.
+	# Trees turn about their bases and grow by their scale.
 	var mesh_box: AABB = (turn.mesh as ArrayMesh).custom_aabb
 	var wide: float = 0.0
 	for i: int in 8:
@@ -288,8 +288,8 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	var low: float = maxf(-mesh_box.position.y, 0.0) * largest
 	var high: float = mesh_box.end.y * largest
 	var box: AABB = AABB(
-		feet.position - Vector3(wide, low, wide),
-		feet.size + Vector3(2.0 * wide, low + high, 2.0 * wide)
+		bases.position - Vector3(wide, low, wide),
+		bases.size + Vector3(2.0 * wide, low + high, 2.0 * wide)
 	)
 	multimesh.custom_aabb = box
 	part.custom_aabb = box
@@ -297,7 +297,7 @@ func _fill(part: MultiMeshInstance3D, buffer: PackedFloat32Array, turn: Turn, fe
 	# The engine measures to the middle of the box.
 	var off: float = 0.0
 	if turn.by_tree:
-		off = 0.5 * feet.size.length() + feet.get_center().distance_to(box.get_center())
+		off = 0.5 * bases.size.length() + bases.get_center().distance_to(box.get_center())
 	part.visibility_range_begin = maxf(turn.begin - turn.begin_margin - off, 0.0)
 	part.visibility_range_end = turn.end + turn.end_margin + off
 	if not turn.by_tree:

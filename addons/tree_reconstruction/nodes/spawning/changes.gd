@@ -6,7 +6,7 @@ extends RefCounted
 const Stand := preload("stand.gd")
 ## The version of what [method to_state] gives. A newer one is refused.
 const FORMAT_VERSION: int = 1
-# The foot of a tree moves less than this, seen from above, when the ground under it changes.
+# The base of a tree moves less than this, seen from above, when the ground under it changes.
 const _SAME: float = 0.1
 const _FLOATS: int = 12
 
@@ -62,7 +62,7 @@ func apply(stand: Stand) -> void:
 		else:
 			lost.append(i)
 	for i: int in lost:
-		_removed[i] = stand.find_foot(_places[i], _SAME)
+		_removed[i] = stand.find_base(_places[i], _SAME)
 		if _removed[i] >= 0:
 			stand.remove(_removed[i])
 	for id: int in _added:

@@ -24,7 +24,7 @@ const _CELL_SHARE: float = 0.45
 # Likewise over the view's distance, of cells that all levels share.
 const _SHARED_CELL: float = 0.15
 const _LEAST_CELL: float = 6.0
-# How deep the feet of trees are in the ground, in metres.
+# How deep the bases of trees are in the ground, in metres.
 const _SINK: float = 0.03
 const _MEGABYTE: int = 1_000_000
 # What the individuals are of the work where they are built, too.

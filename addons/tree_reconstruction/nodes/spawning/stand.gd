@@ -42,7 +42,7 @@ class Grid:
 			cells.erase(key)
 
 
-## What stands in one cell: by individual, the rows of the trees. The box is around their feet.
+## What stands in one cell: by individual, the rows of the trees. The box is around their bases.
 class Cell:
 	extends RefCounted
 	var rows: Dictionary[int, PackedInt32Array] = {}
@@ -200,7 +200,7 @@ func near(at: Vector3, reach: float) -> PackedInt32Array:
 
 ## The tree of the forest's own that stands there, seen from above, within [param reach]; of several
 ## that whose height is nearest. -1 where none does.
-func find_foot(at: Vector3, reach: float) -> int:
+func find_base(at: Vector3, reach: float) -> int:
 	var found: int = -1
 	var best: float = INF
 	var grid: Grid = grids[0]

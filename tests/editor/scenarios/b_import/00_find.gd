@@ -23,8 +23,8 @@ func _find() -> void:
 	# The engine has taken the table for translations before anybody can tell that it is a cloud.
 	expect_error("Error importing CSV translation")
 	DirAccess.make_dir_recursive_absolute("res://scans/oak/sparse/0")
-	_write(SCAN, _limbs())
-	_write("res://scans/bush.csv", _limbs().replace(" ", ","))
+	_write(SCAN, _branches())
+	_write("res://scans/bush.csv", _branches().replace(" ", ","))
 	_write("res://scans/notes.txt", "Cut on Tuesday.\n".repeat(400))
 	_write("res://scans/words.csv", "keys,en,de\n" + "HELLO,Hello,Hallo\n".repeat(400))
 	_write(
@@ -32,7 +32,7 @@ func _find() -> void:
 		(
 			"# 3D point list with one line of data per point:\n"
 			+ "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[]\n"
-			+ _numbered(_limbs())
+			+ _numbered(_branches())
 		)
 	)
 	await _look()
@@ -148,7 +148,7 @@ func _reimport_edited() -> void:
 	var edited: PackedByteArray = bytes(local)
 	var tips_before: int = local.measure()["tips"]
 	check(not log_before.is_empty(), "Nothing was edited.")
-	_write(SCAN, _limbs(5))
+	_write(SCAN, _branches(5))
 	await _look()
 	await until(func() -> bool: return bytes(local) != edited, "the edits are done on the new scan")
 	check(node.reconstruction == local, "The node shows another tree.")
@@ -163,7 +163,7 @@ func _reimport_edited() -> void:
 	check_equal(bytes(local), again, "the tree after redo")
 	await step("edits that no longer fit are shown in the view, and nothing else is lost")
 	local.edit_log += "\ncut node=99999@0.6:-0.5:2.5:0:0:1:0.3"
-	_write(SCAN, _limbs(6))
+	_write(SCAN, _branches(6))
 	await _look()
 	if await until(
 		func() -> bool: return dialog("No Longer Fit") != null, "a dialog tells of the edit"
@@ -191,7 +191,7 @@ func _reimport_edited() -> void:
 	node = null
 	local = null
 	await user.frames(4)
-	_write(SCAN, _limbs(4))
+	_write(SCAN, _branches(4))
 	await _look()
 	await until(
 		func() -> bool: return FileAccess.get_md5(path) != FileAccess.get_md5(path + ".bak"),
@@ -270,20 +270,22 @@ func _numbered(points: String) -> String:
 
 
 # A scan of a small forked tree, with as many branches.
-func _limbs(branches: int = 4) -> String:
+func _branches(branches: int = 4) -> String:
 	var random: RandomNumberGenerator = RandomNumberGenerator.new()
 	random.seed = 11
 	var lines: PackedStringArray = []
-	var limbs: Array[Array] = [[Vector3.ZERO, Vector3(0.05, 0.0, 2.2), 0.08, 0.06]]
+	var side_branches: Array[Array] = [[Vector3.ZERO, Vector3(0.05, 0.0, 2.2), 0.08, 0.06]]
 	for i: int in branches:
 		var side: Vector3 = Vector3.RIGHT.rotated(Vector3.BACK, i * 2.4)
 		var from: Vector3 = Vector3(0.05, 0.0, 2.2 - 0.25 * i)
-		limbs.append([from, from + side * 0.7 + Vector3(0.0, 0.0, 1.25 - 0.1 * i), 0.045, 0.02])
+		side_branches.append(
+			[from, from + side * 0.7 + Vector3(0.0, 0.0, 1.25 - 0.1 * i), 0.045, 0.02]
+		)
 		from = from + side * 0.35 + Vector3(0.0, 0.0, 0.6)
-		limbs.append([from, from + side.rotated(Vector3.BACK, 1.2) * 0.5, 0.02, 0.01])
-	for limb: Array in limbs:
-		var from: Vector3 = limb[0]
-		var to: Vector3 = limb[1]
+		side_branches.append([from, from + side.rotated(Vector3.BACK, 1.2) * 0.5, 0.02, 0.01])
+	for side_branch: Array in side_branches:
+		var from: Vector3 = side_branch[0]
+		var to: Vector3 = side_branch[1]
 		var along: Vector3 = (to - from).normalized()
 		var across: Vector3 = along.cross(Vector3(0.9, 0.2, 0.1)).normalized()
 		for i: int in int(from.distance_to(to) * 2500.0):
@@ -291,7 +293,7 @@ func _limbs(branches: int = 4) -> String:
 			var place: Vector3 = from.lerp(to, t)
 			place += (
 				across.rotated(along, random.randf() * TAU)
-				* (lerpf(limb[2], limb[3], t) + random.randfn() * 0.001)
+				* (lerpf(side_branch[2], side_branch[3], t) + random.randfn() * 0.001)
 			)
 			lines.append("%.5f %.5f %.5f" % [place.x, place.y, place.z])
 	return "\n".join(lines)

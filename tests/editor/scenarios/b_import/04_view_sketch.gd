@@ -78,24 +78,24 @@ func _ring(around: Vector2, radii: Vector2) -> PackedVector2Array:
 	return line
 
 
-# A trunk whose foot is at a place of the screen, two branches and an outline: so high.
-func _draw_tree(foot: Vector2, high: float) -> void:
-	await _stroke([foot, foot + Vector2(3.0, -0.4 * high), foot + Vector2(0.0, -0.85 * high)])
+# A trunk whose base is at a place of the screen, two branches and an outline: so high.
+func _draw_tree(base: Vector2, high: float) -> void:
+	await _stroke([base, base + Vector2(3.0, -0.4 * high), base + Vector2(0.0, -0.85 * high)])
 	await _stroke(
 		[
-			foot + Vector2(2.0, -0.4 * high),
-			foot + Vector2(0.15, -0.55) * high,
-			foot + Vector2(0.25, -0.72) * high
+			base + Vector2(2.0, -0.4 * high),
+			base + Vector2(0.15, -0.55) * high,
+			base + Vector2(0.25, -0.72) * high
 		]
 	)
 	await _stroke(
 		[
-			foot + Vector2(2.0, -0.5 * high),
-			foot + Vector2(-0.13, -0.6) * high,
-			foot + Vector2(-0.22, -0.75) * high
+			base + Vector2(2.0, -0.5 * high),
+			base + Vector2(-0.13, -0.6) * high,
+			base + Vector2(-0.22, -0.75) * high
 		]
 	)
-	await _stroke(_ring(foot + Vector2(0.0, -0.66 * high), Vector2(0.3, 0.34) * high))
+	await _stroke(_ring(base + Vector2(0.0, -0.66 * high), Vector2(0.3, 0.34) * high))
 
 
 # Where the wood of the tree is seen on the screen.
@@ -120,7 +120,7 @@ func _check_box(seen: Rect2) -> void:
 		[seen.position.x, wanted.position.x, "left"],
 		[seen.position.y, wanted.position.y, "top"],
 		[seen.end.x, wanted.end.x, "right"],
-		[seen.end.y, wanted.end.y, "foot"],
+		[seen.end.y, wanted.end.y, "bottom"],
 	]:
 		check(
 			absf(side[0] - side[1]) < reach,
@@ -167,8 +167,8 @@ func _draw_over_nothing() -> void:
 	var camera: Transform3D = view().get_camera_3d().global_transform
 	_drawn = []
 	var free: Rect2 = _free()
-	var foot: Vector2 = Vector2(free.get_center().x, free.end.y - 40.0)
-	await _draw_tree(foot, free.size.y * 0.75)
+	var base: Vector2 = Vector2(free.get_center().x, free.end.y - 40.0)
+	await _draw_tree(base, free.size.y * 0.75)
 	if not await until(
 		func() -> bool: return _strokes() == 4, "a tree of all strokes stands there"
 	):
@@ -188,13 +188,13 @@ func _undo() -> void:
 		return
 	var made: PackedByteArray = bytes(_tree().reconstruction)
 	var place: Transform3D = _tree().global_transform
-	var foot: Vector2 = on_screen(_tree().global_position)
+	var base: Vector2 = on_screen(_tree().global_position)
 	await _stroke(
-		[foot + Vector2(0.0, -150.0), foot + Vector2(60.0, -210.0), foot + Vector2(80.0, -260.0)]
+		[base + Vector2(0.0, -150.0), base + Vector2(60.0, -210.0), base + Vector2(80.0, -260.0)]
 	)
 	if not await until(func() -> bool: return _strokes() == 5, "it has one more branch"):
 		return
-	await user.move(foot + Vector2(150.0, -20.0))
+	await user.move(base + Vector2(150.0, -20.0))
 	await user.key("ctrl+z")
 	if not await until(func() -> bool: return _strokes() == 4, "the branch is undone"):
 		return
@@ -256,17 +256,17 @@ func _draw_in_a_scan() -> void:
 	await user.frames(5)
 	var state: PackedByteArray = bytes(made)
 	_drawn = []
-	var foot: Vector2 = on_screen(node.global_position)
+	var base: Vector2 = on_screen(node.global_position)
 	var free: Rect2 = _free()
-	check(free.has_point(foot), "The window hides the scan's foot.")
+	check(free.has_point(base), "The window hides the scan's base.")
 	await picture("view-sketch-scan-empty")
-	await _draw_tree(foot, (foot.y - free.position.y) * 0.8)
+	await _draw_tree(base, (base.y - free.position.y) * 0.8)
 	if not await until(func() -> bool: return _strokes() == 4, "a tree stands in the scan"):
 		await picture("view-sketch-FAILED")
 		return
 	await until(_is_calm, "it is built")
 	var off: Vector3 = _tree().global_position - node.global_position
-	check(off.length() < 0.1, "It stands %s off the scan's foot." % off)
+	check(off.length() < 0.1, "It stands %s off the scan's base." % off)
 	check(bytes(made) == state, "The scan's own tree was changed.")
 	_check_scan_alone()
 	check(session().node == _tree(), "The new tree isn't selected.")
@@ -327,9 +327,9 @@ func _draw_over_a_photo() -> void:
 	await user.frames(5)
 	_drawn = []
 	var shown: Rect2 = _stage().call(&"get_shown")
-	var foot: Vector2 = _on_stage(node.global_position)
-	var high: float = 0.8 * (foot.y - (_stage().get_global_rect().position.y + 10.0))
-	await _draw_tree(foot, high)
+	var base: Vector2 = _on_stage(node.global_position)
+	var high: float = 0.8 * (base.y - (_stage().get_global_rect().position.y + 10.0))
+	await _draw_tree(base, high)
 	if not await until(func() -> bool: return _strokes() == 4, "a tree stands over the photo"):
 		await picture("view-sketch-FAILED")
 		return
@@ -338,7 +338,7 @@ func _draw_over_a_photo() -> void:
 		return
 	check_equal(_stage().call(&"get_shown"), shown, "what is seen of the photo")
 	var off: Vector3 = _tree().global_transform.affine_inverse() * node.global_position
-	check(off.length() < 0.15, "It stands %s off the foot." % off)
+	check(off.length() < 0.15, "It stands %s off the base." % off)
 	var box: Rect2 = Rect2(_on_stage(_tree().global_position), Vector2.ZERO)
 	for place: Vector3 in _tree().reconstruction.get_positions():
 		box = box.expand(_on_stage(_tree().global_transform * place))

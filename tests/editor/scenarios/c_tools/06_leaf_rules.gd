@@ -1,23 +1,23 @@
 @tool
 extends "../../test_plugin/garden.gd"
-## Some wood gets leaves of its own: a selected limb, end nodes, a branch that is clicked.
+## Some wood gets leaves of its own: a selected branch, end nodes, a branch that is clicked.
 
 var _node: TreeInstance3D
 var _of: TreeReconstruction
 
 
 func run() -> void:
-	await step("the Leaf rule tool gives the selected limb leaves of its own, as one step")
+	await step("the Leaf rule tool gives the selected branch leaves of its own, as one step")
 	_node = await open_garden("res://leaf_rules.tscn", own_tree("res://leaf_rules_tree.res"))
 	if _node == null:
 		return
 	_of = _node.reconstruction
-	var limb: int = clear_nodes(_node, large_branches(_of))[0]
-	var above: PackedInt32Array = _of.select_nodes("below:%d" % limb)
+	var branch: int = clear_nodes(_node, large_branches(_of))[0]
+	var above: PackedInt32Array = _of.select_nodes("below:%d" % branch)
 	var before: PackedByteArray = bytes(_of)
-	await user.click(node_on_screen(_node, limb))
+	await user.click(node_on_screen(_node, branch))
 	if not await until(
-		func() -> bool: return _selected() == PackedInt32Array([limb]), "it is selected"
+		func() -> bool: return _selected() == PackedInt32Array([branch]), "it is selected"
 	):
 		return
 	if not await take_tool(&"leaf_rule", "F2"):
@@ -26,7 +26,7 @@ func run() -> void:
 	await choose("Maple")
 	await until(
 		func() -> bool: return _of.count_leaf_rules(above).keys() == ["maple"],
-		"the limb is a maple's"
+		"the branch is a maple's"
 	)
 	check_equal(_of.count_leaf_rules(_of.get_node_ids()).size(), 2, "rules on the tree")
 	check(_of.edit_log.contains("leaves where=below:"), "The log does not tell of it.")
@@ -36,7 +36,7 @@ func run() -> void:
 	await until(func() -> bool: return not _node.is_building_levels(), "the tree is built")
 	await until(func() -> bool: return "maple_leaf.tres" in _shown(), "its leaves are shown")
 	check("birch_leaf.tres" in _shown(), "The tree's own leaves are gone: %s." % _shown())
-	await picture("a-limb-of-a-maple")
+	await picture("a-branch-of-a-maple")
 
 	await step("one undo takes it back, bit for bit, and one redo does it again")
 	await user.move(middle(view().get_parent() as Control))
@@ -50,7 +50,7 @@ func run() -> void:
 	await step("a click gives the leaves to the branch under the mouse")
 	var other: int = TreeReconstruction.NO_NODE
 	for id: int in clear_nodes(_node, large_branches(_of)):
-		if not id in above and not limb in _of.select_nodes("below:%d" % id):
+		if not id in above and not branch in _of.select_nodes("below:%d" % id):
 			other = id
 			break
 	if other != TreeReconstruction.NO_NODE:
