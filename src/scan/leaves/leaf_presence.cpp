@@ -46,7 +46,7 @@ constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to
 // Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
 constexpr double kBroadPlanarity = 0.4;
 
-// As the rule of wood_leaf.cpp, for shapes on the coarser grids alone, which are quick to find.
+// A logistic rule, for shapes on the coarser grids alone, which are quick to find.
 constexpr float kQuickBias = -0.6825F;
 constexpr double kSurelyBare = -1.6;  // leafy clouds have a mean above -1.4, most bare ones one below -1.6
 constexpr ShapeTerms kQuickTerms{{

@@ -17,6 +17,7 @@
 #include "scan/leaves/leaf_limbs.h"
 #include "scan/leaves/leaf_paths.h"
 #include "scan/leaves/leaf_presence.h"
+#include "scan/leaves/leaf_shape_rule.h"
 #include "scan/stems/lone_trunk.h"
 #include "scan/stems/round_stems.h"
 #include "scan/usual_size.h"
@@ -35,8 +36,10 @@ constexpr double kThresholdShare =
 constexpr float kSmoothWeight = 0.5F;
 constexpr int kSmoothings = 3;
 
-constexpr float kFollowed = 1.0F;      // a point's logit: best for F of grown trees, seeds 41
+constexpr double kMostNoise = 0.02;    // metres: the classifier was fitted to scans with as much
+constexpr float kFollowed = 1.0F;      // logits above the threshold: best for F of grown trees, seeds 41
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
+constexpr float kMostByShape = 3.0F;   // logit, where colours tell, too: photos make bark as wavy as leaves
 
 // Where light has bleached the colours, shape has to agree with them on so many of the points: 74 % and more
 // of virtual leafy scans, 33 to 59 % of photos' that were turned and thinned.
@@ -243,7 +246,7 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
         classify();
         if (are_leaves_not_blur(share, lush)) result.noise = 0.0;
     }
-    const bool told_by_shape = resolved;
+    const bool told_by_shape = resolved && result.noise <= kMostNoise;
     // Even blurred, fronds are flat; and their stem may have most of the points.
     const bool frond_like = looks_like_fronds(looks);
     look_closer();
@@ -264,15 +267,19 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
         green = shares_of(cloud.labels.values, cell_of_point, count);
         groups = {true, false, 0.5, 0.5, groups.share};
     }
-    if (groups.tinted && !frond_like &&
-        agreement(logits, share, green, groups, weights, cells, progress) < kLeastAgreement) {
+    std::vector<float> by_shape(groups.tinted && !frond_like ? count : 0);
+    for (size_t v = 0; v < by_shape.size(); v++)
+        by_shape[v] = logit_by_shape(&shapes[v * kShapeScales], paths->paths[v]);
+    if (!by_shape.empty() && agreement(by_shape, find_share(by_shape, weights, progress), green, groups,
+                                       weights, cells, progress) < kLeastAgreement) {
         tell_by_tint(green, groups, cells, cell_of_point, result, progress);
         return result;
     }
     if (groups.apart) {
         result.by_colour = true;
         for (size_t v = 0; v < count; v++)
-            logits[v] += kColourWeight * greenness(green[v], groups);
+            logits[v] = std::clamp(logits[v], -kMostByShape, kMostByShape) +
+                        kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
     const bool leafy = result.by_colour || (told_by_shape && is_in_leaf(share, lush));
@@ -287,7 +294,8 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
         for (size_t i = 0; i < cloud.size(); i++)
             result.leafiness[i] = of_point[samples.of_point[i]];
         for (size_t i = 0; groups.apart && i < cloud.size(); i++)
-            result.leafiness[i] += kColourWeight * greenness(green[cell_of_point[i]], groups);
+            result.leafiness[i] = std::clamp(result.leafiness[i], -kMostByShape, kMostByShape) +
+                                  kColourWeight * greenness(green[cell_of_point[i]], groups);
     };
     const bool in_leaf = leafy || verdict.limbs.fronds;
     if (in_leaf && !result.by_colour && is_lone_trunk(samples.points, progress)) return result;
@@ -323,14 +331,17 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
             is_leaf = cell_logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
         }
         result.leaf[i] = is_leaf;
-        // What is hardly leafier than wood is followed; its branches get a second look.
-        const bool doubtful =
-            !limbs.fronds && !result.by_colour && of_point[samples.of_point[i]] < threshold + kFollowed;
-        result.wood_path[i] = limbs.path[v] || !is_leaf || doubtful;
+        result.wood_path[i] = limbs.path[v] || !is_leaf;
         leaves += is_leaf;
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
-    if (told_by_shape && !result.fronds && lush > 0.0 && result.leaf_share < kNearlyAll) add_leafiness();
+    if (told_by_shape && !result.fronds && lush > 0.0 && result.leaf_share < kNearlyAll) {
+        add_leafiness();
+        // What is hardly leafier than wood is followed, since its branches get a second look.
+        for (size_t i = 0; !result.by_colour && i < cloud.size(); i++)
+            if (result.leafiness[i] < threshold + kFollowed && (other.empty() || !other[cell_of_point[i]]))
+                result.wood_path[i] = 1;
+    }
     if (result.hidden_share > kMuchHidden)
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +
