@@ -38,9 +38,22 @@ constexpr double kMostBlurShare = 0.6;
 constexpr double kLushNotBlur = 3.5;
 
 // A tree with a smaller share of leaves counts as bare, unless its leafiness is far from that of bare trees:
-// leafless trees of dense twigs reach 0.36 by chance, and 0.45 where they were thinned.
-constexpr double kLeastShare = 0.4;
+// leafless trees that are lush at all reach 0.23.
+constexpr double kLeastShare = 0.3;
+constexpr double kSureShare = 0.5;
 constexpr double kSurelyLush = 3.0;
+constexpr double kNeverLush = -1.5;  // no leafy tree is less so, but one with a tenth of full foliage
+// Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
+constexpr double kSparseFilled = 0.37;
+
+// Of blurred bare trees none is as lush as that and fills more than 0.43; leafy ones are at 5.3 and 0.46 or
+// more.
+constexpr double kSurelyFilled = 0.445;
+
+// Means of so many points have less than half of their noise: bare trees reach a leafiness of 4.5 then, with
+// noise of 3 cm, and leafy ones with 2 cm are above 6.6. (With 4 points, bare ones reach 8.3.)
+constexpr double kLeastInMean = 5.0;
+constexpr double kOutshining = 5.3;
 
 constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to 0.25
 // Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
@@ -165,12 +178,30 @@ bool are_leaves_not_blur(double share, double leafiness) {
     return share < kMostBlurShare && leafiness > kLushNotBlur;
 }
 
+bool may_outshine_blur(const CrownLooks& looks, double points) {
+    return looks.resolution > kLeastResolution && points > kLeastInMean;
+}
+
+bool outshines_blur(double leafiness) {
+    return leafiness > kOutshining;
+}
+
+bool may_be_in_leaf(double leafiness) {
+    return leafiness > kNeverLush;
+}
+
 bool looks_like_fronds(const CrownLooks& looks) {
     return looks.flat > kFrondPlanarity;
 }
 
-bool is_in_leaf(double share, double leafiness) {
-    return leafiness > 0.0 && (share >= kLeastShare || leafiness > kSurelyLush);
+bool is_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+    if (share < kLeastShare) return leafiness > kSurelyLush;
+    // Of a bare tree's twigs too few points may be left to look like twigs.
+    return leafiness > 0.0 || (share >= kSureShare && looks.filled >= kSparseFilled);
+}
+
+bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+    return is_in_leaf(looks, share, leafiness) && leafiness > kSurelyLush && looks.filled > kSurelyFilled;
 }
 
 }  // namespace treerec

@@ -42,7 +42,17 @@ bool are_leaves_not_blur(double share, double leafiness);
 // Fronds are flat like no other leaves.
 bool looks_like_fronds(const CrownLooks& looks);
 
+// Where the means of a blurred scan's points lie on no surface either: whether they are sharp enough for the
+// leafiness to tell leaves all the same. points: of the scan, to a mean.
+bool may_outshine_blur(const CrownLooks& looks, double points);
+bool outshines_blur(double leafiness);
+
 // Of a cloud that resolves leaves. share: of leaves, as the classifier finds it. leafiness: mean_leafiness().
-bool is_in_leaf(double share, double leafiness);
+bool is_in_leaf(const CrownLooks& looks, double share, double leafiness);
+// Whether it is worth a look at each point.
+bool may_be_in_leaf(double leafiness);
+
+// Likewise beyond the doubts that remain where means of a blurred scan's points are looked at.
+bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness);
 
 }  // namespace treerec

@@ -36,7 +36,6 @@ constexpr double kThresholdShare =
 constexpr float kSmoothWeight = 0.5F;
 constexpr int kSmoothings = 3;
 
-constexpr double kMostNoise = 0.02;    // metres: the classifier was fitted to scans with as much
 constexpr float kFollowed = 1.0F;      // logits above the threshold: best for F of grown trees, seeds 41
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 constexpr float kMostByShape = 3.0F;   // logit, where colours tell, too: photos make bark as wavy as leaves
@@ -50,6 +49,10 @@ constexpr int kTintSmoothings = 4;
 constexpr double kSharp = 0.35;
 // Sharp bark, and that of a mobile scanner.
 constexpr std::array<RoundStemSearch, 2> kBarkSearches{{{}, kRoughBark}};
+
+// The mean of so many points, within so many times their noise, is sharp enough.
+constexpr double kFewestInMean = 1.5;
+constexpr double kMeanWidth = 3.0;
 
 constexpr double kMuchHidden = 0.3;
 constexpr double kNearlyAll = 0.9;  // of the points are leaves: what wood there is was guessed
@@ -196,7 +199,9 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
         verdict.other[v] = verdict.other[v] && surplus[v] < 0;
 }
 
-WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const Progress& progress) {
+// averaged: the samples are means of a blurred scan's points, where bare twigs still look leafy.
+WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool averaged,
+                         const Progress& progress) {
     WoodLeaf result;
     if (samples.points.size() < kLeastPoints) return result;
     const Cells cells = make_cells(samples.points, progress);
@@ -246,12 +251,17 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
         classify();
         if (are_leaves_not_blur(share, lush)) result.noise = 0.0;
     }
-    const bool told_by_shape = resolved && result.noise <= kMostNoise;
+    const auto points = static_cast<double>(cloud.size()), means = static_cast<double>(samples.points.size());
+    if (result.noise > 0.0 && averaged && may_outshine_blur(looks, points / means)) {
+        look_closer();
+        if (outshines_blur(lush)) result.noise = 0.0;
+    }
+    const bool told_by_shape = resolved && !(result.noise > 0.0);
     // Even blurred, fronds are flat; and their stem may have most of the points.
     const bool frond_like = looks_like_fronds(looks);
     look_closer();
-    // Of bare trees none is lush, and what looks like leaves on them are twigs.
-    if (!colored && !frond_like && !(told_by_shape && lush > 0.0)) return result;
+    // Most bare trees need no look at each point.
+    if (!colored && !frond_like && !(told_by_shape && may_be_in_leaf(lush))) return result;
     classify();
 
     std::vector<uint32_t> cell_of_point(cloud.size());
@@ -282,7 +292,8 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, const 
                         kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    const bool leafy = result.by_colour || (told_by_shape && is_in_leaf(share, lush));
+    const bool leafy = result.by_colour || (told_by_shape && (averaged ? is_surely_in_leaf(looks, share, lush)
+                                                                       : is_in_leaf(looks, share, lush)));
     Verdict verdict;
     if (leafy) verdict = judge(logits, share, cells, shapes, *paths, progress);
     if (!result.by_colour && frond_like && !verdict.limbs.fronds) {
@@ -381,7 +392,17 @@ WoodLeaf tell_by_looks(const PointCloud& cloud, Progress* listener) {
     }
     const SubProgress progress(listener, 0.0, 1.0);
     const Samples samples = take_samples(cloud.positions, kMostSamples, &progress);
-    return tell_by_samples(cloud, samples, progress);
+    WoodLeaf result = tell_by_samples(cloud, samples, false, progress);
+    if (!(result.noise > 0.0) || result.foliage) return result;
+    // Many points of a blurred scan together are sharp, and may show leaves.
+    const Samples means =
+        average_points(cloud.positions, samples.ranges, kMeanWidth * result.noise, &progress);
+    if (kFewestInMean * static_cast<double>(means.points.size()) > static_cast<double>(samples.points.size()))
+        return result;
+    WoodLeaf sharp = tell_by_samples(cloud, means, true, progress);
+    if (!sharp.foliage || sharp.noise > 0.0) return result;
+    sharp.noise = result.noise;
+    return sharp;
 }
 
 }  // namespace
