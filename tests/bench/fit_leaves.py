@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Fits the two networks that tell leaves from wood (src/scan/leaves/leaf_classifier.h).
+"""Fits the two networks that tell leaves from wood (tests/bench/leaf_classifier.h).
 
 usage: fit_leaves.py BENCHMARKS [--seeds N] [--bare SCAN...] [--labelled SCAN...] [--out FOLDER]
 
 BENCHMARKS is what './dev bench' builds. It grows trees, scans them, and prints what the networks know of
 their points; --bare names real scans without leaves, --labelled such whose points say which they are (a
 column "leaf"). Every scan is judged by networks that were fitted to the other half of the scans; the figures
-printed are of that. The weights written, to src/scan/leaves or FOLDER, are fitted to all.
+printed are of that. The weights written, beside this script or to FOLDER, are fitted to all.
 """
 
 import argparse
@@ -147,7 +147,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--bare", nargs="*", default=[])
     parser.add_argument("--labelled", nargs="*", default=[])
-    parser.add_argument("--out", default=os.path.join(os.path.dirname(__file__), "../../src/scan/leaves"))
+    parser.add_argument("--out", default=os.path.dirname(os.path.abspath(__file__)))
     options = parser.parse_args()
     scans = options.bare + options.labelled
 

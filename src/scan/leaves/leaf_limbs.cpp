@@ -185,9 +185,7 @@ bool has_fronds(const Cells& cells, const CellShapes& shapes, const CellPaths& t
         if (leaf[v] && y < hub.at.y) hanging += 1.0;
     }
     if (above > kMostCrownWood * leaves) return false;
-    // The flatter, the wider the hub may be: what stands before a palm hides parts of it.
-    const double flat = planarity / (kLeastPlanarity * leaves);
-    const bool sheets = flat >= 1.0 && hub.height < kHubShare * flat * height;
+    const bool sheets = planarity >= kLeastPlanarity * leaves && hub.height < kHubShare * height;
     const bool tuft = hub.at.y - low > kTuftHub * height && hub.spread < kTuftSpread * crown.extent &&
                       hanging > kTuftHanging * leaves;
     return (sheets || tuft) && stem_radius(cells, leaf, low, hub.at.y) > kLeastStem * crown.extent;

@@ -12,12 +12,12 @@
 #include "scan/leaves/label_leaves.h"
 #include "scan/leaves/leaf_blur.h"
 #include "scan/leaves/leaf_cells.h"
-#include "scan/leaves/leaf_classifier.h"
 #include "scan/leaves/leaf_colour.h"
 #include "scan/leaves/leaf_limbs.h"
 #include "scan/leaves/leaf_paths.h"
 #include "scan/leaves/leaf_presence.h"
-#include "scan/leaves/leaf_shape_rule.h"
+#include "scan/leaves/leaf_rule.h"
+#include "scan/leaves/shape_terms.h"
 #include "scan/stems/lone_trunk.h"
 #include "scan/stems/round_stems.h"
 #include "scan/usual_size.h"
@@ -33,12 +33,50 @@ constexpr size_t kGrain = 512;
 constexpr double kMostShare = 0.85;  // that the threshold follows
 constexpr double kThresholdShare =
     0.5;  // of the logit of the share: between the most likely and the even-handed
-constexpr float kSmoothWeight = 0.5F;
 constexpr int kSmoothings = 3;
+constexpr float kSmoothWeight = 0.5F;
 
-constexpr float kFollowed = 1.0F;      // logits above the threshold: best for F of grown trees, seeds 41
+constexpr float kBias = -0.912F;
+constexpr ShapeTerms kShapeTerms{{
+    {{{0.4209F, 0.2340F, -0.425F},
+      {0.2754F, 0.1797F, -0.203F},
+      {0.3027F, 0.1816F, 0.528F},
+      {0.3599F, 0.1624F, -0.468F},
+      {2.248F, 0.4428F, -0.050F}}},
+    {{{0.3997F, 0.2186F, -0.011F},
+      {0.2666F, 0.1669F, 0.037F},
+      {0.3336F, 0.1836F, -0.178F},
+      {0.4283F, 0.1876F, 0.451F},
+      {2.778F, 0.6209F, -0.313F}}},
+    {{{0.3375F, 0.1858F, -0.060F},
+      {0.2553F, 0.1533F, 0.167F},
+      {0.4072F, 0.1842F, 0.001F},
+      {0.5084F, 0.2021F, 0.211F},
+      {3.366F, 0.7300F, -0.291F}}},
+    {{{0.0F, 1.0F, 0.0F},
+      {0.0F, 1.0F, 0.0F},
+      {0.5064F, 0.1801F, 0.470F},
+      {0.6387F, 0.2271F, -0.890F},
+      {4.113F, 0.7961F, 1.988F}}},
+}};
+struct PathTerm {
+    float CellPath::*member;
+    Term term;
+};
+constexpr std::array<PathTerm, 10> kPathTerms{{
+    {&CellPath::height, {1.440F, 1.436F, 1.369F}},
+    {&CellPath::mass, {1.959F, 2.063F, -1.626F}},
+    {&CellPath::chain, {2.004F, 1.562F, -0.888F}},
+    {&CellPath::chain_mass, {0.7715F, 0.8626F, 1.002F}},
+    {&CellPath::straight_short, {0.8464F, 0.08296F, -0.318F}},
+    {&CellPath::straight_long, {0.7992F, 0.09439F, -0.265F}},
+    {&CellPath::gap, {0.8606F, 0.6965F, 0.889F}},
+    {&CellPath::bush_8, {0.7731F, 0.5515F, 0.041F}},
+    {&CellPath::bush_16, {1.079F, 0.6568F, 0.332F}},
+    {&CellPath::bush_32, {1.454F, 0.8011F, 0.783F}},
+}};
+
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
-constexpr float kMostByShape = 3.0F;   // logit, where colours tell, too: photos make bark as wavy as leaves
 
 // Where light has bleached the colours, shape has to agree with them on so many of the points: 74 % and more
 // of virtual leafy scans, 33 to 59 % of photos' that were turned and thinned.
@@ -55,18 +93,36 @@ constexpr double kFewestInMean = 1.5;
 constexpr double kMeanWidth = 3.0;
 
 constexpr double kMuchHidden = 0.3;
+constexpr size_t kVotes = 20000;    // cells, at most, that the branches are judged by
 constexpr double kNearlyAll = 0.9;  // of the points are leaves: what wood there is was guessed
 
-// The means of the points of each cell.
-std::vector<float> by_cell(const std::vector<float>& of_point, const Cells& cells,
-                           const std::vector<uint32_t>& weights) {
-    std::vector<double> sums(cells.count(), 0.0);
-    for (size_t i = 0; i < of_point.size(); i++)
-        sums[cells.of_point[i]] += static_cast<double>(of_point[i]);
-    std::vector<float> means(cells.count());
-    for (size_t v = 0; v < means.size(); v++)
-        means[v] = static_cast<float>(sums[v] / static_cast<double>(weights[v]));
-    return means;
+float logit_by_shape(const CellShape* shapes, const CellPath& path) {
+    float sum = kBias + sum_of_terms(shapes, kShapeTerms);
+    for (const PathTerm& p : kPathTerms)
+        sum += value_of(path.*p.member, p.term);
+    return sum;
+}
+
+std::vector<CellInputs> gather_inputs(const CellShapes& shapes, const CellPaths& paths) {
+    std::vector<CellInputs> inputs(paths.paths.size());
+    for (size_t v = 0; v < inputs.size(); v++)
+        inputs[v] = inputs_of(&shapes[v * kShapeScales], paths.paths[v]);
+    return inputs;
+}
+
+// By leaf_rule.h: of the mean of all points' cells.
+double mean_leafiness(const std::vector<CellInputs>& inputs, const std::vector<uint32_t>& weights) {
+    std::array<double, kCellInputs> sums{};
+    double all = 0.0;
+    for (size_t v = 0; v < inputs.size(); v++) {
+        all += weights[v];
+        for (size_t i = 0; i < kCellInputs; i++)
+            sums[i] += static_cast<double>(weights[v]) * inputs[v][i];
+    }
+    CellInputs means{};
+    for (size_t i = 0; i < kCellInputs; i++)
+        means[i] = static_cast<float>(sums[i] / all);
+    return leafiness(means);
 }
 
 double logit(double p) {
@@ -102,10 +158,10 @@ double find_share(const std::vector<float>& logits, const std::vector<uint32_t>&
     return share;
 }
 
-void smooth(std::vector<float>& logits, int times, const Cells& cells, const Progress& progress) {
+void smooth(std::vector<float>& logits, const Cells& cells, const Progress& progress) {
     const std::vector<float> own = logits;
     std::vector<float> next(logits.size());
-    for (int i = 0; i < times; i++) {
+    for (int i = 0; i < kSmoothings; i++) {
         parallel_for(logits.size(), kGrain, [&](size_t begin, size_t end) {
             progress.check();
             for (size_t v = begin; v < end; v++) {
@@ -130,7 +186,7 @@ float threshold_of(double share) {
 double agreement(std::vector<float> logits, double share, const std::vector<float>& green,
                  const GreenGroups& groups, const std::vector<uint32_t>& weights, const Cells& cells,
                  const Progress& progress) {
-    smooth(logits, kSmoothings, cells, progress);
+    smooth(logits, cells, progress);
     const float threshold = threshold_of(share);
     double all = 0.0, agreed = 0.0;
     for (size_t v = 0; v < logits.size(); v++) {
@@ -147,7 +203,8 @@ void tell_by_tint(const std::vector<float>& green, const GreenGroups& groups, co
     std::vector<float> around(green.size());
     for (size_t v = 0; v < green.size(); v++)
         around[v] = greenness(green[v], groups);
-    smooth(around, kTintSmoothings, cells, progress);
+    for (int i = 0; i < kTintSmoothings; i++)
+        smooth(around, cells, progress);
     result.by_colour = true;
     result.foliage = true;
     result.leaf.resize(cell_of_point.size());
@@ -159,7 +216,7 @@ void tell_by_tint(const std::vector<float>& green, const GreenGroups& groups, co
 }
 
 struct Verdict {
-    std::vector<float> logits;  // by cell
+    std::vector<float> logits;  // by cell, smoothed
     float threshold = 0.0F;
     std::vector<uint8_t> leaf;   // by cell
     std::vector<uint8_t> other;  // by cell: 1 for what is none of the tree; empty where there is none
@@ -169,6 +226,7 @@ struct Verdict {
 Verdict judge(std::vector<float> logits, double share, const Cells& cells, const CellShapes& shapes,
               const CellPaths& paths, const Progress& progress) {
     Verdict verdict;
+    smooth(logits, cells, progress);
     verdict.threshold = threshold_of(share);
     verdict.leaf.resize(logits.size());
     for (size_t v = 0; v < logits.size(); v++)
@@ -217,19 +275,20 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         weights[v]++;
     bool resolved = resolves_leaves(looks);
     std::optional<CellPaths> paths;
-    std::vector<float> of_point;  // logits
-    std::vector<float> logits;    // by cell
+    std::vector<CellInputs> inputs;
+    std::vector<float> logits;
     double lush = 0.0, share = 0.0;
     const auto look_closer = [&] {
         if (paths) return;
         paths = trace_paths(cells, progress);
-        lush = mean_leafiness(cells, shapes, *paths);
-    };
-    const auto classify = [&] {
-        look_closer();
-        if (!of_point.empty()) return;
-        of_point = LeafClassifier(samples.points, cells, shapes, *paths, progress).logits();
-        logits = by_cell(of_point, cells, weights);
+        inputs = gather_inputs(shapes, *paths);
+        lush = mean_leafiness(inputs, weights);
+        logits.resize(count);
+        parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+            progress.check();
+            for (size_t v = begin; v < end; v++)
+                logits[v] = logit_by_shape(&shapes[v * kShapeScales], paths->paths[v]);
+        });
         share = find_share(logits, weights, progress);
     };
     if (!resolved && may_resolve_leaves(looks)) {
@@ -248,7 +307,7 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         if (!stems || stems->empty()) stems = std::move(found);
     }
     if (result.noise > 0.0 && may_be_leaves_not_blur(looks)) {
-        classify();
+        look_closer();
         if (are_leaves_not_blur(share, lush)) result.noise = 0.0;
     }
     const auto points = static_cast<double>(cloud.size()), means = static_cast<double>(samples.points.size());
@@ -259,10 +318,8 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
     const bool told_by_shape = resolved && !(result.noise > 0.0);
     // Even blurred, fronds are flat; and their stem may have most of the points.
     const bool frond_like = looks_like_fronds(looks);
+    if (!colored && !told_by_shape && !frond_like) return result;
     look_closer();
-    // Most bare trees need no look at each point.
-    if (!colored && !frond_like && !(told_by_shape && may_be_in_leaf(lush))) return result;
-    classify();
 
     std::vector<uint32_t> cell_of_point(cloud.size());
     for (size_t i = 0; i < cloud.size(); i++)
@@ -277,41 +334,45 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         green = shares_of(cloud.labels.values, cell_of_point, count);
         groups = {true, false, 0.5, 0.5, groups.share};
     }
-    std::vector<float> by_shape(groups.tinted && !frond_like ? count : 0);
-    for (size_t v = 0; v < by_shape.size(); v++)
-        by_shape[v] = logit_by_shape(&shapes[v * kShapeScales], paths->paths[v]);
-    if (!by_shape.empty() && agreement(by_shape, find_share(by_shape, weights, progress), green, groups,
-                                       weights, cells, progress) < kLeastAgreement) {
+    if (groups.tinted && !frond_like &&
+        agreement(logits, share, green, groups, weights, cells, progress) < kLeastAgreement) {
         tell_by_tint(green, groups, cells, cell_of_point, result, progress);
         return result;
     }
     if (groups.apart) {
         result.by_colour = true;
         for (size_t v = 0; v < count; v++)
-            logits[v] = std::clamp(logits[v], -kMostByShape, kMostByShape) +
-                        kColourWeight * greenness(green[v], groups);
+            logits[v] += kColourWeight * greenness(green[v], groups);
         share = find_share(logits, weights, progress);
     }
-    const bool leafy = result.by_colour || (told_by_shape && (averaged ? is_surely_in_leaf(looks, share, lush)
-                                                                       : is_in_leaf(looks, share, lush)));
+    const auto& decide = averaged ? is_surely_in_leaf : is_in_leaf;
+    const bool leafy = result.by_colour || (told_by_shape && decide(looks, share, lush));
+    // By leaf_rule.h; empty where it finds no leaves at all.
+    const auto finer_logits = [&](const LeafLooks& where) {
+        if (lush <= 0.0) return std::vector<float>();
+        return leaf_logits(samples.points, cells, *paths, inputs, where, progress);
+    };
     Verdict verdict;
-    if (leafy) verdict = judge(logits, share, cells, shapes, *paths, progress);
+    if (leafy) verdict = judge(std::move(logits), share, cells, shapes, *paths, progress);
     if (!result.by_colour && frond_like && !verdict.limbs.fronds) {
-        Verdict palm = judge(logits, share, cells, shapes, *paths, progress);
-        if (palm.limbs.fronds) verdict = std::move(palm);
+        if (told_by_shape) logits = finer_logits({});
+        if (!logits.empty()) {
+            share = find_share(logits, weights, progress);
+            Verdict palm = judge(std::move(logits), share, cells, shapes, *paths, progress);
+            if (palm.limbs.fronds) verdict = std::move(palm);
+        }
     }
     const auto add_leafiness = [&] {
+        const std::vector<float> finer = finer_logits({1, count / kVotes + 1});
+        if (finer.empty()) return;
         result.leafiness.resize(cloud.size());
         for (size_t i = 0; i < cloud.size(); i++)
-            result.leafiness[i] = of_point[samples.of_point[i]];
-        for (size_t i = 0; groups.apart && i < cloud.size(); i++)
-            result.leafiness[i] = std::clamp(result.leafiness[i], -kMostByShape, kMostByShape) +
-                                  kColourWeight * greenness(green[cell_of_point[i]], groups);
+            result.leafiness[i] = finer[cell_of_point[i]];
     };
     const bool in_leaf = leafy || verdict.limbs.fronds;
     if (in_leaf && !result.by_colour && is_lone_trunk(samples.points, progress)) return result;
     if (!in_leaf) {
-        if (told_by_shape && lush > 0.0) add_leafiness();
+        if (told_by_shape) add_leafiness();
         return result;
     }
     if (!verdict.limbs.fronds) {
@@ -332,11 +393,8 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         const uint32_t v = cell_of_point[i];
         if (!other.empty() && other[v]) continue;
         bool is_leaf = leaf[v] != 0;
-        const bool as_found = leaf[v] == (cell_logits[v] > threshold);
-        if (!result.by_colour && !limbs.fronds && as_found)
-            is_leaf = of_point[samples.of_point[i]] > threshold;
         // A frond's brown tip is no wood.
-        if (result.by_colour && !limbs.fronds && as_found) {
+        if (result.by_colour && !limbs.fronds && leaf[v] == (cell_logits[v] > threshold)) {
             const float own = greenness(
                 cloud.labels.by_colour ? cloud.labels.values[i] : excess_green(cloud.colors[i]), groups);
             is_leaf = cell_logits[v] + kColourWeight * (own - greenness(green[v], groups)) > threshold;
@@ -346,13 +404,7 @@ WoodLeaf tell_by_samples(const PointCloud& cloud, const Samples& samples, bool a
         leaves += is_leaf;
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
-    if (told_by_shape && !result.fronds && lush > 0.0 && result.leaf_share < kNearlyAll) {
-        add_leafiness();
-        // What is hardly leafier than wood is followed, since its branches get a second look.
-        for (size_t i = 0; !result.by_colour && i < cloud.size(); i++)
-            if (result.leafiness[i] < threshold + kFollowed && (other.empty() || !other[cell_of_point[i]]))
-                result.wood_path[i] = 1;
-    }
+    if (told_by_shape && !result.fronds && result.leaf_share < kNearlyAll) add_leafiness();
     if (result.hidden_share > kMuchHidden)
         result.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result.hidden_share)) +

@@ -1,16 +1,17 @@
-// Tells leaf points from wood. Internal to scan/.
+// Tells leaf points from wood: fitted and judged here, beside the rules of scan/leaves that scans are still
+// told by.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "leaf_network.h"
 #include "progress.h"
 #include "scan/leaves/leaf_cells.h"
-#include "scan/leaves/leaf_network.h"
 #include "scan/leaves/leaf_paths.h"
 
-namespace treerec {
+namespace treerec::bench {
 
 // What is known of a cell: by scale linearity, planarity, scatter, occupied, crowd (the coarsest without the
 // first two), then the members of CellPath.
@@ -54,4 +55,4 @@ class LeafClassifier {
     const Progress& progress_;
 };
 
-}  // namespace treerec
+}  // namespace treerec::bench

@@ -1,4 +1,4 @@
-#include "scan/leaves/leaf_classifier.h"
+#include "leaf_classifier.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
 
-namespace treerec {
+namespace treerec::bench {
 
 namespace {
 
@@ -296,4 +296,4 @@ std::vector<float> LeafClassifier::logits(const LeafWeights& weights) const {
     return run(context, context_inputs(run(point, point_inputs())));
 }
 
-}  // namespace treerec
+}  // namespace treerec::bench
