@@ -16,7 +16,6 @@ constexpr size_t kGrain = 1024;
 constexpr std::array<size_t, 2> kNearest{8, 24};  // points
 constexpr size_t kLookedAt = 2;                   // points of a cell, at most
 constexpr int kWayBack = 4;                       // steps to the ground that give a cell's direction
-constexpr size_t kNearInputs = 6;                 // by number of nearest points
 constexpr size_t kLeafInputs = kCellInputs + kNearest.size() * kNearInputs;
 constexpr float kReach = 3.0F;       // standard deviations: what lies further out says no more
 constexpr double kLeafyTree = 1.25;  // half way between the leafiest bare tree and the barest leafy one
@@ -141,7 +140,21 @@ constexpr std::array<float, kHidden> kSecond{0.5685F, -0.7562F, 0.6694F,  -1.244
                                              -1.535F, 0.2865F,  -0.7866F, -0.5485F, 0.5419F,  0.9118F};
 constexpr float kSecondBias = 0.04955F;
 
-// The direction in which the path from the ground reaches a cell.
+float logit_of(const std::array<float, kLeafInputs>& inputs) {
+    std::array<float, kHidden> hidden = kFirstBias;
+    for (size_t i = 0; i < kLeafInputs; i++) {
+        const float value = std::clamp((inputs[i] - kMeans[i]) / kDeviations[i], -kReach, kReach);
+        for (size_t h = 0; h < kHidden; h++)
+            hidden[h] += value * kFirst[i][h];
+    }
+    float logit = kSecondBias;
+    for (size_t h = 0; h < kHidden; h++)
+        logit += std::max(hidden[h], 0.0F) * kSecond[h];
+    return logit;
+}
+
+}  // namespace
+
 Vec3 heading_of(uint32_t cell, const Cells& cells, const CellPaths& paths) {
     uint32_t from = cell;
     for (int k = 0; k < kWayBack; k++)
@@ -151,8 +164,6 @@ Vec3 heading_of(uint32_t cell, const Cells& cells, const CellPaths& paths) {
     return length > 0.0F ? way / length : Vec3(0.0F, 1.0F, 0.0F);
 }
 
-// Linearity, planarity and scatter of the nearest points; the share of their variance along the path to the
-// ground; ln of how far they reach, in cells; how far their mean lies from the point, of their reach.
 void measure_near(const std::vector<Vec3>& points, const Vec3& p, const uint32_t* nearest, size_t count,
                   float reach, float cell, const Vec3& heading, float* inputs) {
     const float share = 1.0F / static_cast<float>(count);
@@ -174,21 +185,6 @@ void measure_near(const std::vector<Vec3>& points, const Vec3& p, const uint32_t
     inputs[4] = portable::log(reach / cell + 1e-3F);
     inputs[5] = glm::length(mean) / (reach + 1e-9F);
 }
-
-float logit_of(const std::array<float, kLeafInputs>& inputs) {
-    std::array<float, kHidden> hidden = kFirstBias;
-    for (size_t i = 0; i < kLeafInputs; i++) {
-        const float value = std::clamp((inputs[i] - kMeans[i]) / kDeviations[i], -kReach, kReach);
-        for (size_t h = 0; h < kHidden; h++)
-            hidden[h] += value * kFirst[i][h];
-    }
-    float logit = kSecondBias;
-    for (size_t h = 0; h < kHidden; h++)
-        logit += std::max(hidden[h], 0.0F) * kSecond[h];
-    return logit;
-}
-
-}  // namespace
 
 CellInputs inputs_of(const CellShape* shapes, const CellPath& path) {
     CellInputs inputs{};

@@ -18,6 +18,15 @@ using CellInputs = std::array<float, kCellInputs>;
 // shapes: kShapeScales of them.
 CellInputs inputs_of(const CellShape* shapes, const CellPath& path);
 
+// The direction in which the path from the ground reaches a cell.
+Vec3 heading_of(uint32_t cell, const Cells& cells, const CellPaths& paths);
+
+// Linearity, planarity and scatter of the nearest points; the share of their variance along the path to the
+// ground; ln of how far they reach, in cells; how far their mean lies from the point, of their reach.
+inline constexpr size_t kNearInputs = 6;
+void measure_near(const std::vector<Vec3>& points, const Vec3& p, const uint32_t* nearest, size_t count,
+                  float reach, float cell, const Vec3& heading, float* inputs);
+
 // Above 0 for a tree in leaf. means: of all points' cells.
 double leafiness(const CellInputs& means);
 

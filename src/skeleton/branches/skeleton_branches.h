@@ -36,7 +36,7 @@ inline double automatic_branch(double extent) {
 
 // Splits the tree of slices at its forks; the child with the most wood on its way to a tip continues the
 // branch. A side chain that does not reach `minimum_branch` (or, on sparse scans, a few point spacings) out
-// of its parent's surface is absorbed by the parent: it is a strip of the parent's own bark, a stub or noise
+// of its parent's surface is absorbed by the parent: it is a strip of the parent's own bark, a snag or noise
 // (AdTree, Du et al. 2019, 2.3, removes by subtree length instead, which leaves such strips in place). What
 // grows on an absorbed chain is tried again as a side branch of the parent. What lies beyond a gap five times
 // as long as all the wood behind it is left out as stray. Parents come before children. A side chain that
