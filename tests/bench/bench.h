@@ -56,6 +56,7 @@ void bench_synth(const Settings& settings);
 // Writes to the folder settings.out what the classifier of leaves knows of points of grown trees, and of
 // these scans: labelled ones, or such as have no leaves. With settings.weights what its second network knows,
 // by the first one's weights in even.txt (fitted to scans of odd numbers) and odd.txt of that folder.
+void bench_twig_inputs(const Settings& settings);
 void bench_leaf_inputs(const std::vector<std::string>& scans, const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.
 bool guard_accuracy(const Settings& settings);

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Fits the two networks that tell leaves from wood (tests/bench/leaf_classifier.h).
+"""Fits the two networks that tell leaves from wood (src/scan/leaves/leaf_classifier.h), and then the rule that
+takes branches back that were grown through leaves (src/skeleton/twigs/leaf_twigs.h).
 
 usage: fit_leaves.py BENCHMARKS [--seeds N] [--bare SCAN...] [--labelled SCAN...] [--out FOLDER]
+       fit_leaves.py --twigs BENCHMARKS [--seeds N] [--out FOLDER]
 
 BENCHMARKS is what './dev bench' builds. It grows trees, scans them, and prints what the networks know of
 their points; --bare names real scans without leaves, --labelled such whose points say which they are (a
 column "leaf"). Every scan is judged by networks that were fitted to the other half of the scans; the figures
-printed are of that. The weights written, beside this script or to FOLDER, are fitted to all.
+printed are of that. The weights written, to src/scan/leaves or FOLDER, are fitted to all. --twigs fits the rule
+alone, which depends on what the networks that BENCHMARKS was built with leave to follow.
 """
 
 import argparse
@@ -99,7 +102,7 @@ def write(path, weights, suffix="F"):
             word += ".0"
         words.append(word + suffix)
     with open(path, "w") as file:
-        if suffix:
+        if path.endswith(".inc"):
             file.write("// By tests/bench/fit_leaves.py; not to be edited.\n")
         for i in range(0, len(words), 10):
             file.write(", ".join(words[i : i + 10]) + (",\n" if i + 10 < len(words) else "\n"))
@@ -141,14 +144,64 @@ def report(title, scans, halves):
     sys.stdout.flush()
 
 
+def fit_logistic(scans, rounds=50, ridge=1e-3):
+    """The weights of the plain looks and, last, the bias. Scans count alike, stretches by their length."""
+    x = np.concatenate([s.inputs for s in scans]).astype(float)
+    y = np.concatenate([s.right for s in scans]).astype(float)
+    w = np.concatenate([s.length / s.length.sum() for s in scans]).astype(float)
+    mean, deviation = x.mean(0), x.std(0) + 1e-9
+    z = np.c_[(x - mean) / deviation, np.ones(len(x))]
+    beta = np.zeros(z.shape[1])
+    for _ in range(rounds):
+        p = 1 / (1 + np.exp(-z @ beta))
+        gradient = z.T @ ((y - p) * w) - ridge * w.sum() * beta
+        hessian = (z * (p * (1 - p) * w)[:, None]).T @ z + ridge * w.sum() * np.eye(len(beta))
+        beta += np.linalg.solve(hessian, gradient)
+    return np.append(beta[:-1] / deviation, beta[-1] - (beta[:-1] * mean / deviation).sum())
+
+
+def fit_twigs(folder, out):
+    scans = []
+    for path in glob.glob(folder + "/*.bin"):
+        scan = Scan(path)
+        rows = scan.rows.reshape(-1, TWIG_LOOKS + 2)
+        if len(rows) == 0:
+            continue  # it was not told to be in leaf
+        scan.inputs, scan.length, scan.right = rows[:, :TWIG_LOOKS], rows[:, -2], rows[:, -1]
+        scans.append(scan)
+    scans.sort(key=lambda s: s.number)
+    print("\nStretches of skeletons, each scan by what was fitted to the other half:\n")
+    print("| least chance | of what is kept, wood % | of the wood, kept % |\n|---|---|---|")
+    for least in (0.1, 0.16, 0.2, 0.3, 0.5):
+        kept = right = wood = 0.0
+        for odd in (False, True):
+            weights = fit_logistic([s for s in scans if s.odd != odd])
+            for s in (s for s in scans if s.odd == odd):
+                p = 1 / (1 + np.exp(-(s.inputs @ weights[:-1] + weights[-1])))
+                share = s.length / s.length.sum()
+                kept += share[p > least].sum()
+                right += (share * s.right)[p > least].sum()
+                wood += (share * s.right).sum()
+        print(f"| {least:g} | {100 * right / kept:.1f} | {100 * right / wood:.1f} |")
+    write(out + "/leaf_twig_weights.inc", [fit_logistic(scans)], "")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("benchmarks")
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--bare", nargs="*", default=[])
     parser.add_argument("--labelled", nargs="*", default=[])
-    parser.add_argument("--out", default=os.path.dirname(os.path.abspath(__file__)))
+    parser.add_argument("--out", default="")
+    parser.add_argument("--twigs", action="store_true")
     options = parser.parse_args()
+    if options.twigs:
+        with tempfile.TemporaryDirectory() as scratch:
+            command = [options.benchmarks, "--twig-inputs", scratch, "--seeds", str(options.seeds)]
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+            fit_twigs(scratch, options.out or os.path.join(SOURCE, "skeleton/twigs"))
+        return
+    options.out = options.out or os.path.join(SOURCE, "scan/leaves")
     scans = options.bare + options.labelled
 
     def inputs_of(folder, extra):
@@ -173,6 +226,8 @@ def main():
 
 
 POINT_INPUTS, CONTEXT_INPUTS = 82, 21  # as in leaf_classifier.h
+TWIG_LOOKS = 12  # as in leaf_twigs.h
+SOURCE = os.path.join(os.path.dirname(__file__), "../../src")
 
 if __name__ == "__main__":
     main()

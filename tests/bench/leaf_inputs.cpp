@@ -7,10 +7,10 @@
 #include "bench.h"
 #include "error.h"
 #include "file_bytes.h"
-#include "leaf_classifier.h"
 #include "scan/cleaning/clean_cloud.h"
 #include "scan/cleaning/samples.h"
 #include "scan/formats/read_cloud.h"
+#include "scan/leaves/leaf_classifier.h"
 #include "scan/usual_size.h"
 #include "synth/scan.h"
 

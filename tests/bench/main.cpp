@@ -44,6 +44,7 @@ const char* const kUsage =
     "between\n"
     "                                          photos, judged by their COLMAP model\n"
     "       bench --leaf-inputs FOLDER [--weights FOLDER] [SCAN…]  what fit_leaves.py fits to\n"
+    "       bench --twig-inputs FOLDER                             likewise\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
     "options: --repetitions N, --seeds N (of --synth, --limbs and --plots), --labelled (of --synth: with "
     "the\n"
@@ -83,11 +84,11 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
             word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
-            word == "--plots" || word == "--leaf-inputs" || word == "--help") {
+            word == "--plots" || word == "--leaf-inputs" || word == "--twig-inputs" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
-            if (word == "--leaf-inputs") line.settings.out = value();
+            if (word == "--leaf-inputs" || word == "--twig-inputs") line.settings.out = value();
             if (word == "--resize") {
                 line.settings.most_points = whole(value());
                 line.out = value();
@@ -142,6 +143,10 @@ int run(CommandLine line) {
     if (line.mode == "--help") {
         std::fputs(kUsage, stdout);
         return EXIT_SUCCESS;
+    }
+    if (line.mode == "--twig-inputs") {
+        bench_twig_inputs(line.settings);
+        return 0;
     }
     if (line.mode == "--leaf-inputs") {
         bench_leaf_inputs(line.scans, line.settings);

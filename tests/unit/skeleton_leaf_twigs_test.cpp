@@ -122,15 +122,18 @@ TEST(LeafTwigs, ABareTreeKeepsItsTwigs) {
     }
 }
 
-// A stem with two branches, each with a twig. The one to the left, in leaf, ends at left_top; the other
-// at 2.6.
+// Logits of what is leaf, and wood, beyond doubt.
+constexpr float kLeafy = 8.0F, kWoody = -6.0F;
+
 struct Sample {
     Tree tree;
     std::vector<Vec3> points;
     std::vector<float> leafiness;
 };
 
-Sample two_branches(double left_top = 2.5) {
+// A stem with two branches, each with a twig. The one to the left, in leaf, ends at left_top; the other
+// at 2.6.
+Sample two_branches(double left_top = 2.5, double leafy_radius = 0.02) {
     Sample sample;
     Tree& tree = sample.tree;
     NodeId at = tree.add_root(DVec3(0.0), 0.1, kTrunkFlag);
@@ -148,20 +151,22 @@ Sample two_branches(double left_top = 2.5) {
     };
     at = grow(at, {0.0, 2.0, 0.0}, 0.1, 2.0F, kTrunkFlag);
     for (const double side : {-1.0, 1.0}) {
-        const float leafiness = side < 0.0 ? 3.0F : -3.0F;
-        const NodeId middle = grow(at, {side, 2.5, 0.0}, 0.01, leafiness, 0);
-        grow(middle, {2.0 * side, side < 0.0 ? left_top : 2.6, 0.0}, 0.005, leafiness, 0);
-        grow(middle, {side, 2.5, 1.0}, 0.005, 3.0F, 0);
+        const float leafiness = side < 0.0 ? kLeafy : kWoody;
+        const NodeId middle =
+            grow(at, {side, 2.5, 0.0}, side < 0.0 ? 1.5 * leafy_radius : 0.01, leafiness, 0);
+        grow(middle, {2.0 * side, side < 0.0 ? left_top : 2.6, 0.0}, side < 0.0 ? leafy_radius : 0.005,
+             leafiness, 0);
+        grow(middle, {side, 2.5, 0.3}, leafy_radius, kLeafy, 0);
     }
     // Leaves all around, so that little of the skeleton looks like wood.
-    grow(at, {0.0, 2.0, 2.2}, 0.01, 3.5F, 0);
-    grow(at, {0.0, 2.0, -2.2}, 0.01, 3.5F, 0);
+    grow(at, {0.0, 2.0, 2.2}, 1.5 * leafy_radius, kLeafy, 0);
+    grow(at, {0.0, 2.0, -2.2}, 1.5 * leafy_radius, kLeafy, 0);
     return sample;
 }
 
 TEST(LeafTwigs, BranchesWhosePointsLookLikeLeavesGoAndTheTrunkStays) {
     Sample sample = two_branches();
-    const double kept = 2.0 + std::sqrt(1.25) + std::sqrt(1.01), gone = 3.0 + std::sqrt(1.25) + 4.4;
+    const double kept = 2.0 + std::sqrt(1.25) + std::sqrt(1.01), gone = 1.6 + std::sqrt(1.25) + 4.4;
     const DroppedTwigs dropped =
         drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, {}, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
@@ -190,7 +195,10 @@ TEST(LeafTwigs, TheWayToTheTopStays) {
     drop_leaf_twigs(sample.tree, sample.points, sample.leafiness, {}, SubProgress(nullptr, 0.0, 1.0));
     ASSERT_FALSE(sample.tree.check());
     EXPECT_EQ(sample.tree.size(), 6U);
-    EXPECT_NEAR(sample.tree.bounds().max.y, 4.0, 0.01);
+    double top = 0.0;
+    for (const NodeId id : sample.tree.depth_first())
+        top = std::max(top, sample.tree.node(id).position.y);
+    EXPECT_EQ(top, 4.0);
 }
 
 TEST(LeafTwigs, TheOrderOfThePointsAndTheThreadsChangeNothing) {
@@ -226,7 +234,7 @@ TEST(LeafTwigs, PointsWithoutAVoiceGoWithTheirBranch) {
 }
 
 TEST(LeafTwigs, WoodStaysWhereTheSkeletonLooksLikeWood) {
-    Sample sample = two_branches();
+    Sample sample = two_branches(2.5, 0.005);
     const size_t nodes = sample.tree.size();
     for (float& logit : sample.leafiness)
         logit = -3.0F;

@@ -1,9 +1,11 @@
 #include "scan/leaves/leaf_presence.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "geometry/quantile.h"
+#include "scan/leaves/leaf_classifier.h"
 #include "scan/leaves/shape_terms.h"
 
 namespace treerec {
@@ -36,8 +38,8 @@ constexpr double kMostBlurShare = 0.6;
 constexpr double kLushNotBlur = 3.5;
 
 // A tree with a smaller share of leaves counts as bare, unless its leafiness is far from that of bare trees:
-// leafless trees of dense twigs reach 0.36 by chance, and 0.45 where they were thinned.
-constexpr double kLeastShare = 0.4;
+// leafless trees that are lush at all reach 0.23.
+constexpr double kLeastShare = 0.3;
 constexpr double kSureShare = 0.5;
 constexpr double kSurelyLush = 3.0;
 // Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
@@ -56,7 +58,7 @@ constexpr double kFrondPlanarity = 0.33;  // crowns of broad leaves have 0.16 to
 // Leaves of many cells, as a sapling's are: 0.41 to 0.56, and bare trees no more than 0.37.
 constexpr double kBroadPlanarity = 0.4;
 
-// As the rule of wood_leaf.cpp, for shapes on the coarser grids alone, which are quick to find.
+// A logistic rule, for shapes on the coarser grids alone, which are quick to find.
 constexpr float kQuickBias = -0.6825F;
 constexpr double kSurelyBare = -1.6;  // leafy clouds have a mean above -1.4, most bare ones one below -1.6
 constexpr ShapeTerms kQuickTerms{{
@@ -78,6 +80,24 @@ constexpr ShapeTerms kQuickTerms{{
       {4.113F, 0.7961F, 2.616F}}},
 }};
 
+constexpr double kLeafyTree = 1.25;  // half way between the leafiest bare tree and the barest leafy one
+// Fitted to virtual scans of all habits but the palm, with and without noise and shadows, some with their
+// leaves thickened to dense foliage; to a split tree, bare ones and dense real crowns. Of the mean of all
+// points' cells.
+constexpr std::array<Term, kCellInputs> kTreeTerms{{
+    {0.3253F, 0.1126F, -0.2589F}, {0.3098F, 0.1074F, -0.03627F}, {0.3628F, 0.1691F, 0.2015F},
+    {0.448F, 0.138F, 0.0107F},    {2.434F, 0.2716F, 0.09058F},   {0.3292F, 0.0988F, -0.287F},
+    {0.2771F, 0.09153F, 0.3848F}, {0.3929F, 0.1412F, -0.05276F}, {0.5065F, 0.1519F, 0.07377F},
+    {3.05F, 0.4639F, 0.05652F},   {0.3205F, 0.07541F, -0.5299F}, {0.2418F, 0.05288F, 0.8752F},
+    {0.437F, 0.1081F, -0.06601F}, {0.557F, 0.1361F, 0.04562F},   {3.652F, 0.5818F, 0.07099F},
+    {0.5056F, 0.09426F, 0.3039F}, {0.6303F, 0.1198F, -0.1075F},  {4.334F, 0.6787F, 0.09426F},
+    {1.548F, 0.3126F, -0.7314F},  {2.119F, 0.3295F, -0.9717F},   {2.066F, 0.3643F, -0.8432F},
+    {0.844F, 0.06719F, -0.541F},  {0.8474F, 0.02639F, -0.5291F}, {0.79F, 0.04808F, 0.2612F},
+    {0.9566F, 0.1374F, 0.2384F},  {0.7782F, 0.1804F, 0.4087F},   {1.128F, 0.2992F, 0.4945F},
+    {1.553F, 0.4705F, 0.4712F},
+}};
+constexpr double kTreeBias = 2.98;
+
 double extent_of(const std::vector<Vec3>& points) {
     double extent = 0.0;
     std::vector<float> values(points.size());
@@ -90,6 +110,21 @@ double extent_of(const std::vector<Vec3>& points) {
 }
 
 }  // namespace
+
+double mean_leafiness(const Cells& cells, const CellShapes& shapes, const CellPaths& paths) {
+    std::array<double, kCellInputs> sums{};
+    std::array<float, kCellInputs> inputs{};
+    for (const uint32_t v : cells.of_point) {
+        cell_inputs(&shapes[v * kShapeScales], paths.paths[v], inputs.data());
+        for (size_t i = 0; i < kCellInputs; i++)
+            sums[i] += static_cast<double>(inputs[i]);
+    }
+    double logit = kTreeBias - kLeafyTree;
+    for (size_t i = 0; i < kCellInputs; i++)
+        logit += static_cast<double>(value_of(
+            static_cast<float>(sums[i] / static_cast<double>(cells.of_point.size())), kTreeTerms[i]));
+    return logit;
+}
 
 bool surely_bare(const Cells& cells, const CellShapes& shapes) {
     double sum = 0.0, flat = 0.0;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "scan/leaves/leaf_cells.h"
+#include "scan/leaves/leaf_paths.h"
 
 namespace treerec {
 
@@ -17,6 +18,9 @@ struct CrownLooks {
     double flat = 0.0;        // CellShape::planarity on the grid twice as coarse
 };
 
+// Above 0 for a tree in leaf: a logistic rule on the mean of all points' cells.
+double mean_leafiness(const Cells& cells, const CellShapes& shapes, const CellPaths& paths);
+
 // A first look by the coarser shapes alone (scales 1 and up): whether there is nothing to look for.
 bool surely_bare(const Cells& cells, const CellShapes& shapes);
 
@@ -25,7 +29,7 @@ CrownLooks look_at_crown(const Cells& cells, const CellShapes& shapes);
 
 // Whether the cells are fine enough, or filled as no bare crown's are, for shape to tell leaves from twigs.
 bool resolves_leaves(const CrownLooks& looks);
-// Whether they may be, where the mean of leaf_rule.h's leafiness() says so: then is_lush() decides.
+// Whether they may be, where mean_leafiness() says so: then is_lush() decides.
 bool may_resolve_leaves(const CrownLooks& looks);
 bool is_lush(double leafiness);
 
@@ -43,7 +47,7 @@ bool looks_like_fronds(const CrownLooks& looks);
 bool may_outshine_blur(const CrownLooks& looks, double points);
 bool outshines_blur(double leafiness);
 
-// Of a cloud that resolves leaves. share: of leaves, as the logistic rule finds it. leafiness: leaf_rule.h's.
+// Of a cloud that resolves leaves. share: of leaves, as the classifier finds it. leafiness: mean_leafiness().
 bool is_in_leaf(const CrownLooks& looks, double share, double leafiness);
 // Likewise beyond the doubts that remain where means of a blurred scan's points are looked at.
 bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness);

@@ -20,17 +20,20 @@ constexpr double kThickest = 0.05;  // that of thicker wood counting as this
 constexpr double kSteps = 1024.0;   // of a logit: sums over whole numbers do not feel the points' order
 constexpr double kAllPoints = 2.0;  // points as leafy as all of them that count for every segment's own
 
-// Fitted to the skeletons of virtual scans in leaf (seven habits, seeds 21 and 22, 20 to 90 % of full
-// foliage, 40,000 to 1.5 million points, noise of 1 to 10 mm, up to half hidden): how much of a stretch lies
-// within the larger of 1 cm and the radius of true wood. Leafiness counts half as much again as fitted: that
-// costs 0.003 of F, and real bushes and tufts of needles look leafier than virtual ones.
-constexpr double kBias = -7.796;
-constexpr std::array<double, 7> kWeights{0.294, -0.8, 0.098, 4.428, 0.834, 0.782, -0.242};  // of looks_of()
-constexpr double kLeastCarried = 0.001;                                                     // tree's extents
-constexpr double kLeastRadius = 1e-4;                                                       // metres
+// By tests/bench/fit_leaves.py --twigs, of looks_of(); the last one is the bias. Fitted where all points up
+// to 1 beyond the threshold were followed: fitted to what is followed now, it keeps more of a dense scan's
+// stalks.
+constexpr std::array<double, kTwigLooks + 1> kWeights{
+#include "skeleton/twigs/leaf_twig_weights.inc"
+};
+constexpr double kLeastLength = 1e-3;    // metres
+constexpr double kRootLeafiness = -3.0;  // of what the trunk grows from
+constexpr double kLeastDensity = 0.05;   // of all wood's
+constexpr double kLeastCarried = 0.001;  // tree's extents
+constexpr double kLeastRadius = 1e-4;    // metres
 // What a stretch has to have, at least: best for F on the same scans, and for the length. Where most points
 // were told to be leaves, much of the wood was missed, and the tree would become too short.
-constexpr double kLeastChance = 0.22;
+constexpr double kLeastChance = 0.16;
 constexpr double kLeastByColour = 0.1;  // colour has told most leaves from the wood
 constexpr double kLeastAnew = 0.5;  // of these, where the worst has gone before: else the tree is too short
 constexpr double kManyLeaves = 0.8, kNearlyAllLeaves = 0.9;
@@ -87,6 +90,7 @@ struct Stretches {
     std::vector<Stretch> all;      // parents first
     std::vector<int32_t> of_node;  // by node id; -1 for the root
     double mean_logit = 0.0;       // of all points
+    double density = 0.0;          // of points that lie on wood, by the metre
 };
 
 Stretches find_stretches(const Tree& tree, const std::vector<NodeId>& order, const std::vector<NodeId>& on,
@@ -117,48 +121,120 @@ Stretches find_stretches(const Tree& tree, const std::vector<NodeId>& order, con
         found.all[below].carried += stretch.carried;
         found.all[below].reach = std::max(found.all[below].reach, stretch.reach);
     }
-    int64_t sum = 0, voices = 0;
+    int64_t sum = 0, voices = 0, on_wood = 0;
     for (size_t i = 0; i < on.size(); i++) {
         if (std::isnan(leafiness[i])) continue;
         const auto logit = static_cast<int64_t>(std::lround(kSteps * leafiness[i]));
         sum += logit;
         voices++;
         if (on[i] == kNoNode) continue;
+        on_wood++;
         found.all[found.of_node[on[i]]].sum += logit;
         found.all[found.of_node[on[i]]].voices++;
     }
     found.mean_logit =
         static_cast<double>(sum) / (kSteps * static_cast<double>(std::max<int64_t>(1, voices)));
+    double length = 0.0;
+    for (const Stretch& stretch : found.all)
+        length += stretch.length;
+    found.density = static_cast<double>(on_wood) / std::max(length, kLeastLength);
     return found;
+}
+
+// The mean logit of a stretch's points, and of some that are as leafy as all.
+double leafiness_of(const Stretch& stretch, double mean_logit) {
+    return (static_cast<double>(stretch.sum) / kSteps + kAllPoints * mean_logit) /
+           (static_cast<double>(stretch.voices) + kAllPoints);
+}
+
+// Of the points that lie on it, by the metre, against all wood's.
+double log_density(const Stretch& stretch, const Stretches& all) {
+    const double own = static_cast<double>(stretch.voices) / std::max(stretch.length, kLeastLength);
+    return portable::log(own / std::max(all.density, 1.0) + kLeastDensity);
 }
 
 // What tells whether a stretch is wood: how much it carries, how leafy its points and all points are, how
 // straight it is and how straight on it grows, how long it reaches by its radius, and in metres (twigs as
-// short as leaves, where there are leaves, are their stalks and edges).
-std::array<double, 7> looks_of(const Stretch& stretch, const Tree& tree, double extent, double mean_logit) {
+// short as leaves, where there are leaves, are their stalks and edges); how leafy what it grows from is, how
+// many points lie on both by the metre, its length and radius.
+TwigLooks looks_of(const Stretch& stretch, const Stretches& all, const Tree& tree, double extent) {
     const Node& start = tree.node(tree.node(stretch.first).parent);
     const DVec3 chord = tree.node(stretch.last).position - start.position;
     DVec3 before = chord;
     if (start.parent != kNoNode) before = start.position - tree.node(start.parent).position;
     const double reach = std::max(stretch.reach, kLeastRadius);
+    const double radius = tree.node(stretch.first).radius;
+    const int32_t below = all.of_node[tree.node(stretch.first).parent];
     return {portable::log(stretch.carried / extent + kLeastCarried),
-            (static_cast<double>(stretch.sum) / kSteps + kAllPoints * mean_logit) /
-                (static_cast<double>(stretch.voices) + kAllPoints),
-            mean_logit,
+            leafiness_of(stretch, all.mean_logit),
+            all.mean_logit,
             glm::length(chord) / std::max(stretch.length, kLeastRadius),
             glm::dot(normalized_or(chord, DVec3(0.0)), normalized_or(before, DVec3(0.0))),
-            portable::log(reach / (tree.node(stretch.first).radius + kLeastRadius)),
-            portable::log(reach) * mean_logit};
+            portable::log(reach / (radius + kLeastRadius)),
+            portable::log(reach) * all.mean_logit,
+            below >= 0 ? leafiness_of(all.all[below], all.mean_logit) : kRootLeafiness,
+            below >= 0 ? log_density(all.all[below], all) : 0.0,
+            log_density(stretch, all),
+            portable::log(stretch.length + kLeastLength),
+            portable::log(radius + kLeastRadius)};
 }
 
-double chance_of(const std::array<double, 7>& looks) {
-    double logit = kBias;
+double chance_of(const TwigLooks& looks) {
+    double logit = kWeights.back();
     for (size_t i = 0; i < looks.size(); i++)
         logit += kWeights[i] * looks[i];
     return 1.0 / (1.0 + portable::exp(-logit));
 }
 
+double least_chance(const LeavesTold& told) {
+    const double many =
+        std::clamp((kNearlyAllLeaves - told.share) / (kNearlyAllLeaves - kManyLeaves), 0.0, 1.0);
+    return many * (told.by_colour ? kLeastByColour : kLeastChance) * (told.grown_anew ? kLeastAnew : 1.0);
+}
+
+// By stretch the one that it grows from, or -1.
+std::vector<int32_t> below_of(const Stretches& stretches, const Tree& tree) {
+    std::vector<int32_t> below;
+    for (const Stretch& stretch : stretches.all)
+        below.push_back(stretches.of_node[tree.node(stretch.first).parent]);
+    return below;
+}
+
+// Which stretches go, where keeping one costs `least` of its length and gains as much of it as is likely
+// wood: those that with all that they carry are not worth it at best, unless they have to stay.
+std::vector<uint8_t> fall(const std::vector<Stretch>& all, const std::vector<int32_t>& below,
+                          const std::vector<double>& chances, const std::vector<uint8_t>& stays,
+                          double least) {
+    std::vector<double> worth(all.size(), 0.0);
+    for (size_t s = all.size(); s-- > 0;) {
+        worth[s] += all[s].length * (chances[s] - least);
+        if (below[s] >= 0) worth[below[s]] += std::max(0.0, worth[s]);
+    }
+    std::vector<uint8_t> falls(all.size(), 0);
+    for (size_t s = 0; s < all.size(); s++)
+        falls[s] = (below[s] >= 0 && falls[below[s]]) || (!stays[s] && !(worth[s] > 0.0));
+    return falls;
+}
+
 }  // namespace
+
+std::vector<TwigSample> look_at_twigs(const Tree& tree, const std::vector<Vec3>& points,
+                                      const std::vector<float>& leafiness, const Progress& progress) {
+    LiesOn places(points, tree);
+    places.find([&](size_t i) { return !std::isnan(leafiness[i]); }, progress);
+    const std::vector<NodeId> order = tree.depth_first();
+    const Stretches stretches = find_stretches(tree, order, places.on(), leafiness);
+    const DVec3 size = tree.bounds().size();
+    const double extent = std::max({size.x, size.y, size.z});
+    std::vector<TwigSample> samples(stretches.all.size());
+    for (size_t s = 0; s < samples.size(); s++) {
+        samples[s].looks = looks_of(stretches.all[s], stretches, tree, extent);
+        samples[s].line.push_back(tree.node(tree.node(stretches.all[s].first).parent).position);
+    }
+    for (const NodeId id : order)
+        if (id != tree.root()) samples[stretches.of_node[id]].line.push_back(tree.node(id).position);
+    return samples;
+}
 
 DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const std::vector<float>& leafiness,
                              const LeavesTold& told, const Progress& progress) {
@@ -173,11 +249,8 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
         tree = std::move(grown);
         return dropped;
     }
-    const double many =
-        std::clamp((kNearlyAllLeaves - told.share) / (kNearlyAllLeaves - kManyLeaves), 0.0, 1.0);
-    const double least_chance =
-        many * (told.by_colour ? kLeastByColour : kLeastChance) * (told.grown_anew ? kLeastAnew : 1.0);
-    if (tree.size() < 2 || points.empty() || !(least_chance > 0.0)) return {};
+    const double least = least_chance(told);
+    if (tree.size() < 2 || points.empty() || !(least > 0.0)) return {};
     LiesOn places(points, tree);
     places.find([&](size_t i) { return !std::isnan(leafiness[i]); }, progress);
     const std::vector<NodeId>& on = places.on();
@@ -196,26 +269,19 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
     for (const NodeId id : order)
         if (id != tree.root() && tree.node(id).is_trunk()) stays[stretches.of_node[id]] = 1;
 
-    // What keeping a stretch and what it carries is worth, at best.
     const DVec3 size = tree.bounds().size();
     const double extent = std::max({size.x, size.y, size.z});
-    std::vector<double> worth(all.size(), 0.0);
-    for (size_t s = all.size(); s-- > 0;) {
-        const double chance = chance_of(looks_of(all[s], tree, extent, stretches.mean_logit));
-        worth[s] += all[s].length * (chance - least_chance);
-        const int32_t below = stretches.of_node[tree.node(all[s].first).parent];
-        if (below >= 0) worth[below] += std::max(0.0, worth[s]);
-    }
-    std::vector<uint8_t> dropped(all.size(), 0);
+    std::vector<double> chances(all.size());
+    for (size_t s = 0; s < all.size(); s++)
+        chances[s] = chance_of(looks_of(all[s], stretches, tree, extent));
+    const std::vector<int32_t> below = below_of(stretches, tree);
+    const std::vector<uint8_t> dropped = fall(all, below, chances, stays, least);
     std::vector<NodeId> tops;
     DroppedTwigs result;
     for (size_t s = 0; s < all.size(); s++) {
-        const int32_t below = stretches.of_node[tree.node(all[s].first).parent];
-        const bool fallen = below >= 0 && dropped[below] != 0;
-        if (!fallen && (stays[s] != 0 || worth[s] > 0.0)) continue;
-        dropped[s] = 1;
+        if (!dropped[s]) continue;
         result.length += all[s].length;
-        if (!fallen) tops.push_back(all[s].first);
+        if (below[s] < 0 || !dropped[below[s]]) tops.push_back(all[s].first);
     }
     if (tops.empty()) return {};
     places.find([&](size_t i) { return std::isnan(leafiness[i]); }, progress);

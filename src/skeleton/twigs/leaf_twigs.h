@@ -1,6 +1,8 @@
 // Takes back branches that were grown through leaves.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -33,5 +35,16 @@ struct DroppedTwigs {
 // Cancelled, before anything is changed.
 DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const std::vector<float>& leafiness,
                              const LeavesTold& told, const Progress& progress);
+
+// What the rule knows of a stretch, and where it runs: for tests/bench/fit_leaves.py, which fits the weights.
+inline constexpr size_t kTwigLooks = 12;
+using TwigLooks = std::array<double, kTwigLooks>;
+struct TwigSample {
+    TwigLooks looks{};
+    std::vector<DVec3> line;
+};
+// As drop_leaf_twigs() would see them, of a tree that is as large as usual (scan/usual_size.h).
+std::vector<TwigSample> look_at_twigs(const Tree& tree, const std::vector<Vec3>& points,
+                                      const std::vector<float>& leafiness, const Progress& progress);
 
 }  // namespace treerec

@@ -1,10 +1,10 @@
-#include "leaf_network.h"
+#include "scan/leaves/leaf_network.h"
 
 #include <algorithm>
 
 #include "error.h"
 
-namespace treerec::bench {
+namespace treerec {
 
 namespace {
 
@@ -53,12 +53,12 @@ float LeafNetwork::logit(const float* values) const {
 
 const LeafWeights& LeafWeights::fitted() {
     static const LeafWeights weights{{
-#include "leaf_point_weights.inc"
+#include "scan/leaves/leaf_point_weights.inc"
                                      },
                                      {
-#include "leaf_context_weights.inc"
+#include "scan/leaves/leaf_context_weights.inc"
                                      }};
     return weights;
 }
 
-}  // namespace treerec::bench
+}  // namespace treerec

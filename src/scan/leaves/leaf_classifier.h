@@ -1,26 +1,29 @@
-// Tells leaf points from wood: fitted and judged here, beside the rules of scan/leaves that scans are still
-// told by.
+// Tells leaf points from wood. Internal to scan/.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "leaf_network.h"
 #include "progress.h"
 #include "scan/leaves/leaf_cells.h"
+#include "scan/leaves/leaf_network.h"
 #include "scan/leaves/leaf_paths.h"
-#include "scan/leaves/leaf_rule.h"
 
-namespace treerec::bench {
+namespace treerec {
 
-// What is known of a point: its cell's; how its 8, 16, 32 and 64 nearest lie, and the straightest line
-// through it among them. Nothing here is the same for a whole scan: there are too few scans to fit anything
-// to that.
-inline constexpr size_t kNearScales = 4, kLineInputs = 6;
-inline constexpr size_t kPointInputs = kCellInputs + kNearScales * (kNearInputs + kLineInputs) + kLineInputs;
+// What is known of a cell: by scale linearity, planarity, scatter, occupied, crowd (the coarsest without the
+// first two), then the members of CellPath.
+inline constexpr size_t kCellInputs = 28;
+// And of a point: its cell's; how its 8, 16, 32 and 64 nearest lie, and the straightest line through it among
+// them. Nothing here is the same for a whole scan: there are too few scans to fit anything to that.
+inline constexpr size_t kNearScales = 4, kShapeInputs = 6, kLineInputs = 6;
+inline constexpr size_t kPointInputs = kCellInputs + kNearScales * (kShapeInputs + kLineInputs) + kLineInputs;
 // Of the logits that come of these: its own, its neighbours', those along its line and its path.
 inline constexpr size_t kContextInputs = 21;
+
+// Fills in kCellInputs. shapes: kShapeScales of them.
+void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs);
 
 // Twigs and leaves differ less in how a point's neighbours lie than in what those are themselves: one network
 // looks at each point, another at what the first said of all around it (auto-context, Tu 2008).
@@ -51,4 +54,4 @@ class LeafClassifier {
     const Progress& progress_;
 };
 
-}  // namespace treerec::bench
+}  // namespace treerec

@@ -1,4 +1,4 @@
-#include "leaf_classifier.h"
+#include "scan/leaves/leaf_classifier.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
 
-namespace treerec::bench {
+namespace treerec {
 
 namespace {
 
@@ -21,6 +21,7 @@ constexpr std::array<float, kNearScales> kOnLine{0.15F, 0.12F, 0.06F, 0.04F};
 constexpr float kNearLine = 0.1F;  // of the widest once more: thin branches are not that straight
 constexpr float kOnContextLine = 0.12F;
 constexpr float kFarEnough = 0.35F;  // of that reach: points that may tell a line's direction
+constexpr int kWayBack = 4;          // steps to the ground that give a cell's direction
 constexpr float kMostLogit = 20.0F;
 
 // Points around one, one coordinate after the other, so that a line's are found many at a time.
@@ -82,6 +83,16 @@ std::array<Line, N> straightest(const Around& around, size_t count, float reach,
     return best;
 }
 
+// The direction in which the path from the ground reaches a cell.
+Vec3 heading_of(uint32_t cell, const Cells& cells, const CellPaths& paths) {
+    uint32_t from = cell;
+    for (int k = 0; k < kWayBack; k++)
+        from = paths.parent[from];
+    const Vec3 way = cells.centres[cell] - cells.centres[from];
+    const float length = glm::length(way);
+    return length > 0.0F ? way / length : Vec3(0.0F, 1.0F, 0.0F);
+}
+
 // The straightest line's score, span, the mean over all lines and its points as shares of all, how it lies to
 // the path to the ground and to what is upright.
 void line_inputs(const Line& line, size_t count, const Vec3& heading, float* inputs) {
@@ -94,11 +105,53 @@ void line_inputs(const Line& line, size_t count, const Vec3& heading, float* inp
     inputs[5] = std::abs(line.along.y);
 }
 
+// Linearity, planarity and scatter of the nearest points and the point itself; the share of their variance
+// along the path to the ground; ln of how far they reach, in cells; how far their mean lies from the point,
+// of their reach.
+void near_inputs(const Around& around, size_t count, float cell, const Vec3& heading, float* inputs) {
+    const float reach = count > 0 ? std::sqrt(around.square[count - 1]) : 0.0F;
+    const float share = 1.0F / static_cast<float>(count + 1);
+    Vec3 mean(0.0F);
+    for (size_t k = 0; k < count; k++)
+        mean += share * around.at(k);
+    std::array<float, 6> c{};
+    add_product(c, -mean, share);
+    for (size_t k = 0; k < count; k++)
+        add_product(c, around.at(k) - mean, share);
+    const Vec3 s = deviations(c);
+    const float first = std::max(s.x, 1e-9F);
+    const float along =
+        c[0] * heading.x * heading.x + c[3] * heading.y * heading.y + c[5] * heading.z * heading.z +
+        2.0F * (c[1] * heading.x * heading.y + c[2] * heading.x * heading.z + c[4] * heading.y * heading.z);
+    inputs[0] = (s.x - s.y) / first;
+    inputs[1] = (s.y - s.z) / first;
+    inputs[2] = s.z / first;
+    inputs[3] = along / (c[0] + c[3] + c[5] + 1e-12F);
+    inputs[4] = portable::log(reach / cell + 1e-3F);
+    inputs[5] = glm::length(mean) / (reach + 1e-9F);
+}
+
 float chance(float logit) {
     return 1.0F / (1.0F + portable::exp(-std::clamp(logit, -kMostLogit, kMostLogit)));
 }
 
 }  // namespace
+
+void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs) {
+    size_t at = 0;
+    for (int s = 0; s < kShapeScales; s++) {
+        if (s + 1 < kShapeScales) {
+            inputs[at++] = shapes[s].linearity;
+            inputs[at++] = shapes[s].planarity;
+        }
+        inputs[at++] = shapes[s].scatter;
+        inputs[at++] = shapes[s].occupied / 26.0F;
+        inputs[at++] = shapes[s].crowd;
+    }
+    for (const float value : {path.height, path.mass, path.chain, path.chain_mass, path.straight_short,
+                              path.straight_long, path.gap, path.bush_8, path.bush_16, path.bush_32})
+        inputs[at++] = value;
+}
 
 LeafClassifier::LeafClassifier(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
                                const CellPaths& paths, const Progress& progress)
@@ -127,8 +180,7 @@ std::vector<float> LeafClassifier::point_inputs() const {
         for (size_t i = begin; i < end; i++) {
             float* at = &inputs[i * kPointInputs];
             const uint32_t v = cells_.of_point[i];
-            const CellInputs of_cell = inputs_of(&shapes_[v * kShapeScales], paths_.paths[v]);
-            std::copy(of_cell.begin(), of_cell.end(), at);
+            cell_inputs(&shapes_[v * kShapeScales], paths_.paths[v], at);
             at += kCellInputs;
             const Vec3 heading = heading_of(v, cells_, paths_);
             const size_t others = tree.nearest(points_[i], kMost + 1, found.data(), squares.data()) - 1;
@@ -139,11 +191,8 @@ std::vector<float> LeafClassifier::point_inputs() const {
                 around.z[k] = d.z;
                 around.square[k] = glm::dot(d, d);
             }
-            for (size_t s = 0; s < kNearScales; s++, at += kNearInputs) {
-                const size_t count = std::min(kNearest[s], others) + 1;
-                measure_near(points_, points_[i], found.data(), count, std::sqrt(squares[count - 1]), cell,
-                             heading, at);
-            }
+            for (size_t s = 0; s < kNearScales; s++, at += kShapeInputs)
+                near_inputs(around, std::min(kNearest[s], others), cell, heading, at);
             for (size_t s = 0; s < kNearScales; s++) {
                 const size_t count = std::min(kNearest[s], others);
                 const float reach = count > 0 ? std::sqrt(around.square[count - 1]) : 0.0F;
@@ -247,4 +296,4 @@ std::vector<float> LeafClassifier::logits(const LeafWeights& weights) const {
     return run(context, context_inputs(run(point, point_inputs())));
 }
 
-}  // namespace treerec::bench
+}  // namespace treerec

@@ -1,4 +1,4 @@
-// A small perceptron, whose weights tests/bench/fit_leaves.py finds.
+// A small perceptron, whose weights tests/bench/fit_leaves.py finds. Internal to scan/.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace treerec::bench {
+namespace treerec {
 
 // Two hidden layers of rectified units on standardised inputs; the result is a logit. What lies further out
 // than three standard deviations says no more.
@@ -36,4 +36,4 @@ struct LeafWeights {
     static const LeafWeights& fitted();
 };
 
-}  // namespace treerec::bench
+}  // namespace treerec
