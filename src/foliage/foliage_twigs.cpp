@@ -10,6 +10,7 @@
 
 #include "foliage/crown.h"
 #include "foliage/near_wood.h"
+#include "foliage/own_twigs.h"
 
 namespace treerec {
 
@@ -22,13 +23,10 @@ constexpr double kSpacingCells = 3.0;     // between the ends of twigs
 constexpr double kNear = 0.5;             // of the spacing: foliage that near to wood needs no twig
 constexpr double kStep = 2.2;             // of the spacing: from one end to the next
 constexpr double kSlant = 0.8;            // of a twig's length: how much farther down its host it starts
-constexpr double kAgreement = 0.6;        // cosine between the host and a twig on it
 constexpr double kWinding = 0.7;          // what the way so far counts beside a twig's own length
 constexpr double kStouter = 3.0;          // times the radius of the nearest wood
-constexpr double kThinnest = 0.0015, kThickest = 0.006;  // metres, on a tree of full height
-constexpr double kThinning = 0.8;                        // of the host's radius
-constexpr double kSlender = 0.03;  // metres: thicker wood is a host against its will, see NearWood
-constexpr int kNeighbours = 3;     // coarse cells to each side that a twig may go on to
+constexpr double kSlender = 0.03;         // metres: thicker wood is a host against its will, see NearWood
+constexpr int kNeighbours = 3;            // coarse cells to each side that a twig may go on to
 
 using Place = std::array<int, 3>;
 
@@ -77,13 +75,13 @@ NodeId nearest_node(const Tree& tree, const BranchList& list, uint32_t branch, c
 
 // Twigs leave their host at a slant: from the first node on the way down that looks towards `end`, unless it
 // is far or on thick wood.
-NodeId slanted(const Tree& tree, NodeId host, const DVec3& end, double length) {
+NodeId slanted(const Tree& tree, NodeId host, const DVec3& end, double length, double agreement) {
     double down = 0.0;
     for (NodeId at = host; tree.node(at).parent != kNoNode; at = tree.node(at).parent) {
         const Node& node = tree.node(at);
         const Node& below = tree.node(node.parent);
         const DVec3 ahead = normalized_or(node.position - below.position, DVec3(0.0));
-        if (glm::dot(ahead, normalized_or(end - node.position, DVec3(0.0))) > kAgreement) return at;
+        if (glm::dot(ahead, normalized_or(end - node.position, DVec3(0.0))) > agreement) return at;
         down += glm::distance(node.position, below.position);
         if (down > kSlant * length || below.radius > kStouter * tree.node(host).radius) break;
     }
@@ -110,6 +108,7 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
     const BranchList list = list_branches(tree);
     const NearWood wood(tree, list, foliage_reach(foliage, crown.height), kSlender * scale,
                         2e-5 * crown.coordinate);
+    const OwnTwigs own = measure_twigs(tree, kSlender * scale, scale);
     std::map<Place, End> ends = gather_ends(foliage, spacing);
 
     // The cheapest first, from what is cheapest for it then (between Prim's tree and Dijkstra's); of two as
@@ -141,9 +140,10 @@ Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage
         end.reached = true;
         NodeId tip = end.host;
         if (end.distance > kNear * spacing) {
-            const NodeId from = slanted(grown, end.host, end.position, end.distance);
+            const NodeId from = slanted(grown, end.host, end.position, end.distance, own.agreement);
+            const double below = grown.node(from).radius;
             const double radius =
-                std::clamp(kThinning * grown.node(from).radius, kThinnest * scale, kThickest * scale);
+                std::min(below, std::clamp(own.thinning * below, own.thinnest, own.thickest));
             tip = grown.add_child(from, end.position, radius, kGuessFlag);
         }
         const double along = tip == end.host ? end.along : end.along + end.distance;

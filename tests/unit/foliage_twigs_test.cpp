@@ -6,6 +6,7 @@
 
 #include "bark_surface.h"
 #include "foliage/leaves.h"
+#include "foliage/own_twigs.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "random_tree.h"
@@ -105,6 +106,51 @@ TEST(FoliageTwigs, NoneGrowWithoutFoliageThatIsFollowed) {
     for (int i = 0; i < 500; i++)
         far.emplace_back(30.0f + 0.001f * static_cast<float>(i), 5.0f, 0.0f);
     EXPECT_EQ(leafy_tree(tree, LeafRules(), gather_foliage(far, {})).size(), tree.size());
+}
+
+// A stem with thin side branches that leave it at one angle, and leaves beyond their ends.
+struct Alike {
+    Tree tree;
+    Foliage foliage;
+};
+
+Alike alike(double angle, double tip) {
+    Alike made;
+    NodeId at = made.tree.add_root(DVec3(0.0), 0.02, kTrunkFlag);
+    std::vector<Vec3> points;
+    Random random(5);
+    for (int i = 1; i <= 30; i++) {
+        at = made.tree.add_child(at, {0.0, 0.2 * i, 0.0}, 0.02, kTrunkFlag);
+        const double around = 2.4 * i;
+        const DVec3 way(std::sin(angle) * std::cos(around), std::cos(angle),
+                        std::sin(angle) * std::sin(around));
+        const DVec3 end = made.tree.node(at).position + 0.8 * way;
+        made.tree.add_child(at, end, tip, 0);
+        for (int k = 0; k < 200; k++)
+            points.emplace_back(end + 0.5 * way + 0.35 * std::cbrt(random.uniform()) * random.direction());
+    }
+    made.foliage = gather_foliage(points, {});
+    return made;
+}
+
+// Twigs that the leaves hide are as thin as those that were seen.
+TEST(FoliageTwigs, AreAsThoseThatWereSeen) {
+    const auto mean_radius = [](double tip) {
+        const Alike made = alike(0.8, tip);
+        const Tree leafy = leafy_tree(made.tree, LeafRules(), made.foliage);
+        double sum = 0.0;
+        int count = 0;
+        for (NodeId id = made.tree.id_end(); id < leafy.id_end(); id++, count++)
+            sum += leafy.node(id).radius;
+        return sum / std::max(count, 1);
+    };
+    EXPECT_LT(mean_radius(0.001), 0.6 * mean_radius(0.004));
+    EXPECT_GT(mean_radius(0.001), 0.0005);
+    for (const double angle : {0.5, 0.8, 1.1})
+        EXPECT_NEAR(measure_twigs(alike(angle, 0.002).tree, 0.03, 1.0).agreement, std::cos(angle), 1e-3);
+    EXPECT_NEAR(measure_twigs(alike(0.8, 0.012).tree, 0.03, 1.0).thinning, 0.6, 1e-3);
+    // Of what was guessed nothing is learnt, nor of a tree with hardly any twigs.
+    EXPECT_EQ(measure_twigs(slender_tree(3), 0.0, 0.5).thinnest, 0.5 * OwnTwigs().thinnest);
 }
 
 TEST(FoliageTwigs, SameTwigsWhateverTheThreads) {
