@@ -170,7 +170,7 @@ TEST(RoundStems, TheSkeletonFollowsThem) {
         const Reconstruction made = reconstruct_file(folder.file("spruce.xyz"), options);
         EXPECT_NEAR(made.measured.dbh, 2.0 * stem_radius(1.3), 0.1 * 2.0 * stem_radius(1.3));
         EXPECT_NEAR(made.measured.height, kHeight, 0.05 * kHeight);
-        // Its boughs are limbs, and not only those that are longer than a spruce's ever are.
+        // Its boughs are branches, and not only those that are longer than a spruce's ever are.
         EXPECT_GT(made.measured.tips, 60U);
     }
 }

@@ -131,8 +131,8 @@ TEST(WoodLeaf, APalmIsAPalmHoweverBlurred) {
     }
 }
 
-// A tall stem and, from its end, `count` limbs that rise `rise` metres and hang down from there, with leaves
-// around them: neither flat nor green. The limbs join the stem over `along` metres of it.
+// A tall stem and, from its end, `count` branches that rise `rise` metres and hang down from there, with
+// leaves around them: neither flat nor green. The branches join the stem over `along` metres of it.
 PointCloud tuft(int count, double rise, double along, uint64_t seed) {
     Random random(seed);
     PointCloud cloud;
@@ -142,8 +142,8 @@ PointCloud tuft(int count, double rise, double along, uint64_t seed) {
         const double turn = random.uniform(0.0, 6.2832);
         put({0.09 * std::cos(turn), random.uniform(0.0, height), 0.09 * std::sin(turn)});
     }
-    for (int limb = 0; limb < count; limb++) {
-        const double turn = 6.2832 * (limb + random.uniform(0.0, 0.3)) / count;
+    for (int branch = 0; branch < count; branch++) {
+        const double turn = 6.2832 * (branch + random.uniform(0.0, 0.3)) / count;
         const double base = height - along * random.uniform(0.0, 1.0);
         for (int i = 0; i < 3000; i++) {
             const double t = random.uniform(0.0, 1.0);
@@ -164,7 +164,7 @@ TEST(WoodLeaf, ATuftAroundTheEndOfATallStemIsAPalm) {
         EXPECT_TRUE(palm.fronds);
         EXPECT_GT(palm.reach, 1.5);
         EXPECT_LT(palm.reach, 3.0);
-        // Limbs that leave the stem one after another, or all rise, are a tree's.
+        // Branches that leave the stem one after another, or all rise, are a tree's.
         for (const PointCloud& tree : {tuft(9, 0.8, 4.0, seed), tuft(9, 3.5, 0.2, seed)}) {
             const WoodLeaf told = tell_wood_from_leaves(tree);
             EXPECT_TRUE(told.foliage);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kFew = 0.02;
 constexpr size_t kLookedAt = 16384;  // points, of which so many that are extreme are judged:
 constexpr size_t kJudged = 256;
-constexpr double kAround = 0.04;  // of the extent: the piece of a limb that tells its axis
+constexpr double kAround = 0.04;  // of the extent: the piece of a branch that tells its axis
 constexpr size_t kLeastAround = 5;
 // Sky that was taken for wood lies around it: on average further from the axis than this share of the other
 // points. What has the colour by nature, or from the sun, lies among them, below 0.6.
@@ -59,7 +59,7 @@ Looked look(const PointCloud& cloud, const std::vector<Shade>& shades, Shade whi
     return looked;
 }
 
-// The axis of a piece of limb: through the mean, the way in which it extends most.
+// The axis of a piece of branch: through the mean, the way in which it extends most.
 DVec3 axis_of(const std::vector<DVec3>& from_mean) {
     DMat3 covariance(0.0);
     for (const DVec3& d : from_mean)

@@ -14,7 +14,7 @@ namespace {
 // All lengths as shares of the cloud's extent.
 constexpr double kCell = 0.03;
 // A part with a share of the points is one of the tree's unless it stands well apart: a stem below a gap, a
-// limb seen from one side.
+// branch seen from one side.
 constexpr double kNear = 0.25;
 // A few points are a leaf or the end of a twig if they are nearer still.
 constexpr double kVeryNear = 0.08;
@@ -246,7 +246,7 @@ std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spac
     }
     std::vector<uint8_t> stays(count);
     stays[largest] = 1;
-    // What stays may be what another part goes on from: a limb in three pieces.
+    // What stays may be what another part goes on from: a branch in three pieces.
     const auto any_left = [&] {
         for (size_t l = 0; l < count; l++)
             if (!stays[l] && !parts[l].empty()) return true;

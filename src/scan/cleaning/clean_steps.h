@@ -29,7 +29,7 @@ std::vector<uint8_t> find_outliers(const std::vector<Vec3>& points, const std::a
                                    double deviations, double& spacing, const Progress* progress);
 
 // Small clusters far from the rest, but not what lies beyond a gap in the tree: below the foot, or in line
-// with a stem or limb. spacing: as from find_outliers().
+// with a stem or branch. spacing: as from find_outliers().
 std::vector<uint8_t> find_fragments(const std::vector<Vec3>& points, double spacing,
                                     const Progress* progress);
 

@@ -99,7 +99,7 @@ LeafVerdict judge_cells(std::vector<float> logits, float threshold, const Cells&
     verdict.leaf.resize(logits.size());
     for (size_t v = 0; v < logits.size(); v++)
         verdict.leaf[v] = logits[v] > verdict.threshold;
-    verdict.limbs = follow_limbs(cells, shapes, paths, verdict.leaf, progress);
+    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, progress);
     verdict.logits = std::move(logits);
     return verdict;
 }
@@ -117,7 +117,7 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
     if (!changes) return;
     for (size_t v = 0; v < surplus.size(); v++)
         verdict.leaf[v] = verdict.logits[v] > verdict.threshold && surplus[v] < 0;
-    verdict.limbs = follow_limbs(cells, shapes, paths, verdict.leaf, progress);
+    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, progress);
     verdict.other = points_around_feet(cells.centres, stems);
     for (size_t v = 0; v < surplus.size(); v++)
         verdict.other[v] = verdict.other[v] && surplus[v] < 0;

@@ -7,8 +7,8 @@
 
 #include "geometry/vec.h"
 #include "progress.h"
+#include "scan/leaves/hidden_branches.h"
 #include "scan/leaves/leaf_cells.h"
-#include "scan/leaves/leaf_limbs.h"
 #include "scan/leaves/leaf_paths.h"
 #include "scan/stems/round_stems.h"
 
@@ -33,7 +33,7 @@ struct LeafVerdict {
     float threshold = 0.0F;
     std::vector<uint8_t> leaf;   // by cell: what lies above it, but for small mistakes
     std::vector<uint8_t> other;  // by cell: 1 for what is none of the tree; empty where there is none
-    Limbs limbs;
+    FollowedBranches followed;
 };
 
 LeafVerdict judge_cells(std::vector<float> logits, float threshold, const Cells& cells,

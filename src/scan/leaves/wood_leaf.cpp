@@ -198,7 +198,7 @@ double SampleTeller::agreement() const {
 }
 
 // Photos give bark as wavy as leaves, and of a crown its skin alone: the colours around a point tell what it
-// is, and limbs are looked for wherever points lead.
+// is, and branches are looked for wherever points lead.
 void SampleTeller::tell_by_tint() {
     std::vector<float> around(green_.size());
     for (size_t v = 0; v < green_.size(); v++)
@@ -282,19 +282,19 @@ WoodLeaf SampleTeller::tell() {
     LeafVerdict verdict;
     if (!leafy && closely) leafy = decide(looks_, share_of(close_logits()), lush_);
     if (leafy) verdict = judge_by_shape();
-    if (!result_.by_colour && frond_like && !verdict.limbs.fronds && (closely || !told_by_shape_)) {
+    if (!result_.by_colour && frond_like && !verdict.followed.fronds && (closely || !told_by_shape_)) {
         LeafVerdict palm = closely ? judge_closely() : judge_by_shape();
-        if (palm.limbs.fronds) verdict = std::move(palm);
+        if (palm.followed.fronds) verdict = std::move(palm);
     }
-    const bool in_leaf = leafy || verdict.limbs.fronds;
+    const bool in_leaf = leafy || verdict.followed.fronds;
     if (in_leaf && !result_.by_colour && is_lone_trunk(samples_.points, progress_)) return std::move(result_);
     if (!in_leaf) {
         if (closely) tell_leafiness();
         return std::move(result_);
     }
-    if (!verdict.limbs.fronds) {
+    if (!verdict.followed.fronds) {
         if (closely) verdict = judge_closely();
-        verdict.limbs.fronds = false;
+        verdict.followed.fronds = false;
         if (!stems_) stems_ = find_round_stems(samples_.points, &progress_);
         keep_stems(*stems_, samples_.points, cells_, shapes_, *paths_, verdict, progress_);
     }
@@ -309,11 +309,11 @@ WoodLeaf SampleTeller::tell() {
 }
 
 void SampleTeller::tell_points(const LeafVerdict& verdict, bool closely) {
-    const auto& [logits, threshold, leaf, other, limbs] = verdict;
+    const auto& [logits, threshold, leaf, other, followed] = verdict;
     result_.foliage = true;
-    result_.hidden_share = limbs.hidden_share;
-    result_.fronds = limbs.fronds;
-    result_.reach = limbs.reach;
+    result_.hidden_share = followed.hidden_share;
+    result_.fronds = followed.fronds;
+    result_.reach = followed.reach;
     result_.leaf.resize(cloud_.size());
     result_.wood_path.resize(cloud_.size());
     size_t leaves = 0;
@@ -321,7 +321,7 @@ void SampleTeller::tell_points(const LeafVerdict& verdict, bool closely) {
         const uint32_t v = cell_of_point_[i];
         if (!other.empty() && other[v]) continue;
         bool is_leaf = leaf[v] != 0;
-        const bool as_found = !limbs.fronds && leaf[v] == (logits[v] > threshold);
+        const bool as_found = !followed.fronds && leaf[v] == (logits[v] > threshold);
         // A frond's brown tip is no wood.
         if (as_found && result_.by_colour)
             is_leaf = logits[v] +
@@ -330,7 +330,7 @@ void SampleTeller::tell_points(const LeafVerdict& verdict, bool closely) {
         else if (as_found && closely)
             is_leaf = closely_[samples_.of_point[i]] > threshold;
         result_.leaf[i] = is_leaf;
-        result_.wood_path[i] = limbs.path[v] || !is_leaf;
+        result_.wood_path[i] = followed.path[v] || !is_leaf;
         leaves += is_leaf;
     }
     result_.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud_.size());

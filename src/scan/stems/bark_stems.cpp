@@ -21,7 +21,7 @@ constexpr double kRoundUpTo = 0.5;  // of the height
 constexpr size_t kMostRound = 200;
 constexpr double kStemRoom = 15.0;   // square metres of a plot for each of them
 constexpr double kApartRadii = 2.0;  // of both stems: between two that stand from the ground up
-constexpr double kLimb = 0.5;        // run over rise, from a stem's foot to where a limb's bark is seen
+constexpr double kBranchLean = 0.5;  // run over rise, from a stem's foot to where a branch's bark is seen
 constexpr double kStandsRoundBelow = 0.06;  // of the height: where the bark of such a stem begins
 constexpr double kLeaning = 0.2;  // run over rise: a stem that leans more is looked at along itself,
 constexpr double kAlong = 0.4;    // of the height: as far,
@@ -57,7 +57,7 @@ void stand(Stem& stem, const std::vector<Vec3>& standing, const std::vector<Vec3
 }
 
 // The bark of a stem that leans too far for the search, which looks straight up: its surroundings are turned
-// upright. Nothing where it gets thicker upwards, as a limb does that leans on the ground.
+// upright. Nothing where it gets thicker upwards, as a branch does that leans on the ground.
 std::optional<Barked> find_bark_along(const Stem& leaning, const std::vector<Vec3>& standing,
                                       const std::vector<Vec3>& points, double height,
                                       const Progress* progress) {
@@ -170,13 +170,13 @@ void add_round_stems(const std::vector<Vec3>& points, const std::vector<float>& 
         else
             take_in(*trunk, stem);
     }
-    // Bark that is seen from higher up alone is another one's limb where that one's foot is so near that the
-    // limb may have come from there.
+    // Bark that is seen from higher up alone is another one's branch where that one's foot is so near that
+    // the branch may have come from there.
     const auto is_limb = [&](const Barked& barked) {
         return std::any_of(all.begin(), all.end(), [&](const Stem& other) {
             const DVec2 at = DVec2(barked.stem.foot.x, barked.stem.foot.z) + barked.lowest * barked.stem.lean;
             const DVec2 axis = DVec2(other.foot.x, other.foot.z) + barked.lowest * other.lean;
-            return glm::distance(at, axis) < kLimb * barked.lowest;
+            return glm::distance(at, axis) < kBranchLean * barked.lowest;
         });
     };
     for (Barked& barked : found) {

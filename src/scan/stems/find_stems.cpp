@@ -25,7 +25,7 @@ constexpr double kShortest = 0.18;  // a stem goes up for this long
 constexpr double kStraight = 0.14;  // of it is taken for straight
 constexpr double kWidest = 0.03;    // root mean square radius of a stem
 constexpr double kCore = 0.01;      // across the densest spot
-constexpr double kThicket = 0.05;   // what is wider is no trunk of which a limb could be part
+constexpr double kThicket = 0.05;   // what is wider is no trunk of which a branch could be part
 constexpr double kClosestInThicket = 0.1;
 // Others.
 constexpr double kLeastFilled = 0.6;  // share of a stem's slices in which it is seen
@@ -181,7 +181,7 @@ std::vector<Track> follow_up(const std::vector<std::vector<Cluster>>& slices, do
             }
             const double start = static_cast<double>(s) * kSlice;
             if (start > (on_ground ? kLatestStartInThicket : latest_start)) continue;
-            // A limb of what is right below starts no stem.
+            // A branch of what is right below starts no stem.
             Track track;
             bool is_limb = false;
             for (size_t below = s >= kReach ? s - kReach : 0; below < s; below++)

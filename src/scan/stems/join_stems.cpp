@@ -14,19 +14,21 @@ namespace treerec {
 
 namespace {
 
-constexpr double kHighestFork = 0.6;  // of the height: where a limb that touches the ground meets its trunk
+constexpr double kHighestFork = 0.6;  // of the height: where a branch that touches the ground meets its trunk
 constexpr double kAlike = 0.1;        // of the thicker stem's radius: two culms, or a bundle and one
-constexpr double kLook = 4.0;         // of a limb's thickness: how far it is looked along, to both sides
-constexpr double kSlender = 2.0;  // variance along a limb over that across: of a ball it is .5, of a sheet 1
-constexpr double kThick = 0.5;    // of the thinner stem's radius: a limb that may bear it
-// Of the trunk's radius: as thick as its root or limb gets.
+constexpr double kLook = 4.0;         // of a branch's thickness: how far it is looked along, to both sides
+constexpr double kSlender =
+    2.0;                        // variance along a branch over that across: of a ball it is .5, of a sheet 1
+constexpr double kThick = 0.5;  // of the thinner stem's radius: a branch that may bear it
+// Of the trunk's radius: as thick as its root or branch gets.
 constexpr double kMostAlike = 0.4;
-constexpr double kBothSides = 0.5;   // of the look: the limb goes on that far to either side
+constexpr double kBothSides = 0.5;   // of the look: the branch goes on that far to either side
 constexpr double kReach = 2.5;       // voxels: what is no further away is beside, as the scan has gaps
-constexpr size_t kFewestAcross = 8;  // voxels where a limb is cut through
-constexpr double kCoarse = 2.2;  // of the thinner stem's radius: larger voxels do not tell limbs from twigs
-constexpr size_t kFewest = 12;   // voxels of a limb
-constexpr double kWidest = 8.0;  // of the thicker stem's radius: what is wider is no limb
+constexpr size_t kFewestAcross = 8;  // voxels where a branch is cut through
+constexpr double kCoarse =
+    2.2;                        // of the thinner stem's radius: larger voxels do not tell branches from twigs
+constexpr size_t kFewest = 12;  // voxels of a branch
+constexpr double kWidest = 8.0;  // of the thicker stem's radius: what is wider is no branch
 
 // Voxels next to each other that grew from different stems.
 struct Border {
@@ -156,18 +158,18 @@ std::vector<uint32_t> joined_by_wood(const std::vector<Stem>& stems, const std::
         if (width > kWidest * thicker) continue;
         const double look = kLook * width;
         // What grew from these two alone: others may cross.
-        std::vector<Vec3> limb;
+        std::vector<Vec3> branch;
         for (const uint32_t c : beside(places, Vec3(middle), look))
-            if (tree[c] == border.a || tree[c] == border.b) limb.push_back(centres[c]);
-        if (limb.size() < kFewest) continue;
-        const DMat3 covariance = covariance_of(limb);
+            if (tree[c] == border.a || tree[c] == border.b) branch.push_back(centres[c]);
+        if (branch.size() < kFewest) continue;
+        const DMat3 covariance = covariance_of(branch);
         DVec3 axis(1.0, 1.0, 1.0);
         for (int i = 0; i < 32; i++)
             axis = normalized_or(covariance * axis, axis);
         const double along = glm::dot(axis, covariance * axis);
         const double across = covariance[0][0] + covariance[1][1] + covariance[2][2] - along;
         double ahead = 0.0, behind = 0.0;
-        for (const Vec3& p : limb) {
+        for (const Vec3& p : branch) {
             const double t = glm::dot(DVec3(p) - middle, axis);
             ahead = std::max(ahead, t);
             behind = std::max(behind, -t);

@@ -54,7 +54,7 @@ std::vector<Stem> find_tops(const std::vector<Vec3>& points, const std::vector<f
 // culms of a clump.
 void join_clumps(std::vector<Stem>& stems, double height);
 // Which stems are one tree's though they stand apart, by stem: the thickest of its tree. Wood about as thick
-// as the thinner stem leads from one to the other, as from a banyan's trunk along its limb to a root that
+// as the thinner stem leads from one to the other, as from a banyan's trunk along its branch to a root that
 // came down from it, and on to the next root; all are much thinner than the trunk. Crowns that touch do so by
 // leaves and twigs, and stems whose crowns grow through each other are more alike. centres: of the occupied
 // voxels. tree: by voxel, which stem it grew from.

@@ -15,7 +15,7 @@ inline constexpr double kThinnest = 0.25;  // of a thick stem's radius
 
 // Whether the feet stand too near to each other for two trees. closest: as a share of the height.
 bool stand_together(const Stem& a, const Stem& b, double closest, double height);
-// Whether the axes come together further up: a limb that leans on the ground.
+// Whether the axes come together further up: a branch that leans on the ground.
 bool lean_together(const Stem& a, const Stem& b, double height);
 
 // other's seed and feet are stem's, too.

@@ -1,4 +1,4 @@
-#include "scan/leaves/leaf_limbs.h"
+#include "scan/leaves/hidden_branches.h"
 
 #include <algorithm>
 #include <array>
@@ -11,10 +11,10 @@ namespace treerec {
 
 namespace {
 
-// A limb that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
+// A branch that leaves hide is followed where paths go on for this much further; a lone piece of wood must be
 // as large as that many cells.
 constexpr double kHiddenShare = 0.15;  // of the crown's extent,
-constexpr double kHiddenWidth = 0.5;   // and no more than that of its half width: spruces have short limbs
+constexpr double kHiddenWidth = 0.5;   // and no more than that of its half width: spruces have short branches
 constexpr float kHiddenCells = 8.0F;
 constexpr uint32_t kLeastPiece = 8;
 constexpr double kCrownBase = 0.1;    // of the leaves are lower
@@ -236,7 +236,7 @@ void clear_stem(const Cells& cells, std::vector<uint8_t>& leaf, double low, cons
 // The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to the height of the
 // crown's middle, where they spring from.
 void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub,
-                 Limbs& limbs) {
+                 FollowedBranches& branches) {
     float low = cells.centres[0].y;
     for (const Vec3& p : cells.centres)
         low = std::min(low, p.y);
@@ -256,31 +256,31 @@ void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& cr
         const double off = distance_to(p, hub, end);
         // Wood off the stem is a frond's rib.
         if (!leaf[v] && p.y > hub.y && off > kRibCells * cells.size) leaf[v] = 1;
-        limbs.path[v] = !leaf[v] || off < radius;
+        branches.path[v] = !leaf[v] || off < radius;
         if (leaf[v]) reaches.push_back(static_cast<float>(off));
     }
-    limbs.reach = kReachSlack * quantile(reaches, kReachQuantile);
+    branches.reach = kReachSlack * quantile(reaches, kReachQuantile);
 }
 
 }  // namespace
 
-Limbs follow_limbs(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
-                   std::vector<uint8_t>& leaf, const Progress& progress) {
+FollowedBranches follow_branches(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
+                                 std::vector<uint8_t>& leaf, const Progress& progress) {
     const size_t count = cells.count();
-    Limbs limbs;
-    limbs.path.assign(count, 0);
+    FollowedBranches branches;
+    branches.path.assign(count, 0);
     const Crown crown = measure_crown(cells, leaf);
     if (crown.cells == 0) {
-        limbs.path.assign(count, 1);
-        return limbs;
+        branches.path.assign(count, 1);
+        return branches;
     }
     clear_foot(cells, crown, leaf);
     progress.check();
     DVec3 hub(0.0);
-    limbs.fronds = has_fronds(cells, shapes, tree, leaf, crown, hub);
-    if (limbs.fronds) {
-        follow_stem(cells, leaf, crown, hub, limbs);
-        return limbs;
+    branches.fronds = has_fronds(cells, shapes, tree, leaf, crown, hub);
+    if (branches.fronds) {
+        follow_stem(cells, leaf, crown, hub, branches);
+        return branches;
     }
     const auto scale = static_cast<float>(1.0 / cells.size);
     const double hidden_length = std::min(kHiddenShare * crown.extent, kHiddenWidth * 0.5 * crown.width);
@@ -299,21 +299,21 @@ Limbs follow_limbs(const Cells& cells, const CellShapes& shapes, const CellPaths
     progress.check();
     for (const uint32_t v : tree.order) {
         const uint32_t p = tree.parent[v];
-        const bool hangs = p != v && !limbs.path[p];
+        const bool hangs = p != v && !branches.path[p];
         if (!leaf[v] && hangs && wood[v] < kLeastPiece) leaf[v] = 1;
-        limbs.path[v] = !leaf[v] || wood[v] >= kLeastPiece || through[v] >= least;
+        branches.path[v] = !leaf[v] || wood[v] >= kLeastPiece || through[v] >= least;
     }
     // Up to the very top, so that the tree keeps its height.
     uint32_t top = 0;
     for (uint32_t v = 1; v < count; v++)
         if (cells.centres[v].y > cells.centres[top].y) top = v;
-    for (; !limbs.path[top]; top = tree.parent[top])
-        limbs.path[top] = 1;
+    for (; !branches.path[top]; top = tree.parent[top])
+        branches.path[top] = 1;
     double hidden = 0.0, seen = 0.0;
     for (size_t v = 0; v < count; v++)
-        if (limbs.path[v] && cells.centres[v].y >= crown.base) (leaf[v] ? hidden : seen) += 1.0;
-    limbs.hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
-    return limbs;
+        if (branches.path[v] && cells.centres[v].y >= crown.base) (leaf[v] ? hidden : seen) += 1.0;
+    branches.hidden_share = hidden + seen > 0.0 ? hidden / (hidden + seen) : 0.0;
+    return branches;
 }
 
 }  // namespace treerec
