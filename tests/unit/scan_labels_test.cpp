@@ -7,6 +7,8 @@
 
 #include "scan/leaves/wood_leaf.h"
 #include "scan_samples.h"
+#include "synth/grow.h"
+#include "synth/scan.h"
 
 namespace treerec {
 namespace {
@@ -165,6 +167,29 @@ TEST(Labels, FollowTheirPoints) {
     // Rows that are left out take their labels with them.
     const PointCloud read = read_text_of("x y z label\n0 0 0 1\nnan 0 0 2\n1 0 0 3\n0 1 1 4\n");
     EXPECT_EQ(read.labels.values, (std::vector<uint8_t>{1, 3, 4}));
+}
+
+// Of a palm whose fronds are labelled nobody asked whether they were fronds: it had up to eight times its
+// wood.
+TEST(Labels, FrondsAreFrondsAndOtherLeavesAreNot) {
+    for (const Habit habit : all_habits()) {
+        VirtualScanOptions options = scan_options_for(habit);
+        options.seed = 7;
+        options.points = 40000;
+        if (habit != Habit::kPalm) options.leaves = 0.6;
+        VirtualScan scan = scan_tree(grow_tree({habit, 0.0, 7}), options);
+        scan.cloud.colors.clear();
+        for (const uint8_t origin : scan.origin)
+            scan.cloud.labels.values.push_back(origin == kFromLeaf ? 1 : 0);
+        scan.cloud.labels.column = "leaf";
+        const WoodLeaf told = tell_wood_from_leaves(scan.cloud);
+        ASSERT_TRUE(told.by_labels) << habit_name(habit);
+        EXPECT_EQ(told.fronds, habit == Habit::kPalm) << habit_name(habit);
+        EXPECT_EQ(told.warnings.size(), told.fronds ? 2U : 1U);  // the labels' sentence, and the palm's
+        // Labels win: no leaf is wood, nor any wood leaf.
+        for (size_t i = 0; i < scan.origin.size(); i++)
+            ASSERT_EQ(told.leaf[i], scan.cloud.labels.values[i]);
+    }
 }
 
 }  // namespace

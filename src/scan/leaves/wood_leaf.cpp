@@ -54,6 +54,8 @@ constexpr std::array<RoundStemSearch, 2> kBarkSearches{{{}, kRoughBark}};
 constexpr double kFewestInMean = 1.5;
 constexpr double kMeanWidth = 3.0;
 
+constexpr char kPalm[] =
+    "The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.";
 constexpr double kMuchHidden = 0.3;
 constexpr double kNearlyAll = 0.9;  // of the points are leaves: what wood there is was guessed
 
@@ -361,12 +363,34 @@ void SampleTeller::warn() {
         result_.warnings.push_back(
             "Leaves hide much of the wood: " + std::to_string(std::lround(100.0 * result_.hidden_share)) +
             " % of the branches in the crown were guessed from the paths through the leaves.");
-    if (result_.fronds)
-        result_.warnings.emplace_back(
-            "The leaves are fronds: the tree was taken for a palm, which has one stem and no branches.");
+    if (result_.fronds) result_.warnings.emplace_back(kPalm);
 }
 
-WoodLeaf tell_by_labels(const PointCloud& cloud, const LabelledLeaves& labels) {
+// Where what is labelled as leaves are fronds, the skeleton follows one stem.
+void look_for_fronds(const PointCloud& cloud, WoodLeaf& result, Progress* listener) {
+    const SubProgress progress(listener, 0.0, 1.0);
+    const double factor = enlargement_to_usual(cloud.positions);
+    const std::vector<Vec3> points = factor == 1.0 ? cloud.positions : enlarged(cloud.positions, factor);
+    const Samples samples = take_samples(points, kMostSamples, &progress);
+    if (samples.points.size() < kLeastPoints) return;
+    const Cells cells = make_cells(samples.points, progress);
+    CellShapes shapes;
+    measure_shapes(cells, 0, kShapeScales - 1, shapes, progress);
+    std::vector<uint32_t> cell_of_point(cloud.size());
+    for (size_t i = 0; i < cloud.size(); i++)
+        cell_of_point[i] = cells.of_point[samples.of_point[i]];
+    std::vector<float> shares = shares_of(result.leaf, cell_of_point, cells.count());
+    const LeafVerdict verdict =
+        judge_cells(std::move(shares), 0.5F, cells, shapes, trace_paths(cells, progress), progress);
+    if (!verdict.followed.fronds) return;
+    result.fronds = true;
+    result.reach = verdict.followed.reach / factor;
+    result.warnings.emplace_back(kPalm);
+    for (size_t i = 0; i < cloud.size(); i++)
+        result.wood_path[i] = verdict.followed.path[cell_of_point[i]];
+}
+
+WoodLeaf tell_by_labels(const PointCloud& cloud, const LabelledLeaves& labels, Progress* progress) {
     WoodLeaf result;
     result.by_labels = true;
     result.foliage = true;
@@ -379,6 +403,7 @@ WoodLeaf tell_by_labels(const PointCloud& cloud, const LabelledLeaves& labels) {
         leaves += result.leaf[i];
     }
     result.leaf_share = static_cast<double>(leaves) / static_cast<double>(cloud.size());
+    look_for_fronds(cloud, result, progress);
     return result;
 }
 
@@ -411,7 +436,7 @@ WoodLeaf tell_wood_from_leaves(const PointCloud& cloud, Progress* progress) {
     const LabelledLeaves labels = find_labelled_leaves(cloud);
     WoodLeaf result;
     if (labels.leaf)
-        result = tell_by_labels(cloud, labels);
+        result = tell_by_labels(cloud, labels, progress);
     else if (!labels.wood)
         result = tell_by_looks(cloud, progress);
     if (!labels.sentence.empty()) result.warnings.insert(result.warnings.begin(), labels.sentence);
