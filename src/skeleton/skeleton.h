@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "scan/point_cloud.h"
 #include "skeleton/flood/flood_steps.h"
+#include "skeleton/passes.h"
 #include "stage_clock.h"
 #include "tree/tree.h"
 
@@ -54,6 +55,7 @@ struct SkeletonOptions {
     bool fit_radii = true;           // measure radii where the points allow it
     uint64_t seed = 1;               // of the robust fits
     bool keep_raw = true;            // fill SkeletonResult::raw
+    PassSet left_out;                // of the geodesic method, to measure what a pass is worth
 };
 
 struct SkeletonResult {

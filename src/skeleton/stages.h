@@ -61,6 +61,7 @@ struct SkeletonWork {
     double least_branch() const {
         return options.minimum_branch > 0.0 ? options.minimum_branch : automatic_branch(extent);
     }
+    bool does(Pass pass) const { return !options.left_out.has(pass); }
     bool floods() const { return options.method == SkeletonMethod::kFlood; }
 };
 

@@ -5,10 +5,8 @@
 #include <cstdio>
 #include <sstream>
 
-#include "child.h"
 #include "error.h"
 #include "fidelity/score.h"
-#include "pipeline/reconstruct.h"
 #include "synth/scan.h"
 #include "tree/measure.h"
 
@@ -19,10 +17,9 @@ namespace {
 constexpr double kSampleStep = 0.004;  // metres between the samples of a skeleton
 
 // Beyond these a row counts as worse; chance alone moves a single tree this much when a rule changes.
-constexpr double kRowShare = 0.04;     // precision, recall, F
-constexpr double kRowRadius = 0.06;    // radius error
-constexpr double kRowDbh = 0.15;       // a leafy foot makes it jump
-constexpr double kLargestError = 0.3;  // an error beyond counts as this one: wrong is wrong
+constexpr double kRowShare = 0.04;   // precision, recall, F
+constexpr double kRowRadius = 0.06;  // radius error
+constexpr double kRowDbh = 0.15;     // a leafy foot makes it jump
 // And the means of all rows, which hardly move by chance.
 constexpr double kMeanShare = 0.006;
 constexpr double kMeanRadius = 0.012;
@@ -101,22 +98,21 @@ size_t points_for(Habit habit, double leaves, size_t bare_points) {
     return static_cast<size_t>(std::lround((1.0 + 3.0 * foliage) * static_cast<double>(bare_points)));
 }
 
-AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled) {
-    AccuracyRow row;
-    row.setting = setting;
-    const Tree truth = grow_tree({setting.habit, 0.0, setting.seed});
+GrownScan::GrownScan(const AccuracyCase& setting, bool labelled)
+    : truth_(grow_tree({setting.habit, 0.0, setting.seed})), file_(folder_.file("scan.ply")) {
+    seen_.setting = setting;
     VirtualScanOptions options = scan_options_for(setting.habit);
     options.seed = setting.seed;
     options.points = setting.points;
     options.noise = setting.noise;
     options.occlusion = setting.occlusion;
     options.leaves = setting.leaves;
-    VirtualScan scan = scan_tree(truth, options);
+    VirtualScan scan = scan_tree(truth_, options);
     size_t leaf_points = 0;
     for (uint8_t origin : scan.origin)
         leaf_points += origin == kFromLeaf;
-    row.leafy = static_cast<double>(leaf_points) / static_cast<double>(scan.origin.size());
-    row.seen = seen_share(truth, scan);
+    seen_.leafy = static_cast<double>(leaf_points) / static_cast<double>(scan.origin.size());
+    seen_.seen = seen_share(truth_, scan);
     // Most real scans have none, and grown leaves are greener than real ones.
     scan.cloud.colors.clear();
     if (labelled && leaf_points > 0) {
@@ -124,20 +120,21 @@ AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled) {
         for (uint8_t origin : scan.origin)
             scan.cloud.labels.values.push_back(origin == kFromLeaf ? 1 : 0);
     }
+    write_cloud(file_, scan.cloud);
+}
 
-    const ScratchFolder folder;
-    const std::string file = folder.file("scan.ply");
-    write_cloud(file, scan.cloud);
-    const double true_dbh = measure(truth).dbh;
+AccuracyRow GrownScan::measure(const ReconstructOptions& options, ReconstructCache* cache) const {
+    AccuracyRow row = seen_;
+    const double true_dbh = treerec::measure(truth_).dbh;
     try {
-        const Reconstruction result = reconstruct_file(file, {});
-        const SkeletonScore score = score_skeleton(result.tree, truth, nullptr, kSampleStep);
+        const Reconstruction result = reconstruct_tree(file_, options, nullptr, cache);
+        const SkeletonScore score = score_skeleton(result.tree, truth_, nullptr, kSampleStep);
         row.precision = score.match.precision;
         row.recall = score.match.recall;
         row.f = score.match.f;
         row.length_error = score.length_error;
         row.radius_error = score.radius_error_abs;
-        if (true_dbh > 0.0) row.dbh_error = measure(result.tree).dbh / true_dbh - 1.0;
+        if (true_dbh > 0.0) row.dbh_error = treerec::measure(result.tree).dbh / true_dbh - 1.0;
         for (size_t i = 0; i < kThicknessClasses; i++) {
             row.radius_bias[i] = score.radius_by_thickness[i].error;
             row.class_length[i] = score.radius_by_thickness[i].length;
@@ -148,6 +145,10 @@ AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled) {
         row.radius_error = 1.0;
     }
     return row;
+}
+
+AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled) {
+    return GrownScan(setting, labelled).measure();
 }
 
 std::vector<AccuracyCase> guard_cases() {

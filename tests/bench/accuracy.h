@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "child.h"
+#include "pipeline/reconstruct.h"
 #include "synth/grow.h"
 
 namespace treerec::bench {
@@ -39,8 +41,25 @@ struct AccuracyRow {
     std::string failure;  // why there is no tree; everything else is then the worst
 };
 
-// Grows, scans (without colours), writes a file, and runs the whole reconstruction from it. labelled: the
-// file says which points are leaves, so that the row is the most that telling them can reach.
+// An error beyond counts as this one: wrong is wrong.
+inline constexpr double kLargestError = 0.3;
+
+// A grown tree and a scan of it (without colours) in a file. labelled: the file says which points are leaves,
+// so that a row is the most that telling them can reach.
+class GrownScan {
+  public:
+    explicit GrownScan(const AccuracyCase& setting, bool labelled = false);
+    // Runs the whole reconstruction from the file.
+    AccuracyRow measure(const ReconstructOptions& options = {}, ReconstructCache* cache = nullptr) const;
+
+  private:
+    AccuracyRow seen_;  // what is known before
+    Tree truth_;
+    ScratchFolder folder_;
+    std::string file_;
+};
+
+// Of a new scan.
 AccuracyRow measure_accuracy(const AccuracyCase& setting, bool labelled = false);
 
 // Every habit: clean, noisy, hidden in part, and leafy.

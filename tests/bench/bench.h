@@ -58,6 +58,9 @@ void bench_synth(const Settings& settings);
 // by the first one's weights in even.txt (fitted to scans of odd numbers) and odd.txt of that folder.
 void bench_twig_inputs(const Settings& settings);
 void bench_leaf_inputs(const std::vector<std::string>& scans, const Settings& settings);
+// What each pass of the skeleton, and each step of the cleaning, is worth: grown trees and these scans with
+// it and without. settings.args: the names of some, instead of all. With repetitions set, scan by scan, too.
+void bench_ablation(const std::vector<std::string>& scans, const Settings& settings);
 // The reduced table of the same: compared with the recorded one (false: worse), or recorded.
 bool guard_accuracy(const Settings& settings);
 void record_accuracy(const Settings& settings);

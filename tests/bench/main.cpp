@@ -28,6 +28,7 @@ const char* const kUsage =
     "       bench --bytes [SCAN…|FOLDER]       bytes of the cloud, of its skeleton and of lighter ones\n"
     "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
+    "       bench --ablate [SCAN…|FOLDER] [-- PASS…]  what is worse without each pass of the skeleton\n"
     "       bench --strings                    L-strings of 10 MB: written, read, rewritten\n"
     "       bench --sketch                     strokes to trees: time, and crowns against their outlines\n"
     "       bench --growth                     bark of Mizoguchi and Miyata's (2014) sizes: seconds, and us "
@@ -46,7 +47,8 @@ const char* const kUsage =
     "       bench --leaf-inputs FOLDER [--weights FOLDER] [SCAN…]  what fit_leaves.py fits to\n"
     "       bench --twig-inputs FOLDER                             likewise\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth, --limbs and --plots), --labelled (of --synth: with "
+    "options: --repetitions N, --seeds N (of --synth, --limbs, --plots and --ablate), --labelled (of "
+    "--synth: with "
     "the\n"
     "         truth about leaves in the scans), --most-points N (of --scaling),\n"
     "         --truth FOLDER (its STEM_skeleton_corrected*.csv are compared),\n"
@@ -84,7 +86,8 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
             word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
-            word == "--plots" || word == "--leaf-inputs" || word == "--twig-inputs" || word == "--help") {
+            word == "--plots" || word == "--ablate" || word == "--leaf-inputs" || word == "--twig-inputs" ||
+            word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -96,7 +99,7 @@ CommandLine parse(const std::vector<std::string>& words) {
         } else if (word == "--repetitions") {
             line.settings.repetitions = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
         } else if (word == "--seeds") {
-            line.settings.seeds = static_cast<int>(std::clamp<size_t>(whole(value()), 1, 1000));
+            line.settings.seeds = static_cast<int>(std::min<size_t>(whole(value()), 1000));
         } else if (word == "--weights") {
             line.settings.weights = value();
         } else if (word == "--labelled") {
@@ -140,6 +143,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& paths) {
 }
 
 int run(CommandLine line) {
+    if (line.mode != "--ablate") line.settings.seeds = std::max(1, line.settings.seeds);
     if (line.mode == "--help") {
         std::fputs(kUsage, stdout);
         return EXIT_SUCCESS;
@@ -154,6 +158,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--synth") {
         bench_synth(line.settings);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--ablate") {
+        bench_ablation(files_of(line.scans), line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--sketch") {

@@ -16,6 +16,7 @@ void find_branches(SkeletonWork& work) {
     work.progress.check();
     work.branch_options.minimum_branch = work.least_branch();
     work.branch_options.widest_loop = kWidestRing * work.extent;
+    work.branch_options.left_out = work.axis_options.left_out = options.left_out;
     work.axis_options.fit_radii = options.fit_radii;
     work.axis_options.seed = options.seed;
     work.axis_options.widest_ring = kWidestRing * work.extent;

@@ -274,6 +274,7 @@ class BranchFinder {
     // Merges the part of the chain, from its base on, that forms a loop with the branch: the branch's slices
     // beside its end lie further along. Says how many slices that were.
     size_t merge_loop(std::span<const int32_t> chain, int32_t branch, Fit& fit) {
+        if (options_.left_out.has(Pass::kLoops)) return 0;
         const SmoothAxis& axis = axes_[branch];
         std::vector<int32_t> stations;
         int32_t station = fit.attach;
@@ -407,6 +408,7 @@ class BranchFinder {
 
     // The side branch of `branch`, near station `attach`, on whose surface the chain starts; -1 for none.
     int32_t side_under(std::span<const int32_t> chain, int32_t branch, int32_t attach) const {
+        if (options_.left_out.has(Pass::kSameFork)) return -1;
         for (const int32_t side : sides_[branch]) {
             if (std::abs(branches_[side].attach - attach) > kSameFork) continue;
             const int32_t station = nearest_station(axes_[side], 0, slices_.centre[chain.front()]);

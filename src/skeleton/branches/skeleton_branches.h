@@ -7,6 +7,7 @@
 
 #include "progress.h"
 #include "skeleton/branches/slices.h"
+#include "skeleton/passes.h"
 
 namespace treerec {
 
@@ -25,6 +26,7 @@ struct BranchOptions {
     double minimum_branch = 0.05;  // metres from its parent's axis that a branch must be long
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
     double widest_loop = 0.25;     // metres: what lies further aside is no bark of its parent
+    PassSet left_out;
 };
 
 // The shortest branch where the user states none, metres. extent: of the tree, from its root.

@@ -96,6 +96,8 @@ LocalScale follow_thickness(const LocalScale& scale, const std::vector<Vec3>& po
     axis_options.rounds = 1;
     axis_options.confirmations = kConfirmations;
     for (const double factor : kTrials) {
+        if (options.axes.left_out.has(Pass::kThickness)) break;
+        if (factor != kTrials.front() && options.axes.left_out.has(Pass::kSecondTrial)) break;
         const LocalScale trial = scaled(factor);
         const Slices slices = cut_slices(points, graph, trial, paths, root, progress);
         progress.check();

@@ -74,7 +74,7 @@ class BranchFitter {
 
     std::vector<Station> run() {
         if (options_.fit_radii)
-            for (int round = 0; round < options_.rounds; round++) {
+            for (int round = 0; round < (does(Pass::kSecondFit) ? options_.rounds : 1); round++) {
                 fit_all();
                 move_axis();
                 measure_arc();
@@ -85,6 +85,8 @@ class BranchFitter {
     }
 
   private:
+    bool does(Pass pass) const { return !options_.left_out.has(pass); }
+
     // The points of each station, those of absorbed side chains included.
     void collect(const SkeletonBranch& branch) {
         begin_.assign(count_ + 1, 0);
@@ -142,7 +144,8 @@ class BranchFitter {
         auto [first, last] = window(i, reach);
         // Of a sparse stem, a longer piece tells what a short one cannot.
         const bool stem_base = is_first_ && arc_[i] <= kStemShare * arc_.back();
-        const bool stem = stem_base && options_.long_windows && spacing_[i] > kSparseStem * radius;
+        const bool stem = stem_base && options_.long_windows && does(Pass::kLongWindows) &&
+                          spacing_[i] > kSparseStem * radius;
         const size_t wanted = stem ? kWantedOfStem : kWantedPoints;
         for (int grow = 0; grow < (stem ? 6 : 3) && begin_[last + 1] - begin_[first] < wanted; grow++) {
             reach *= 1.6;
@@ -175,12 +178,14 @@ class BranchFitter {
             const double spread = circle->spread / circle->radius;
             if (circle->coverage >= kLeastCoverage && spread <= (wide ? kWideSpread : kMostSpread))
                 return circle;
-            if (circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
+            if (does(Pass::kArcs) && circle->coverage >= kLeastArc && spread <= kArcSpread) return circle;
             // Of a noisy stem that is seen from one side, many points tell what few cannot.
-            if (stem_base && !wide && circle->coverage >= kLeastArc && spread <= kMostSpread &&
-                flat.size() >= kArcPoints && circle->error <= kArcError * circle->radius)
+            if (does(Pass::kManyPointedArcs) && stem_base && !wide && circle->coverage >= kLeastArc &&
+                spread <= kMostSpread && flat.size() >= kArcPoints &&
+                circle->error <= kArcError * circle->radius)
                 return circle;
         }
+        if (!does(Pass::kRings)) return std::nullopt;
         const std::optional<CircleFit> ring = fit_ring(flat);
         if (ring && plausible(*ring) && ring->coverage >= kRingCoverage && ring->inside <= kRingInside &&
             ring->spread <= kRingSpread * ring->radius && ring->radius <= options_.widest_ring)
@@ -296,12 +301,12 @@ class BranchFitter {
         while (first < count_ &&
                !(stations_[first].measured && arc_[first] >= kEndCut * stations_[first].radius))
             first++;
-        if (first < count_ && is_first_) straighten(first, -1);
+        if (first < count_ && is_first_ && does(Pass::kStraightEnds)) straighten(first, -1);
         size_t last = count_;
         while (last > 0 && !(stations_[last - 1].measured &&
                              arc_[count_ - 1] - arc_[last - 1] >= kEndCut * stations_[last - 1].radius))
             last--;
-        if (last > 0) straighten(last - 1, 1);
+        if (last > 0 && does(Pass::kStraightEnds)) straighten(last - 1, 1);
         if (count_ < 2) return;
         Station& tip = stations_[count_ - 1];
         measure_arc();
@@ -389,7 +394,8 @@ std::vector<std::vector<Station>> fit_axes(std::vector<SkeletonBranch>& branches
         }
     });
     for (SkeletonBranch& branch : branches)
-        if (branch.parent >= 0) move_attach(branch, axes[&branch - branches.data()], axes[branch.parent]);
+        if (branch.parent >= 0 && !options.left_out.has(Pass::kAttach))
+            move_attach(branch, axes[&branch - branches.data()], axes[branch.parent]);
     return axes;
 }
 

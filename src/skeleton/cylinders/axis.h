@@ -25,6 +25,7 @@ struct AxisOptions {
     size_t confirmations = 1;   // alike circles within three stations, without which one is an accident
     bool long_windows = false;  // a sparse stem may be measured over a longer piece
     int rounds = 2;             // fit, then fit again across the better axis
+    PassSet left_out;
 };
 
 // One list of stations per branch. The axis runs through the centres of circles fitted to the cross-sections

@@ -97,10 +97,11 @@ class BaseFinder {
         step_ = std::max(kStep * extent_, kSpacings * *middle);
     }
 
-    BaseEnd find() const {
+    BaseEnd find(PassSet left_out) const {
         std::vector<uint32_t> ends = far_ends();
         // A way of fewer than some points has no direction.
-        if (step_ > kLeastSide * extent_) return thicker_end(trial_at(ends.front()));
+        if (step_ > kLeastSide * extent_ || left_out.has(Pass::kBaseByForks))
+            return thicker_end(trial_at(ends.front()));
         const auto lower = [](const Vec3& a, const Vec3& b) { return a.y < b.y; };
         const auto lowest = std::min_element(points_.begin(), points_.end(), lower);
         ends.push_back(static_cast<uint32_t>(lowest - points_.begin()));
@@ -339,11 +340,11 @@ class BaseFinder {
 
 }  // namespace
 
-BaseEnd find_base_end(const std::vector<Vec3>& points, Progress& progress) {
+BaseEnd find_base_end(const std::vector<Vec3>& points, Progress& progress, PassSet left_out) {
     PointCloud few;
     few.positions = points;
     thin_cloud(few, kMostPoints, &progress);
-    return BaseFinder(few.positions, progress).find();
+    return BaseFinder(few.positions, progress).find(left_out);
 }
 
 }  // namespace treerec

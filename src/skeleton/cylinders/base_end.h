@@ -5,6 +5,7 @@
 
 #include "geometry/vec.h"
 #include "progress.h"
+#include "skeleton/passes.h"
 
 namespace treerec {
 
@@ -20,6 +21,6 @@ struct BaseEnd {
 // root; that is the same for all. Where there is hardly a fork, or the points are too far apart, it is the
 // thicker end of the longest path. points: of wood, metres, distinct; some 20,000 of them are looked at.
 // Throws Cancelled.
-BaseEnd find_base_end(const std::vector<Vec3>& points, Progress& progress);
+BaseEnd find_base_end(const std::vector<Vec3>& points, Progress& progress, PassSet left_out = {});
 
 }  // namespace treerec

@@ -36,15 +36,15 @@ void fit_cylinders(SkeletonWork& work) {
         branches.resize(1);
         axes.resize(1);
     }
-    straighten_stems(branches, axes);
-    if (!work.root.lying && std::none_of(branches.begin(), branches.end(), [](const SkeletonBranch& branch) {
-            return branch.parent == 0 && branch.attach == 0;
-        }))
+    if (work.does(Pass::kStraightStems)) straighten_stems(branches, axes);
+    if (work.does(Pass::kPlantedBase) && !work.root.lying &&
+        std::none_of(branches.begin(), branches.end(),
+                     [](const SkeletonBranch& branch) { return branch.parent == 0 && branch.attach == 0; }))
         plant_stem_base(axes.front());
-    straighten_bases(branches, axes);
-    if (!work.root.lying) limit_stem_base(axes.front());
-    infer_radii(axes, branches);
-    drop_strips(branches, axes, work.branch_options.least_escape);
+    if (work.does(Pass::kStraightBases)) straighten_bases(branches, axes);
+    if (work.does(Pass::kLimitedBase) && !work.root.lying) limit_stem_base(axes.front());
+    infer_radii(axes, branches, false, work.options.left_out);
+    if (work.does(Pass::kEarlyStrips)) drop_strips(branches, axes, work.branch_options.least_escape);
     work.clock.stop("Radii", branches.size());
 }
 
@@ -52,17 +52,18 @@ void refine_cylinders(SkeletonWork& work) {
     std::vector<SkeletonBranch>& branches = work.branches;
     std::vector<std::vector<Station>>& axes = work.axes;
     work.progress.update(0.9, "Refinement");
-    infer_radii(axes, branches);
-    refine_axes(axes, branches, places_of_sample(work.thinned, work.places), work.thinned.measured(),
-                work.progress, work.options.noise);
+    infer_radii(axes, branches, false, work.options.left_out);
+    if (work.does(Pass::kRefinement))
+        refine_axes(axes, branches, places_of_sample(work.thinned, work.places), work.thinned.measured(),
+                    work.progress, work.options.noise, work.options.left_out);
     if (work.options.fit_radii) work.known->tell(axes);
-    seat_root(branches, axes);
-    if (!work.root.lying) limit_stem_base(axes.front());
-    infer_radii(axes, branches, true);
-    if (work.options.one_stem) keep_width(axes.front());
+    if (work.does(Pass::kSeatedRoot)) seat_root(branches, axes);
+    if (work.does(Pass::kLimitedBase) && !work.root.lying) limit_stem_base(axes.front());
+    infer_radii(axes, branches, true, work.options.left_out);
+    if (work.does(Pass::kPalmWidth) && work.options.one_stem) keep_width(axes.front());
     // Twigs that now lie on the bark of others were none.
-    drop_strips(branches, axes, 0.5 * work.twig_options.least_escape);
-    draw_back_tips(axes, branches, work.branch_options.minimum_branch);
+    if (work.does(Pass::kLateStrips)) drop_strips(branches, axes, 0.5 * work.twig_options.least_escape);
+    if (work.does(Pass::kTips)) draw_back_tips(axes, branches, work.branch_options.minimum_branch);
     work.clock.stop("Refinement", branches.size());
 }
 

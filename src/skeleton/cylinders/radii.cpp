@@ -201,18 +201,19 @@ void keep_width(std::vector<Station>& stem) {
 }
 
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
-                 bool last) {
-    const double noise = noise_of(axes);
-    const double slenderness = slenderness_of(axes);
+                 bool last, PassSet left_out) {
+    const double noise = left_out.has(Pass::kNoiseOfRadii) ? 0.0 : noise_of(axes);
+    const double slenderness = left_out.has(Pass::kOwnSlenderness) ? kSlenderness : slenderness_of(axes);
+    const bool ends = last && !left_out.has(Pass::kMeasuredEnds);
     parallel_for(axes.size(), kBranchesPerTask, [&](size_t begin, size_t end) {
         std::vector<double> values;
         std::vector<double> weights;
         std::vector<double> to_tip;
         for (size_t l = begin; l < end; l++) {
             std::vector<Station>& stations = axes[l];
-            running_median(stations);
-            estimate(stations, noise, slenderness, last, values, weights, to_tip);
-            if (branches[l].parent < 0) span_stem_base(stations, values);
+            if (!left_out.has(Pass::kMedianRadii)) running_median(stations);
+            estimate(stations, noise, slenderness, ends, values, weights, to_tip);
+            if (branches[l].parent < 0 && !left_out.has(Pass::kBaseSpan)) span_stem_base(stations, values);
             const std::vector<double> fitted = falling_fit(values, weights);
             for (size_t i = 0; i < stations.size(); i++)
                 stations[i].radius = fitted[i];

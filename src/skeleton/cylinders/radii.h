@@ -21,7 +21,7 @@ double noise_of(const std::vector<std::vector<Station>>& axes);
 // measured wood ends, it may be as thick as the points there say: it narrows evenly to the tip, or was cut.
 // (Before, twigs around its end would be taken for its bark.)
 void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
-                 bool last = false);
+                 bool last = false, PassSet left_out = {});
 
 // A palm's stem is as wide at its top, which fronds hide, as where it was last measured.
 void keep_width(std::vector<Station>& stem);

@@ -173,7 +173,7 @@ class BranchRefiner {
                   const std::vector<SkeletonBranch>& branches, std::span<const int32_t> sides,
                   const std::vector<Bounds>& bases, const PointPlaces& places,
                   std::span<const int32_t> own_points, const std::vector<Vec3>& points, double noise,
-                  double least_noise, Scratch& scratch)
+                  double least_noise, PassSet left_out, Scratch& scratch)
         : axes_(axes),
           branches_(branches),
           branch_(branches[index]),
@@ -186,6 +186,7 @@ class BranchRefiner {
           section_noise_(noise > 0.0 ? std::max(noise, least_noise) : 0.0),
           line_(axes[index]),
           count_(static_cast<int>(line_.size())),
+          left_out_(left_out),
           scratch_(scratch) {}
 
     std::vector<Station> run() {
@@ -201,7 +202,7 @@ class BranchRefiner {
         shift.assign(line_.size(), DVec3(0.0));
         for (int i = 0; i < count_; i++)
             refine_station(i, result[i], shift[i]);
-        believe_round(result);
+        if (!left_out_.has(Pass::kRoundStations)) believe_round(result);
         for (int i = 0; i < count_; i++) {
             if (stays(i)) continue;
             DVec3 sum = 2.0 * shift[i];
@@ -285,7 +286,7 @@ class BranchRefiner {
         if (at == 0 || hit.distance <= 0.0) return;
         // Beyond the ends, the distance says nothing about the radius.
         if ((at == 1 && hit.t <= 0.0) || (at == count_ - 1 && hit.t >= 1.0)) return;
-        if (is_foreign(p, station, std::abs(hit.off))) return;
+        if (!left_out_.has(Pass::kForeignPoints) && is_foreign(p, station, std::abs(hit.off))) return;
         const int own = hit.t < 0.5 ? at - 1 : at;
         const DVec3 n = hit.offset / hit.distance;
         found.emplace_back(
@@ -357,6 +358,7 @@ class BranchRefiner {
     }
 
     double seen_radius(size_t begin, size_t end, double median) const {
+        if (left_out_.has(Pass::kOneSided)) return median;
         scratch_.offsets.clear();
         for (size_t s = begin; s < end; s++)
             scratch_.offsets.push_back(samples_[s].distance * Vec2(samples_[s].x, samples_[s].y));
@@ -429,6 +431,7 @@ class BranchRefiner {
     double section_noise_;  // 0 where nothing is known
     const std::vector<Station>& line_;
     int count_;
+    PassSet left_out_;
     Scratch& scratch_;
     std::vector<std::array<DVec3, 2>>& frame_ = scratch_.frame;
     std::vector<size_t>& begin_ = scratch_.begin;
@@ -453,13 +456,13 @@ std::vector<Bounds> bark_of_bases(const std::vector<std::vector<Station>>& axes,
 
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                  const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress,
-                 double least_noise) {
+                 double least_noise, PassSet left_out) {
     Members own_points(places.branch, branches.size());
     std::vector<int32_t> parent(branches.size());
     for (size_t l = 0; l < branches.size(); l++)
         parent[l] = branches[l].parent;
     Members sides(parent, branches.size());
-    for (int round = 0; round < kRounds; round++) {
+    for (int round = 0; round < (left_out.has(Pass::kSecondRefinement) ? 1 : kRounds); round++) {
         const double noise = noise_of(axes);
         const std::vector<Bounds> bases = bark_of_bases(axes, branches);
         std::vector<std::vector<Station>> next(axes.size());
@@ -473,7 +476,7 @@ void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<Skel
                         return std::pair(branches[a].attach, a) < std::pair(branches[b].attach, b);
                     });
                 next[l] = BranchRefiner(l, axes, branches, own_sides, bases, places, own_points.of(l), points,
-                                        noise, least_noise, scratch)
+                                        noise, least_noise, left_out, scratch)
                               .run();
             }
         });

@@ -25,6 +25,6 @@ struct PointPlaces {
 // known than the axes show. Throws Cancelled on request.
 void refine_axes(std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
                  const PointPlaces& places, const std::vector<Vec3>& points, Progress& progress,
-                 double least_noise = 0.0);
+                 double least_noise = 0.0, PassSet left_out = {});
 
 }  // namespace treerec

@@ -109,7 +109,7 @@ RootGuess root_at_base(const std::vector<Vec3>& points, const std::vector<uint8_
 }  // namespace
 
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                    const std::optional<DVec3>& stem_base, Progress& progress) {
+                    const std::optional<DVec3>& stem_base, Progress& progress, PassSet left_out) {
     const std::vector<uint32_t> group = linked_groups(graph, scale);
     std::vector<size_t> members(points.size(), 0);
     std::vector<float> heights(points.size());
@@ -137,7 +137,7 @@ RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, co
         std::vector<Vec3> of_wood;
         for (size_t v = 0; v < points.size(); v++)
             if (wood[v]) of_wood.push_back(points[v]);
-        const BaseEnd base = find_base_end(of_wood, progress);
+        const BaseEnd base = find_base_end(of_wood, progress, left_out);
         // A spreading tree is wider than high, too.
         const bool stands =
             base.direction.y > kUpright && base.position.y < bounds.min.y + kStemBaseShare * size.y;

@@ -20,7 +20,7 @@ struct RootGuess {
 // it is where find_base_end() says, unless a trunk stands there. stem_base: where a stem is known to stand;
 // then it is the lowest part beside it, if there is any. points: tree space, metres.
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
-                    const std::optional<DVec3>& stem_base, Progress& progress);
+                    const std::optional<DVec3>& stem_base, Progress& progress, PassSet left_out = {});
 
 // Metres from the root to the farthest of the points.
 double extent_from(const std::vector<Vec3>& points, const DVec3& root);

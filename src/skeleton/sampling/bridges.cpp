@@ -85,8 +85,12 @@ struct Straightest {
 
 class Bridges {
   public:
-    Bridges(const std::vector<Vec3>& points, const PointTree& tree, Groups groups)
-        : points_(points), tree_(tree), groups_(std::move(groups)), part_(points.size()) {}
+    Bridges(const std::vector<Vec3>& points, const PointTree& tree, Groups groups, PassSet left_out)
+        : points_(points),
+          tree_(tree),
+          groups_(std::move(groups)),
+          part_(points.size()),
+          run_on_(!left_out.has(Pass::kBridgesRunOn)) {}
 
     void add(std::vector<PointEdge>& edges, Progress& progress) {
         while (number_parts()) {
@@ -156,6 +160,7 @@ class Bridges {
     };
 
     void choose(PartLinks& of_part) const {
+        if (!run_on_) return;
         const double longest = kLonger * std::sqrt(of_part.best.squared);
         double least = std::numeric_limits<double>::max();
         const std::span<Link> links = of_part.links;
@@ -242,13 +247,14 @@ class Bridges {
     std::vector<DVec3> middle_;           // by part: the sum of its points
     std::vector<uint32_t> part_of_node_;  // of tree_
     uint32_t largest_ = 0;
+    bool run_on_;
 };
 
 }  // namespace
 
 void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, Groups groups,
-                  std::vector<PointEdge>& edges, Progress& progress) {
-    Bridges(points, tree, std::move(groups)).add(edges, progress);
+                  std::vector<PointEdge>& edges, Progress& progress, PassSet left_out) {
+    Bridges(points, tree, std::move(groups), left_out).add(edges, progress);
 }
 
 }  // namespace treerec

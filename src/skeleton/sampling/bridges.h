@@ -16,6 +16,6 @@ namespace treerec {
 // but by one of the shortest that best continues the wood that it comes from, since a branch goes on beyond a
 // gap as it did before. tree: over points. groups: who is connected by the edges that there are.
 void bridge_parts(const std::vector<Vec3>& points, const PointTree& tree, Groups groups,
-                  std::vector<PointEdge>& edges, Progress& progress);
+                  std::vector<PointEdge>& edges, Progress& progress, PassSet left_out = {});
 
 }  // namespace treerec

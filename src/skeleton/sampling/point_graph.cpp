@@ -55,7 +55,7 @@ PointGraph graph_of(const std::vector<Vec3>& points, const std::vector<PointEdge
 
 }  // namespace
 
-PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) {
+PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress, PassSet left_out) {
     progress.check();
     const PointTree tree(points, &progress);
     const size_t near = std::min(kNeighbours, points.size() - 1);
@@ -86,7 +86,7 @@ PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress) 
         for (size_t i = 0; i < near; i++)
             link(nearest[v * near + i]);
     });
-    bridge_parts(points, tree, std::move(groups), edges, progress);
+    bridge_parts(points, tree, std::move(groups), edges, progress, left_out);
 
     return graph_of(points, edges, &progress);
 }

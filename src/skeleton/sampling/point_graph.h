@@ -8,6 +8,7 @@
 
 #include "geometry/vec.h"
 #include "progress.h"
+#include "skeleton/passes.h"
 
 namespace treerec {
 
@@ -26,7 +27,7 @@ struct PointGraph {
 // points: distinct, metres. Every point is linked to its nearest ones, and what that leaves apart by the
 // shortest edges that make the whole connected. (AdTree, Du et al. 2019, takes the edges of the Delaunay
 // triangulation, which costs ten times as much: skeleton/delaunay/.)
-PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress);
+PointGraph neighbour_graph(const std::vector<Vec3>& points, Progress& progress, PassSet left_out = {});
 
 // Where the edge stands in the first vertex's row (an index into `neighbour`), if there is one.
 std::optional<uint32_t> find_edge(const PointGraph& graph, const PointEdge& edge);

@@ -33,7 +33,8 @@ void sample_points(SkeletonWork& work) {
         result.spacing = std::min(result.spacing, options.voxel / kVoxelSpacings);
     if (work.floods()) result.voxel = options.voxel > 0.0 ? options.voxel : kVoxelSpacings * result.spacing;
     work.thinned = work.floods() ? ThinnedCloud{thin_points(all, result.spacing, work.progress), {}, {}}
-                                 : thin_with_sample(all, result.spacing, work.progress);
+                                 : thin_with_sample(all, result.spacing, work.progress, options.left_out);
+    if (!work.does(Pass::kSample)) work.thinned.sample.clear();
     if (work.points().size() < kLeastPoints)
         throw Error(
             "The cloud has only " + std::to_string(work.points().size()) + " points more than " +
@@ -50,7 +51,7 @@ void sample_points(SkeletonWork& work) {
 void link_neighbours(SkeletonWork& work) {
     const double spacing = work.result.spacing;
     SubProgress linking(work.listener, 0.1, 0.55);
-    work.graph = neighbour_graph(work.points(), linking);
+    work.graph = neighbour_graph(work.points(), linking, work.options.left_out);
     work.first_scale = local_scale(work.graph, spacing, &work.progress);
     work.known.emplace(work.cloud, spacing, &work.progress);
     if (work.known->any()) {

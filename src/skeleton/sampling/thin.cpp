@@ -180,7 +180,8 @@ void take_sample(const std::vector<Vec3>& points, const CellGrid& grid, const st
     }
 }
 
-ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled, Progress& progress) {
+ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled, Progress& progress,
+                  PassSet left_out = {}) {
     progress.check();
     ThinnedCloud out;
     size_t count = 0;
@@ -190,7 +191,7 @@ ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled,
         std::vector<Vec3> good;
         good.reserve(count);
         std::copy_if(points.begin(), points.end(), std::back_inserter(good), finite);
-        return thin(good, spacing, sampled, progress);
+        return thin(good, spacing, sampled, progress, left_out);
     }
     const CellGrid grid(points, safe_layout(bounds, spacing), &progress);
     out.points.resize(grid.size());
@@ -207,7 +208,8 @@ ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled,
     });
     const auto distinct = static_cast<double>(std::accumulate(held.begin(), held.end(), uint64_t{0}));
     if (!sampled || distinct < kCrowded * static_cast<double>(grid.size())) return out;
-    const std::vector<uint8_t> stray = find_strays(grid, held, progress);
+    const std::vector<uint8_t> stray = left_out.has(Pass::kStrays) ? std::vector<uint8_t>(grid.size(), 0)
+                                                                   : find_strays(grid, held, progress);
     std::vector<uint32_t> place(grid.size(), kNowhere);
     uint32_t kept = 0;
     for (size_t c = 0; c < grid.size(); c++) {
@@ -222,8 +224,9 @@ ThinnedCloud thin(const std::vector<Vec3>& points, double spacing, bool sampled,
 
 }  // namespace
 
-ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress) {
-    return thin(points, spacing, true, progress);
+ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress,
+                              PassSet left_out) {
+    return thin(points, spacing, true, progress, left_out);
 }
 
 std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress) {

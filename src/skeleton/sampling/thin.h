@@ -5,6 +5,7 @@
 
 #include "geometry/vec.h"
 #include "progress.h"
+#include "skeleton/passes.h"
 
 namespace treerec {
 
@@ -24,7 +25,8 @@ struct ThinnedCloud {
 // Where cubes hold many points, those that far fewer lie about than about most near them are strays and left
 // out. The result depends neither on the order of the points nor on repeated points. Points that are not
 // finite are dropped.
-ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress);
+ThinnedCloud thin_with_sample(const std::vector<Vec3>& points, double spacing, Progress& progress,
+                              PassSet left_out = {});
 
 // The same without the sample, strays included.
 std::vector<Vec3> thin_points(const std::vector<Vec3>& points, double spacing, Progress& progress);

@@ -71,7 +71,7 @@ NodeId taper_over_gap(Tree& tree, NodeId last, const Station& from, const Statio
 }  // namespace
 
 Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
-                   double simplify_distance) {
+                   double simplify_distance, PassSet left_out) {
     std::vector<std::vector<uint8_t>> keep(axes.size());
     for (size_t l = 0; l < axes.size(); l++) {
         keep[l].assign(axes[l].size(), 0);
@@ -122,7 +122,8 @@ Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vec
             if (station.measured) flags |= kMeasuredRadiusFlag;
             if (station.bridged) {
                 flags |= kGuessFlag;
-                if (i > 0) last = taper_over_gap(tree, last, axes[l][i - 1], station);
+                if (i > 0 && !left_out.has(Pass::kGapTaper))
+                    last = taper_over_gap(tree, last, axes[l][i - 1], station);
             }
             last = last == kNoNode ? tree.add_root(station.position, station.radius, flags)
                                    : tree.add_child(last, station.position, station.radius, flags);

@@ -13,6 +13,6 @@ namespace treerec {
 // and both ends of bridges stay, and no segment grows longer than 20 cm. The tree's nodes are in depth-first
 // order.
 Tree assemble_tree(const std::vector<std::vector<Station>>& axes, const std::vector<SkeletonBranch>& branches,
-                   double simplify_distance);
+                   double simplify_distance, PassSet left_out = {});
 
 }  // namespace treerec

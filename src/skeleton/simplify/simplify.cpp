@@ -66,7 +66,8 @@ bool take_stump(SkeletonWork& work) {
 void simplify(SkeletonWork& work) {
     work.result.warnings = gap_warnings(work.axes, work.branches, work.extent, work.factor);
     work.progress.update(0.95, "Simplification");
-    work.result.tree = assemble_tree(work.axes, work.branches, work.options.simplify_distance);
+    work.result.tree =
+        assemble_tree(work.axes, work.branches, work.options.simplify_distance, work.options.left_out);
     finish(work);
 }
 

@@ -19,6 +19,7 @@ void find_twigs(SkeletonWork& work) {
         work.options.one_stem
             ? std::numeric_limits<double>::max()
             : std::max(kTwigEscape, kNoiseEscape * std::max(noise_of(work.axes), work.options.noise));
+    work.twig_options.left_out = work.options.left_out;
     work.places = add_twigs(work.points(), work.graph, work.first_scale, work.paths, work.slices,
                             work.twig_options, work.branches, work.axes, work.progress);
     work.clock.stop("Twigs", work.branches.size());

@@ -50,6 +50,8 @@ class TwigGrower {
     }
 
   private:
+    bool does(Pass pass) const { return !field_.options.left_out.has(pass); }
+
     // Of a limb that was given, or of a twig.
     const std::vector<Station>& axis(int32_t limb) const {
         return limb < given_ ? field_.axes[limb] : grown_.axes[limb - given_];
@@ -83,7 +85,7 @@ class TwigGrower {
         const int32_t parent = field_.limb[foot_];
         int32_t station = field_.station[foot_];
         bool escapes = false;
-        const bool at_foot = parent == 0 && station < field_.foot_end;
+        const bool at_foot = does(Pass::kFootRoots) && parent == 0 && station < field_.foot_end;
         for (size_t i = 0; i < path_.size() && !escapes; i++) {
             const uint32_t v = path_[i];
             const BarkPlace place = place_near(axis(parent), station, DVec3(field_.points[v]));
@@ -101,8 +103,8 @@ class TwigGrower {
         twig.parent = parent;
         twig.attach = field_.station[foot_];
         std::vector<Station> line = smooth_line(axis(parent)[twig.attach].position);
-        twig.attach = fork_station(axis(parent), twig.attach, line);
-        straighten(line, axis(parent)[twig.attach].position);
+        if (does(Pass::kTwigForks)) twig.attach = fork_station(axis(parent), twig.attach, line);
+        if (does(Pass::kSharpTurns)) straighten(line, axis(parent)[twig.attach].position);
         double outer = 0.0;
         for (size_t i = 1; i < line.size(); i++)
             outer += glm::distance(line[i].position, line[i - 1].position);
@@ -110,7 +112,8 @@ class TwigGrower {
             field_.nearest[v] = -1;
         twig.attach = long_enough(axis(parent), twig.attach, line.front().position, outer);
         if (twig.attach < 0) return;
-        if (axis(parent)[twig.attach].measured && near_.size() < kLeastPoints) return;
+        if (does(Pass::kFewPoints) && axis(parent)[twig.attach].measured && near_.size() < kLeastPoints)
+            return;
 
         const int32_t index = given_ + static_cast<int32_t>(grown_.limbs.size());
         grown_.limbs.push_back(std::move(twig));
@@ -170,7 +173,8 @@ class TwigGrower {
         const auto length = [&](int32_t from) { return glm::distance(parent[from].position, first) + outer; };
         const double found = length(attach);
         if (found >= 1.01 * shortest) return attach;
-        if (near_.size() < kShootPoints || found < kShortest * shortest) return -1;
+        if (!does(Pass::kShortShoots) || near_.size() < kShootPoints || found < kShortest * shortest)
+            return -1;
         double back = 0.0;
         while (length(attach) < kShootLength * shortest) {
             // Further back than it is long, it would lie along its parent.

@@ -81,7 +81,8 @@ class TwigFinder {
                 field_.outside[v] = std::numeric_limits<float>::infinity();
                 if (place.branch < 0) continue;
                 claim(static_cast<uint32_t>(v), place);
-                if (field_.limb[v] < 0) claim_stump(static_cast<uint32_t>(v), place);
+                if (field_.limb[v] < 0 && !field_.options.left_out.has(Pass::kStumpEnds))
+                    claim_stump(static_cast<uint32_t>(v), place);
                 field_.outside[v] = static_cast<float>(place.outside());
                 field_.surface[v] = static_cast<float>(place.radius);
             }
@@ -184,7 +185,7 @@ PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, 
     TwigFinder finder(points, graph, scale, paths, options, limbs, axes);
     finder.take_slices(slices, progress);
     finder.run(progress);
-    finder.take_blur(progress);
+    if (!options.left_out.has(Pass::kBlur)) finder.take_blur(progress);
     return std::move(finder).places();
 }
 

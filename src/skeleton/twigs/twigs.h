@@ -15,6 +15,7 @@ namespace treerec {
 struct TwigOptions {
     double minimum_branch = 0.05;  // metres from its parent's axis that a twig is long, at least
     double least_escape = 0.025;   // metres that it must reach out of its parent's surface
+    PassSet left_out;
 };
 
 // Adds twigs to the limbs and their axes until every point that a twig can reach lies on the bark of
