@@ -53,7 +53,6 @@ enum class Pass : uint8_t {
     kBlur,
     kFootRoots,
     kTwigForks,
-    kSharpTurns,
     kShortShoots,
     kFewPoints,
     // simplify/
@@ -103,7 +102,6 @@ inline constexpr std::array<const char*, kPasses> kPassNames = {
     "blur",
     "roots at the foot",
     "twig forks",
-    "sharp turns",
     "short shoots",
     "few points",
     "gap taper",
