@@ -67,7 +67,10 @@ void SampleMask::fill(const DVec2 (&corners)[3], const Vec2 (&uvs)[3], const Ima
     const Span rows = rows_of(corners);
     for (int row = rows.first; row <= rows.last; row++) {
         const Span span = span_of(corners, row);
+        const uint64_t* covered = &bits_[words_ * static_cast<size_t>(row)];
         for (int x = span.first; x <= span.last; x++) {
+            // In a crown most are, many times.
+            if (covered[x / 64] >> (x % 64) & 1U) continue;
             const DVec2 p = DVec2(x + 0.5, row + 0.5) - corners[0];
             const double s = (p.x * b.y - p.y * b.x) / area, t = (a.x * p.y - a.y * p.x) / area;
             const DVec2 uv = DVec2(uvs[0]) + s * DVec2(uvs[1] - uvs[0]) + t * DVec2(uvs[2] - uvs[0]);

@@ -30,10 +30,14 @@ func _bodies(instance: TreeInstance3D) -> Array[StaticBody3D]:
 
 
 func _hit(instance: TreeInstance3D, from: Vector3, to: Vector3) -> Object:
+	return (await _meeting(instance, from, to)).get("collider")
+
+
+func _meeting(instance: TreeInstance3D, from: Vector3, to: Vector3) -> Dictionary:
 	await tree.physics_frame
 	await tree.physics_frame
 	var query: PhysicsRayQueryParameters3D = PhysicsRayQueryParameters3D.create(from, to)
-	return instance.get_world_3d().direct_space_state.intersect_ray(query).get("collider")
+	return instance.get_world_3d().direct_space_state.intersect_ray(query)
 
 
 func test_a_ray_hits_the_trunk() -> void:
@@ -43,6 +47,10 @@ func test_a_ray_hits_the_trunk() -> void:
 	var hit: Object = await _hit(instance, at + Vector3(5, 0, 0), at - Vector3(5, 0, 0))
 	check(hit is StaticBody3D, "The ray hit %s." % hit)
 	check(hit != null and (hit as Node).get_parent() == instance, "It isn't this tree's body.")
+	var from: Vector3 = at + Vector3(5, 0, 0)
+	var place: Vector3 = (await _meeting(instance, from, at)).get("position", from)
+	var radius: float = instance.reconstruction.get_node_radius(trunk[1])
+	check_equal(snappedf(place.distance_to(at) / radius, 0.25), 1.0, "where its bark is, in radii")
 	instance.collision_layer = 4
 	check_equal(_bodies(instance)[0].collision_layer, 4, "the body's layer")
 	instance.collision = false

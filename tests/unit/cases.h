@@ -22,4 +22,10 @@ inline bool is_long_run() {
     return std::getenv("TREEREC_LONG") != nullptr;
 }
 
+// Of so many trees or angles that a slow test looks for the same in, one after another, it takes the first
+// third; all in a long run.
+inline int repeats(int all) {
+    return is_long_run() ? all : (all + 2) / 3;
+}
+
 }  // namespace treerec::test

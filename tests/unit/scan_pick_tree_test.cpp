@@ -75,11 +75,11 @@ double flat_distance(const DVec3& a, const DVec3& b) {
 }
 
 TEST(ScanPickTree, FindsEveryTreeOfAForest) {
-    for (uint64_t seed = 1; seed <= uint64_t{test::cases(3)}; seed++) {
+    for (int seed = 1; seed <= test::repeats(3); seed++) {
         for (const double apart : {4.5, 8.0}) {
             for (const bool ground : {true, false}) {
                 SCOPED_TRACE(std::to_string(seed) + " " + std::to_string(apart) + (ground ? " ground" : ""));
-                Forest trees = forest(seed, apart, ground);
+                Forest trees = forest(static_cast<uint64_t>(seed), apart, ground);
                 const CleanReport report = clean_cloud(trees.cloud, {});
                 ASSERT_EQ(report.pick.trees.size(), trees.feet.size());
                 EXPECT_EQ(report.pick.taken, 0U);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <span>
 #include <string>
 
+#include "cases.h"
 #include "geometry/parallel.h"
 #include "geometry/random.h"
 #include "scan/cleaning/clean_cloud.h"
@@ -63,8 +65,9 @@ TEST(WoodLeaf, ABareTreeIsLeftWhole) {
 // Several passes, none in its place: what noise makes of twigs are no leaves.
 TEST(WoodLeaf, NoiseIsNoLeaves) {
     for (const double noise : {0.02, 0.03, 0.05}) {
-        for (const uint64_t seed : {1, 2}) {
+        for (int k = 1; k <= test::repeats(2); k++) {
             SCOPED_TRACE(noise);
+            const auto seed = static_cast<uint64_t>(k);
             Random random(seed);
             PointCloud cloud;
             const VirtualScan made = scan(Habit::kBroadleaf, 0.0, seed, 40000);
@@ -114,8 +117,9 @@ TEST(WoodLeaf, FlatStripsOfLeafletsAreFrondsByShapeAlone) {
 }
 
 TEST(WoodLeaf, APalmIsAPalmHoweverBlurred) {
+    const uint64_t seeds[] = {1, 2, 11};
     for (const double noise : {0.01, 0.02, 0.03}) {
-        for (const uint64_t seed : {1, 2, 11}) {
+        for (const uint64_t seed : std::span(seeds).first(static_cast<size_t>(test::repeats(3)))) {
             SCOPED_TRACE(noise);
             VirtualScanOptions options = scan_options_for(Habit::kPalm);
             options.points = 40000;
@@ -157,8 +161,9 @@ PointCloud tuft(int count, double rise, double along, uint64_t seed) {
 }
 
 TEST(WoodLeaf, ATuftAroundTheEndOfATallStemIsAPalm) {
-    for (const uint64_t seed : {1, 2, 3}) {
-        SCOPED_TRACE(seed);
+    for (int k = 1; k <= test::repeats(3); k++) {
+        SCOPED_TRACE(k);
+        const auto seed = static_cast<uint64_t>(k);
         const WoodLeaf palm = tell_wood_from_leaves(tuft(9, 0.8, 0.2, seed));
         ASSERT_TRUE(palm.foliage);
         EXPECT_TRUE(palm.fronds);
@@ -334,7 +339,8 @@ TEST(WoodLeafScans, TurnedOrThinnedAPalmStaysOneAndNoOtherBecomesOne) {
         const bool palm =
             std::string(file).starts_with("itsme_tropical") || std::string(file).starts_with("pytlidar_palm");
         Random random(3);
-        for (const double degrees : {0.0, 40.0, 130.0, 215.0}) {
+        const double angles[] = {0.0, 40.0, 130.0, 215.0};
+        for (const double degrees : std::span(angles).first(static_cast<size_t>(test::repeats(4)))) {
             const double angle = glm::radians(degrees);
             const auto turn = [&](const Vec3& p) {
                 return Vec3(std::cos(angle) * p.x - std::sin(angle) * p.z, p.y,

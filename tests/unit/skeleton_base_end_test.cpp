@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "cases.h"
 #include "geometry/bounds.h"
 #include "scan_samples.h"
 #include "skeleton/skeleton.h"
@@ -32,7 +33,8 @@ TEST(BaseEnd, IsFoundHoweverTheTreeLies) {
     int found = 0, all = 0;
     for (const Habit habit :
          {Habit::kBroadleaf, Habit::kConifer, Habit::kBirch, Habit::kForked, Habit::kLeaning})
-        for (const uint64_t seed : {1, 2, 3}) {
+        for (int k = 1; k <= test::repeats(3); k++) {
+            const auto seed = static_cast<uint64_t>(k);
             const Tree tree = grow_tree({habit, 0.0, seed});
             VirtualScanOptions options;
             options.points = 15000;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "cases.h"
 #include "skeleton/skeleton.h"
 #include "skeleton_test_clouds.h"
 
@@ -69,11 +70,11 @@ void expect_stems_on_their_stumps(const PointCloud& cloud, double to, const std:
 }
 
 TEST(WideGaps, EveryStemStandsOnItsOwnStump) {
-    for (const uint64_t seed : {1, 2, 3})
+    for (int seed = 1; seed <= test::repeats(3); seed++)
         for (const double width : {0.3, 0.45, 0.6}) {
             const double from = 1.25, to = from + width;
             expect_stems_on_their_stumps(
-                cut_tree(seed, from, to), to,
+                cut_tree(static_cast<uint64_t>(seed), from, to), to,
                 "seed " + std::to_string(seed) + ", a gap of " + std::to_string(width) + " m");
         }
 }

@@ -6,6 +6,8 @@ const ADDON: String = "res://addons/tree_reconstruction/plugin.gd"
 
 var tree: SceneTree
 
+var _addon: EditorPlugin
+
 
 ## The middle of a control on the screen.
 func middle(control: Control) -> Vector2:
@@ -94,12 +96,16 @@ func on_screen(place: Vector3) -> Vector2:
 	return container.get_screen_transform() * view().get_camera_3d().unproject_position(place)
 
 
-## The addon's plugin, or null where it is off.
+## The addon's plugin, or null where it is off. It is kept: scenarios ask for it frame by frame, and
+## the editor has thousands of nodes.
 func addon() -> EditorPlugin:
+	if is_instance_valid(_addon) and _addon.is_inside_tree():
+		return _addon
 	for node: Node in tree.root.find_children("*", "EditorPlugin", true, false):
 		var script: Script = node.get_script() as Script
 		if script != null and script.resource_path == ADDON:
-			return node as EditorPlugin
+			_addon = node as EditorPlugin
+			return _addon
 	return null
 
 
