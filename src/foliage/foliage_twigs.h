@@ -10,11 +10,12 @@
 
 namespace treerec {
 
-// The tree with thin twigs (kGuessFlag) that reach from its wood into every part of the foliage, at the angles
-// and as thick as those of its own that were seen (own_twigs.h), so that the leaves there stand on bark: what place_leaves() stands them on, and what their bark is to be built of.
-// Where the rules do not follow the foliage, and where there is none, the tree itself. Nodes keep their ids;
-// new ones follow. It depends on nothing of the rules but whether they follow the foliage. None grow where
-// the foliage is farther than about a metre (Foliage::reach, if that is more) from the tree's own wood.
+// The tree with thin twigs (kGuessFlag) that reach from its wood into every part of the foliage, at the
+// angles and as thick as those of its own that were seen (own_twigs.h), so that the leaves there stand on
+// bark: what place_leaves() stands them on, and what their bark is to be built of. Where the rules do not
+// follow the foliage, and where there is none, the tree itself. Nodes keep their ids; new ones follow. It
+// depends on nothing of the rules but whether they follow the foliage. None grow where the foliage is farther
+// than about a metre (Foliage::reach, if that is more) from the tree's own wood.
 Tree leafy_tree(const Tree& tree, const LeafRules& rules, const Foliage& foliage);
 // The same where wood bears leaves of several kinds (leaf_kinds()): twigs stay on that whose rules follow it.
 Tree leafy_tree(const Tree& tree, const std::vector<LeafKind>& kinds, const Foliage& foliage);

@@ -130,8 +130,8 @@ inline void add_cylinder(std::vector<Vec3>& points, Random& random, const DVec3&
     }
 }
 
-// A leafless tree 10 m high, Y up, foot at the origin: a stem with 12 branches that each bear twigs. About 20000
-// points.
+// A leafless tree 10 m high, Y up, foot at the origin: a stem with 12 branches that each bear twigs. About
+// 20000 points.
 inline std::vector<Vec3> tree_points(uint64_t seed) {
     Random random(seed);
     std::vector<Vec3> points;
