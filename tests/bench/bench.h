@@ -76,9 +76,9 @@ void tell_photos(const std::string& name, const std::string& matcher, const std:
 void bench_warps();
 void bench_pairs(const std::string& photos, const std::string& model);
 
-// Limbs removed from grown trees of each habit and drawn anew from random cameras, with the points of the
-// limb and without: how near they come to it. With repetitions set, limb by limb, too.
-void bench_limbs(const Settings& settings);
+// Branches removed from grown trees of each habit and drawn anew from random cameras, with the points of the
+// branch and without: how near they come to it. With repetitions set, branch by branch, too.
+void bench_drawn_branches(const Settings& settings);
 // Plots of grown trees whose crowns touch or grow through each other: stems found, and points given to the
 // right tree. With repetitions set, plot by plot, too.
 void bench_plots(const Settings& settings);

@@ -47,7 +47,7 @@ NodeId subtree_of(const Tree& tree, double share) {
 }
 
 std::vector<Edit> edits_for(const Tree& tree) {
-    const NodeId limb = subtree_of(tree, 0.1), branch = subtree_of(tree, 0.01), twig = subtree_of(tree, 0.0);
+    const NodeId bough = subtree_of(tree, 0.1), branch = subtree_of(tree, 0.01), twig = subtree_of(tree, 0.0);
     return {
         {"a twig moves", [=](Tree& t) { t.set_position(twig, t.node(twig).position + DVec3(0.02)); }},
         {"a branch moves",
@@ -58,10 +58,10 @@ std::vector<Edit> edits_for(const Tree& tree) {
         {"a branch goes", [=](Tree& t) { t.remove_subtree(branch); }},
         {"a tenth moves",
          [=](Tree& t) {
-             for (NodeId id : t.depth_first(limb))
+             for (NodeId id : t.depth_first(bough))
                  t.set_position(id, t.node(id).position + DVec3(0.0, 0.02, 0.0));
          }},
-        {"a tenth goes", [=](Tree& t) { t.remove_subtree(limb); }},
+        {"a tenth goes", [=](Tree& t) { t.remove_subtree(bough); }},
     };
 }
 

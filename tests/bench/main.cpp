@@ -34,7 +34,7 @@ const char* const kUsage =
     "       bench --growth                     bark of Mizoguchi and Miyata's (2014) sizes: seconds, and us "
     "per vertex and "
     "step\n"
-    "       bench --limbs                      limbs removed from grown trees and drawn anew over their "
+    "       bench --drawn                      branches removed from grown trees and drawn anew over their "
     "scans\n"
     "       bench --plots                      stems and points of plots of 2 to 12 grown trees\n"
     "       bench --edits                      commands, undo and new bark; 5,000 and 100,000 nodes\n"
@@ -47,7 +47,7 @@ const char* const kUsage =
     "       bench --leaf-inputs FOLDER [--weights FOLDER] [SCAN…]  what fit_leaves.py fits to\n"
     "       bench --twig-inputs FOLDER                             likewise\n"
     "       bench --guard, --record            a small table of the same against the recorded one\n"
-    "options: --repetitions N, --seeds N (of --synth, --limbs, --plots and --ablate), --labelled (of "
+    "options: --repetitions N, --seeds N (of --synth, --drawn, --plots and --ablate), --labelled (of "
     "--synth: with "
     "the\n"
     "         truth about leaves in the scans), --most-points N (of --scaling),\n"
@@ -85,7 +85,7 @@ CommandLine parse(const std::vector<std::string>& words) {
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
             word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
-            word == "--variants" || word == "--limbs" || word == "--sketch" || word == "--growth" ||
+            word == "--variants" || word == "--drawn" || word == "--sketch" || word == "--growth" ||
             word == "--plots" || word == "--ablate" || word == "--leaf-inputs" || word == "--twig-inputs" ||
             word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
@@ -172,8 +172,8 @@ int run(CommandLine line) {
         bench_growth(line.settings);
         return EXIT_SUCCESS;
     }
-    if (line.mode == "--limbs") {
-        bench_limbs(line.settings);
+    if (line.mode == "--drawn") {
+        bench_drawn_branches(line.settings);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--plots") {

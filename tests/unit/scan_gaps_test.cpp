@@ -24,7 +24,7 @@ bool says(const std::vector<std::string>& warnings, const std::string& words) {
     return std::ranges::any_of(warnings, [&](const std::string& w) { return w.find(words) != w.npos; });
 }
 
-// A young tree of 3.6 m, less than four gaps high: stem, and from 1.2 m upwards ten limbs.
+// A young tree of 3.6 m, less than four gaps high: stem, and from 1.2 m upwards ten branches.
 std::vector<Vec3> young_tree(uint64_t seed) {
     Random random(seed);
     std::vector<Vec3> points;
@@ -49,7 +49,7 @@ TEST(ScanGaps, AStemWithAGapStaysWholeWhereverTheGapIs) {
             std::erase_if(cloud.positions, [&](const Vec3& p) { return p.y > from && p.y < from + kGap; });
             const size_t all = cloud.size();
             const CleanReport report = clean_cloud(cloud, {});
-            // A limb's tip cut off by the gap is no piece of the stem.
+            // A branch's tip cut off by the gap is no piece of the stem.
             EXPECT_LE(fragments_of(report), all / 100);
             size_t foot = 0;
             for (const Vec3& p : cloud.positions)
@@ -77,7 +77,7 @@ TEST(ScanGaps, AStemOfAnySlantStandsBelowItsGap) {
     }
 }
 
-TEST(ScanGaps, ALimbBehindAGapStays) {
+TEST(ScanGaps, ABranchBehindAGapStays) {
     for (int turn = 0; turn < 8; turn++) {
         SCOPED_TRACE(turn);
         Random random(static_cast<uint64_t>(turn));
@@ -85,17 +85,17 @@ TEST(ScanGaps, ALimbBehindAGapStays) {
         cloud.positions = young_tree(4);
         const DVec3 along(0.94 * std::cos(turn), 0.3, 0.94 * std::sin(turn));
         const DVec3 foot = DVec3(0.1, 3.6, -0.1) * (2.1 / 3.6);
-        std::vector<Vec3> limb;
-        add_cylinder(limb, random, foot + 1.5 * along, foot + 2.6 * along, 0.012, 0.006, 600);
+        std::vector<Vec3> branch;
+        add_cylinder(branch, random, foot + 1.5 * along, foot + 2.6 * along, 0.012, 0.006, 600);
         add_cylinder(cloud.positions, random, foot, foot + 0.4 * along, 0.018, 0.016, 400);
         // Nothing else near the line.
         std::erase_if(cloud.positions, [&](const Vec3& p) {
             const DVec3 d = DVec3(p) - foot;
             return glm::length(d) > 0.45 && glm::dot(glm::normalize(d), along) > 0.75 && p.y < 3.0F;
         });
-        cloud.positions.insert(cloud.positions.end(), limb.begin(), limb.end());
+        cloud.positions.insert(cloud.positions.end(), branch.begin(), branch.end());
         const CleanReport report = clean_cloud(cloud, {});
-        EXPECT_LE(fragments_of(report), limb.size() / 20);
+        EXPECT_LE(fragments_of(report), branch.size() / 20);
     }
 }
 

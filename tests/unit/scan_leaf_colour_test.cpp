@@ -114,7 +114,7 @@ VirtualScan dim_scan(Habit habit, double leaves) {
     return made;
 }
 
-TEST(LeafColour, WhereShapeAgreesLimbsAreToldFromLeavesAsEver) {
+TEST(LeafColour, WhereShapeAgreesBranchesAreToldFromLeavesAsEver) {
     const VirtualScan made = dim_scan(Habit::kBirch, 0.3);
     const WoodLeaf told = tell_wood_from_leaves(made.cloud);
     ASSERT_TRUE(told.foliage);

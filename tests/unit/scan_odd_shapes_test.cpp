@@ -180,15 +180,15 @@ TEST(OddShapes, AStumpIsOnePiece) {
             }
 }
 
-// Poles from the ground to the middle of limbs that a wide trunk bears.
-TEST(OddShapes, RootsThatHangFromLimbsAreNoTreesOfTheirOwn) {
+// Poles from the ground to the middle of branches that a wide trunk bears.
+TEST(OddShapes, RootsThatHangFromBranchesAreNoTreesOfTheirOwn) {
     for (const uint64_t seed : {1, 2}) {
         Random random(seed);
         std::vector<Vec3> points;
         add_cylinder(points, random, {0, 0, 0}, {0, 3.4, 0}, 0.55, 0.45, 4000);
         add_cylinder(points, random, {0, 3.4, 0}, {0.3, 6.8, 0}, 0.3, 0.05, 1500);
-        for (int limb = 0; limb < 4; limb++) {
-            const double turn = 0.5 * kPi * limb + 0.2 * static_cast<double>(seed);
+        for (int branch = 0; branch < 4; branch++) {
+            const double turn = 0.5 * kPi * branch + 0.2 * static_cast<double>(seed);
             const DVec3 out(std::cos(turn), 0.0, std::sin(turn));
             add_cylinder(points, random, DVec3(0, 3.3, 0), DVec3(0, 4.5, 0) + 6.0 * out, 0.22, 0.1, 1800);
             for (const double at : {2.4, 4.0, 5.5})

@@ -51,7 +51,7 @@ TEST(TwigGrowth, AtOnceGivesWhatOneByOneGives) {
         }
         TwigOptions options;
         TwigField one{points, graph, scale, paths, options, axes};
-        one.limb.assign(points.size(), -1);
+        one.branch.assign(points.size(), -1);
         one.station.assign(points.size(), 0);
         one.outside.assign(points.size(), 0.0f);
         one.surface.assign(points.size(), 0.05f);
@@ -62,7 +62,7 @@ TEST(TwigGrowth, AtOnceGivesWhatOneByOneGives) {
             const float across = std::sqrt(points[v].x * points[v].x + points[v].z * points[v].z);
             one.outside[v] = across - 0.05f;
             if (across < 0.06f) {
-                one.limb[v] = 0;
+                one.branch[v] = 0;
                 one.station[v] = std::clamp(static_cast<int>(points[v].y / 0.05f), 0, kStations - 1);
             } else if (paths.parent[v] >= 0) {
                 length[v] = length[static_cast<size_t>(paths.parent[v])] + paths.step[v];
@@ -74,20 +74,20 @@ TEST(TwigGrowth, AtOnceGivesWhatOneByOneGives) {
         const GrownTwigs grown = grow_twigs(all, tips, progress);
         ASSERT_EQ(grown.tips, expected.tips);
         EXPECT_TRUE(std::is_sorted(grown.tips.begin(), grown.tips.end()));
-        for (size_t t = 0; t < expected.limbs.size(); t++) {
-            EXPECT_EQ(grown.limbs[t].parent, expected.limbs[t].parent);
-            EXPECT_EQ(grown.limbs[t].attach, expected.limbs[t].attach);
+        for (size_t t = 0; t < expected.branches.size(); t++) {
+            EXPECT_EQ(grown.branches[t].parent, expected.branches[t].parent);
+            EXPECT_EQ(grown.branches[t].attach, expected.branches[t].attach);
             ASSERT_EQ(grown.axes[t].size(), expected.axes[t].size());
             for (size_t i = 0; i < grown.axes[t].size(); i++) {
                 EXPECT_EQ(grown.axes[t][i].position, expected.axes[t][i].position);
                 EXPECT_EQ(grown.axes[t][i].radius, expected.axes[t][i].radius);
             }
         }
-        EXPECT_EQ(all.limb, one.limb);
+        EXPECT_EQ(all.branch, one.branch);
         EXPECT_EQ(all.station, one.station);
-        twigs += grown.limbs.size();
-        for (const SkeletonBranch& limb : grown.limbs)
-            on_twigs += limb.parent > 0 ? 1 : 0;
+        twigs += grown.branches.size();
+        for (const SkeletonBranch& branch : grown.branches)
+            on_twigs += branch.parent > 0 ? 1 : 0;
     }
     EXPECT_GT(twigs, 500u);
     EXPECT_GT(on_twigs, 50u);

@@ -37,7 +37,7 @@ class TwigGrower {
             if (++looked % 1024 == 0) progress.check();
             const uint64_t top = queue.pop();
             const uint32_t v = static_cast<uint32_t>(~top);
-            if (field_.limb[v] >= 0) continue;
+            if (field_.branch[v] >= 0) continue;
             const float now = path_to(v);
             if (farthest_first(now, v) > top) {
                 queue.push(farthest_first(now, v));
@@ -51,9 +51,9 @@ class TwigGrower {
   private:
     bool does(Pass pass) const { return !field_.options.left_out.has(pass); }
 
-    // Of a limb that was given, or of a twig.
-    const std::vector<Station>& axis(int32_t limb) const {
-        return limb < given_ ? field_.axes[limb] : grown_.axes[limb - given_];
+    // Of a branch that was given, or of a twig.
+    const std::vector<Station>& axis(int32_t branch) const {
+        return branch < given_ ? field_.axes[branch] : grown_.axes[branch - given_];
     }
 
     // Fills path_, from the base to v; its first vertex hangs on foot_. Empty where it would cross a gap, or
@@ -63,7 +63,7 @@ class TwigGrower {
         float length = 0.0f;
         bool gap = false;
         bool may = false;
-        while (field_.limb[v] < 0) {
+        while (field_.branch[v] < 0) {
             const uint32_t next = static_cast<uint32_t>(field_.paths.parent[v]);
             const float step = field_.paths.step[v];
             gap = gap || step > kGapFactor * edge_reach(field_.scale, v, next) ||
@@ -81,7 +81,7 @@ class TwigGrower {
 
     // tip: its entry in the queue.
     void add_twig(uint64_t tip) {
-        const int32_t parent = field_.limb[foot_];
+        const int32_t parent = field_.branch[foot_];
         int32_t station = field_.station[foot_];
         bool escapes = false;
         const bool at_foot = does(Pass::kFootRoots) && parent == 0 && station < field_.foot_end;
@@ -113,8 +113,8 @@ class TwigGrower {
         if (does(Pass::kFewPoints) && axis(parent)[twig.attach].measured && near_.size() < kLeastPoints)
             return;
 
-        const int32_t index = given_ + static_cast<int32_t>(grown_.limbs.size());
-        grown_.limbs.push_back(std::move(twig));
+        const int32_t index = given_ + static_cast<int32_t>(grown_.branches.size());
+        grown_.branches.push_back(std::move(twig));
         grown_.axes.push_back(std::move(line));
         grown_.tips.push_back(tip);
         const std::vector<Station>& own = grown_.axes.back();
@@ -128,11 +128,11 @@ class TwigGrower {
             const BarkPlace place = place_near(own, static_cast<int32_t>(at), p);
             if (v != path_.back() && place.distance > place.radius + kMostMove + field_.tolerance(v))
                 continue;
-            field_.limb[v] = index;
+            field_.branch[v] = index;
             field_.station[v] = place.station;
         }
         for (const uint32_t v : path_)
-            if (field_.limb[v] == index) mark_around(v, index, field_.station[v], 2);
+            if (field_.branch[v] == index) mark_around(v, index, field_.station[v], 2);
     }
 
     // A twig leaves at an angle: so far back along its parent as it starts outside of the parent's bark, if
@@ -185,10 +185,10 @@ class TwigGrower {
     void mark_around(uint32_t v, int32_t index, int32_t at, int hops) {
         for (uint32_t e = field_.graph.begin[v]; e < field_.graph.begin[v + 1]; e++) {
             const uint32_t n = field_.graph.neighbour[e];
-            if (field_.limb[n] >= 0) continue;
+            if (field_.branch[n] >= 0) continue;
             const BarkPlace place = place_near(axis(index), at, DVec3(field_.points[n]));
             if (place.distance > place.radius + field_.tolerance(n)) continue;
-            field_.limb[n] = index;
+            field_.branch[n] = index;
             field_.station[n] = place.station;
             if (hops > 1) mark_around(n, index, place.station, hops - 1);
         }
@@ -205,7 +205,7 @@ class TwigGrower {
             const uint32_t v = path_[i];
             for (uint32_t e = field_.graph.begin[v]; e < field_.graph.begin[v + 1]; e++) {
                 const uint32_t n = field_.graph.neighbour[e];
-                if (field_.limb[n] >= 0 || field_.graph.length[e] > kGather * field_.scale.spacing[v])
+                if (field_.branch[n] >= 0 || field_.graph.length[e] > kGather * field_.scale.spacing[v])
                     continue;
                 if (field_.nearest[n] < 0) {
                     near_.push_back(n);
@@ -271,7 +271,7 @@ class TwigGrower {
     }
 
     TwigField& field_;
-    const int32_t given_;  // limbs; the twigs are numbered on from there
+    const int32_t given_;  // branches; the twigs are numbered on from there
     GrownTwigs grown_;
     std::vector<uint32_t> near_;
     std::vector<uint32_t> path_;
@@ -289,7 +289,7 @@ std::vector<int32_t> divide(const TwigField& field, size_t& tasks) {
     constexpr int32_t kOpen = -2;
     std::vector<int32_t> thicket(graph.size());
     for (size_t v = 0; v < graph.size(); v++)
-        thicket[v] = field.limb[v] >= 0 ? kTaken : kOpen;
+        thicket[v] = field.branch[v] >= 0 ? kTaken : kOpen;
     std::vector<std::pair<size_t, int32_t>> sizes;
     std::vector<uint32_t> open;
     for (uint32_t seed = 0; seed < graph.size(); seed++) {
@@ -345,19 +345,19 @@ GrownTwigs put_in_order(std::vector<GrownTwigs>& grown, const std::vector<int32_
     std::sort(order.begin(), order.end(), [](const Twig& a, const Twig& b) { return a.tip < b.tip; });
     const int32_t given = static_cast<int32_t>(field.axes.size());
     GrownTwigs all;
-    all.limbs.reserve(order.size());
+    all.branches.reserve(order.size());
     all.axes.reserve(order.size());
     all.tips.reserve(order.size());
     for (const Twig& twig : order) {
-        number[twig.task][twig.at] = given + static_cast<int32_t>(all.limbs.size());
-        SkeletonBranch& limb = all.limbs.emplace_back(std::move(grown[twig.task].limbs[twig.at]));
+        number[twig.task][twig.at] = given + static_cast<int32_t>(all.branches.size());
+        SkeletonBranch& branch = all.branches.emplace_back(std::move(grown[twig.task].branches[twig.at]));
         // Twigs grow on earlier ones of their own thicket.
-        if (limb.parent >= given) limb.parent = number[twig.task][limb.parent - given];
+        if (branch.parent >= given) branch.parent = number[twig.task][branch.parent - given];
         all.axes.push_back(std::move(grown[twig.task].axes[twig.at]));
         all.tips.push_back(twig.tip);
     }
     for (size_t v = 0; v < task.size(); v++)
-        if (field.limb[v] >= given) field.limb[v] = number[task[v]][field.limb[v] - given];
+        if (field.branch[v] >= given) field.branch[v] = number[task[v]][field.branch[v] - given];
     return all;
 }
 

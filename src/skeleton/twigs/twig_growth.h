@@ -23,12 +23,13 @@ struct TwigField {
     const LocalScale& scale;
     const PathTree& paths;
     const TwigOptions& options;
-    // Of the limbs that are given; twigs are numbered on from there.
+    // Of the branches that are given; twigs are numbered on from there.
     const std::vector<std::vector<Station>>& axes;
-    int32_t foot_end = 0;               // of the first limb: the first station above the foot
-    std::vector<int32_t> limb = {};     // by point: the limb whose bark it lies on, -1 for none: a free point
+    int32_t foot_end = 0;  // of the first branch: the first station above the foot
+    std::vector<int32_t> branch =
+        {};  // by point: the branch whose bark it lies on, -1 for none: a free point
     std::vector<int32_t> station = {};  // and the station there
-    // By free point: metres from the nearest limb's bark, twigs left aside, and that limb's radius there;
+    // By free point: metres from the nearest branch's bark, twigs left aside, and that branch's radius there;
     // where it is so far that it needs no escape, infinity and 0.
     std::vector<float> outside = {};
     std::vector<float> surface = {};
@@ -43,7 +44,7 @@ struct TwigField {
         return std::clamp(kTolerance * scale.spacing[v], kLeastTolerance, kMostTolerance);
     }
 
-    // Whether the limbs given leave the point free; twigs may still explain it.
+    // Whether the branches given leave the point free; twigs may still explain it.
     bool may_escape(uint32_t v) const {
         return outside[v] >= required_escape(options.least_escape, surface[v]);
     }
@@ -56,7 +57,7 @@ inline uint64_t farthest_first(float length, uint32_t vertex) {
 }
 
 struct GrownTwigs {
-    std::vector<SkeletonBranch> limbs;  // their parents are limbs given, or these, numbered on
+    std::vector<SkeletonBranch> branches;  // their parents are branches given, or these, numbered on
     std::vector<std::vector<Station>> axes;
     std::vector<uint64_t> tips;  // of each twig, ascending: the entry that it grew from
 };
@@ -65,8 +66,8 @@ struct GrownTwigs {
 // anything of free points but of those that edges between free points link to its own. Throws Cancelled.
 GrownTwigs grow_one_by_one(TwigField& field, std::vector<uint64_t> tips, Progress& progress);
 
-// The same on several threads: what such edges do not link grows at once. field: `limb` must not be negative
-// at the paths' seeds.
+// The same on several threads: what such edges do not link grows at once. field: `branch` must not be
+// negative at the paths' seeds.
 GrownTwigs grow_twigs(TwigField& field, std::vector<uint64_t> tips, Progress& progress);
 
 }  // namespace treerec

@@ -18,15 +18,14 @@ struct TwigOptions {
     PassSet left_out;
 };
 
-// Adds twigs to the limbs and their axes until every point that a twig can reach lies on the bark of
+// Adds twigs to the branches and their axes until every point that a twig can reach lies on the bark of
 // something (the paths are found like TEASAR's, Sato et al. 2000: the farthest point left is followed back
 // along the shortest paths to the wood that is already there, and what lies along the way is done with). A
-// twig has no slices, only stations; its axis keeps to its points. limbs, axes: as from fit_axes(), extended
-// in step. Returns which limb each point lies on, blurred ones
-// beside the bark included.
+// twig has no slices, only stations; its axis keeps to its points. branches, axes: as from fit_axes(),
+// extended in step. Returns which branch each point lies on, blurred ones beside the bark included.
 PointPlaces add_twigs(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                       const PathTree& paths, const Slices& slices, const TwigOptions& options,
-                      std::vector<SkeletonBranch>& limbs, std::vector<std::vector<Station>>& axes,
+                      std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
                       Progress& progress);
 
 }  // namespace treerec

@@ -1,4 +1,4 @@
-// Limbs drawn over scans: how near they come to the ones that were there.
+// Branches drawn over scans: how near they come to the ones that were there.
 #include <cstdio>
 
 #include "../unit/branch_trials.h"
@@ -38,7 +38,7 @@ void print_row(const char* name, const std::vector<Figures>& shown, const std::v
         100.0 * mean(shown, [](const Figures& f) { return f.measured_right; }), spread_of(angles).median,
         spread_of(angles).mean, 100.0 * below, mean(shown, [](const Figures& f) { return f.length_ratio; }),
         mean(shown, [](const Figures& f) { return f.radius_ratio; }));
-    // The mean, the median, and how far off one limb's mean is.
+    // The mean, the median, and how far off one branch's mean is.
     std::printf("%+5.1f %+5.1f %% %4.1f %%  ",
                 ratio([](const Figures& f) { return f.angles.mean; },
                       [](const Figures& f) { return f.angles_own.mean; }),
@@ -94,14 +94,15 @@ void bench_kind(const Settings& settings, bool reconstructed) {
 
 }  // namespace
 
-void bench_limbs(const Settings& settings) {
+void bench_drawn_branches(const Settings& settings) {
     std::printf(
-        "limbs drawn with 3 px of jitter on 1000 px, from 1.2 to 2.5 heights away. drawn: share of the axis, "
+        "branches drawn with 3 px of jitter on 1000 px, from 1.2 to 2.5 heights away. drawn: share of the "
+        "axis, "
         "where\npoints are, within 5 cm; told: share of what is said to be measured; unseen: degrees off, "
         "without its points\n");
     for (const bool reconstructed : {false, true}) {
-        std::printf("\n%s\n", reconstructed ? "onto trees made from the scan without the limb"
-                                            : "onto the true trees without the limb");
+        std::printf("\n%s\n", reconstructed ? "onto trees made from the scan without the branch"
+                                            : "onto the true trees without the branch");
         std::printf("%-11s %5s %3s  %5s %5s  %6s %6s  %6s %5s %5s  %6s %6s  %-21s %s\n", "", "drawn", "not",
                     "host", "m", "drawn", "told", "unseen", "mean", "<20", "length", "radius",
                     "twigs' angles, each", "internodes, each");
