@@ -52,6 +52,7 @@ enum class Pass : uint8_t {
     kBlur,
     kFootRoots,
     kTwigForks,
+    kSharpTurns,
     kShortShoots,
     kFewPoints,
     // simplify/
@@ -100,6 +101,7 @@ inline constexpr std::array<const char*, kPasses> kPassNames = {
     "blur",
     "roots at the foot",
     "twig forks",
+    "sharp turns",
     "short shoots",
     "few points",
     "gap taper",

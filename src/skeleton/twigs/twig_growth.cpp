@@ -15,6 +15,7 @@ namespace {
 constexpr double kGapFactor = 3.0;  // reaches: no twig crosses a wider gap
 constexpr int kSmoothings = 3;
 constexpr double kMostMove = 0.003;  // metres: about a twig's radius, so that its points stay on its bark
+constexpr double kSharpest = 0.0;    // cosine of the sharpest turn of a twig
 constexpr double kFootEscape = 4.0;  // radii of the stem: what reaches less far out around its foot is a root
 constexpr size_t kLeastPoints = 3;   // of a twig on measured wood: where that is seen, so are its twigs
 constexpr size_t kShootPoints = 4;   // of a short shoot; fewer may be strays
@@ -103,6 +104,7 @@ class TwigGrower {
         twig.attach = field_.station[foot_];
         std::vector<Station> line = smooth_line(axis(parent)[twig.attach].position);
         if (does(Pass::kTwigForks)) twig.attach = fork_station(axis(parent), twig.attach, line);
+        if (does(Pass::kSharpTurns)) straighten(line, axis(parent)[twig.attach].position);
         double outer = 0.0;
         for (size_t i = 1; i < line.size(); i++)
             outer += glm::distance(line[i].position, line[i - 1].position);
@@ -125,6 +127,7 @@ class TwigGrower {
             const DVec3 p(field_.points[v]);
             while (at < last && glm::distance(p, own[at + 1].position) <= glm::distance(p, own[at].position))
                 at++;
+            // What straightening has left aside may bear a twig of its own.
             const BarkPlace place = place_near(own, static_cast<int32_t>(at), p);
             if (v != path_.back() && place.distance > place.radius + kMostMove + field_.tolerance(v))
                 continue;
@@ -180,6 +183,21 @@ class TwigGrower {
             attach--;
         }
         return attach;
+    }
+
+    // Takes out the stations where the twig would turn sharply.
+    static void straighten(std::vector<Station>& line, const DVec3& base) {
+        for (size_t i = 0; i + 1 < line.size();) {
+            const DVec3& before = i > 0 ? line[i - 1].position : base;
+            const DVec3 to = normalized_or(line[i].position - before, DVec3(0.0));
+            const DVec3 from = normalized_or(line[i + 1].position - line[i].position, DVec3(0.0));
+            if (glm::dot(to, from) >= kSharpest) {
+                i++;
+                continue;
+            }
+            line.erase(line.begin() + static_cast<ptrdiff_t>(i));
+            if (i > 0) i--;
+        }
     }
 
     void mark_around(uint32_t v, int32_t index, int32_t at, int hops) {
