@@ -25,6 +25,7 @@ constexpr double kCut = 0.03;         // metres: no wood ends by itself so thick
 constexpr double kAlike = 0.25;       // of the radius
 constexpr double kCutScatter = 0.2;   // likewise, of the points on what was cut
 constexpr double kBase = 6.0;         // radii of the base: how far up its flare may reach
+constexpr int kMedianWindow = 4;      // stations to each side
 constexpr size_t kBranchesPerTask = 64;
 
 struct Block {
@@ -53,6 +54,27 @@ std::vector<double> falling_fit(const std::vector<double>& values, const std::ve
     for (const Block& block : blocks)
         fitted.insert(fitted.end(), block.count, block.value);
     return fitted;
+}
+
+// Each radius becomes the median of those of its own kind (measured or not) around it.
+void running_median(std::vector<Station>& stations) {
+    std::vector<double> radius(stations.size());
+    std::vector<double> near;
+    const int count = static_cast<int>(stations.size());
+    for (int i = 0; i < count; i++) {
+        near.clear();
+        // The same to both sides, lest a base loses its flare.
+        const int reach = std::min(kMedianWindow, std::max(1, std::min(i, count - 1 - i)));
+        for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); j++)
+            if (stations[j].measured == stations[i].measured && stations[j].radius > 0.0)
+                near.push_back(stations[j].radius);
+        radius[i] = 0.0;
+        if (near.empty()) continue;
+        std::sort(near.begin(), near.end());
+        radius[i] = 0.5 * (near[near.size() / 2] + near[(near.size() - 1) / 2]);
+    }
+    for (int i = 0; i < count; i++)
+        stations[i].radius = radius[i];
 }
 
 // The median distance of noisy points to a thin twig's axis is mostly noise, and squares add. (A scanner's
@@ -189,6 +211,7 @@ void infer_radii(std::vector<std::vector<Station>>& axes, const std::vector<Skel
         std::vector<double> to_tip;
         for (size_t l = begin; l < end; l++) {
             std::vector<Station>& stations = axes[l];
+            if (!left_out.has(Pass::kMedianRadii)) running_median(stations);
             estimate(stations, noise, slenderness, ends, values, weights, to_tip);
             if (branches[l].parent < 0 && !left_out.has(Pass::kBaseSpan)) span_stem_base(stations, values);
             const std::vector<double> fitted = falling_fit(values, weights);

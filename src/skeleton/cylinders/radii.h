@@ -12,8 +12,8 @@ namespace treerec {
 double noise_of(const std::vector<std::vector<Station>>& axes);
 
 // Replaces every station's radius, in metres. Along a branch the measured radii (and, with little weight, the
-// unmeasured stations' own estimates) go through an isotonic regression (pool adjacent violators, Ayer et al.
-// 1955), so that they never grow outward. An unmeasured station's estimate is freed of
+// unmeasured stations' own estimates) go through a running median and an isotonic regression (pool adjacent
+// violators, Ayer et al. 1955), so that they never grow outward. An unmeasured station's estimate is freed of
 // the points' noise, and no thicker than the distance to the tip allows (McMahon and Kronauer 1976: thickness
 // and length of branches are tied). Where no point told anything, the radius follows the distance to the tip
 // as it does, in the median, where this tree was measured, and joins what points tell further in and out. No
