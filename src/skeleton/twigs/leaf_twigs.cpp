@@ -33,7 +33,7 @@ constexpr double kLeastCarried = 0.001;  // tree's extents
 constexpr double kLeastRadius = 1e-4;    // metres
 // What a stretch has to have, at least: best for F on the same scans, and for the length. Where most points
 // were told to be leaves, much of the wood was missed, and the tree would become too short.
-constexpr double kLeastChance = 0.157;
+constexpr double kLeastChance = 0.16;
 constexpr double kLeastByColour = 0.1;  // colour has told most leaves from the wood
 constexpr double kLeastAnew = 0.5;  // of these, where the worst has gone before: else the tree is too short
 constexpr double kManyLeaves = 0.8, kNearlyAllLeaves = 0.9;
