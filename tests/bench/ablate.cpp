@@ -40,9 +40,9 @@ struct Variant {
 
 std::vector<Variant> all_variants() {
     std::vector<Variant> variants;
-    for (size_t i = 0; i < kPasses; i++)
-        variants.push_back({kPassNames[i], [i](ReconstructOptions& options) {
-                                options.skeleton.left_out = PassSet(static_cast<Pass>(i));
+    for (const auto& [pass, name] : kPassNames)
+        variants.push_back({name, [without = PassSet(pass)](ReconstructOptions& options) {
+                                options.skeleton.left_out = without;
                             }});
     const auto add_cleaning = [&](const char* name, bool CleanOptions::*step) {
         variants.push_back(

@@ -92,6 +92,16 @@ void compare_row(const AccuracyRow& old, const AccuracyRow& now, const std::stri
 
 }  // namespace
 
+VirtualScanOptions scan_options_of(const AccuracyCase& setting) {
+    VirtualScanOptions options = scan_options_for(setting.habit);
+    options.seed = setting.seed;
+    options.points = setting.points;
+    options.noise = setting.noise;
+    options.occlusion = setting.occlusion;
+    options.leaves = setting.leaves;
+    return options;
+}
+
 size_t points_for(Habit habit, double leaves, size_t bare_points) {
     // About what grown trees return, and a palm's fronds are always there.
     const double foliage = habit == Habit::kPalm ? 0.8 : leaves;
@@ -101,13 +111,7 @@ size_t points_for(Habit habit, double leaves, size_t bare_points) {
 GrownScan::GrownScan(const AccuracyCase& setting, bool labelled)
     : truth_(grow_tree({setting.habit, 0.0, setting.seed})), file_(folder_.file("scan.ply")) {
     seen_.setting = setting;
-    VirtualScanOptions options = scan_options_for(setting.habit);
-    options.seed = setting.seed;
-    options.points = setting.points;
-    options.noise = setting.noise;
-    options.occlusion = setting.occlusion;
-    options.leaves = setting.leaves;
-    VirtualScan scan = scan_tree(truth_, options);
+    VirtualScan scan = scan_tree(truth_, scan_options_of(setting));
     size_t leaf_points = 0;
     for (uint8_t origin : scan.origin)
         leaf_points += origin == kFromLeaf;

@@ -8,6 +8,7 @@
 #include "child.h"
 #include "pipeline/reconstruct.h"
 #include "synth/grow.h"
+#include "synth/scan.h"
 
 namespace treerec::bench {
 
@@ -20,6 +21,9 @@ struct AccuracyCase {
     double leaves = 0.0;     // share of full foliage
     size_t points = 20000;
 };
+
+// Of the case's tree.
+VirtualScanOptions scan_options_of(const AccuracyCase& setting);
 
 // What a scanner of one resolution gets: leaves return beams that would pass a winter tree by.
 size_t points_for(Habit habit, double leaves, size_t bare_points);

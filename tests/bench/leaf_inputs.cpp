@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "accuracy.h"
 #include "bench.h"
 #include "error.h"
 #include "file_bytes.h"
+#include "grown_settings.h"
 #include "scan/cleaning/clean_cloud.h"
 #include "scan/cleaning/samples.h"
 #include "scan/formats/read_cloud.h"
@@ -22,10 +22,6 @@ constexpr size_t kMostSamples = 400000;  // as in scan/leaves/wood_leaf.cpp
 constexpr size_t kRows = 3000;           // of a scan
 constexpr uint64_t kFirstSeed = 1000;    // no other table's
 
-struct GrownSetting {
-    double noise, leaves, occlusion;
-    size_t bare_points;
-};
 // From sharp to blurred, bare to full, sparse to dense.
 constexpr GrownSetting kSettings[] = {
     {0.0, 0.4, 0.0, 20000},  {0.01, 0.4, 0.3, 20000},  {0.003, 0.8, 0.0, 15000}, {0.003, 0.8, 0.3, 60000},
@@ -98,27 +94,15 @@ void bench_leaf_inputs(const std::vector<std::string>& scans, const Settings& se
         return settings.weights.empty() ? std::string()
                                         : settings.weights + (number % 2 == 0 ? "/even.txt" : "/odd.txt");
     };
-    for (int round = 0; round < settings.seeds; round++)
-        for (const Habit habit : all_habits()) {
-            for (const GrownSetting& one : kSettings) {
-                const uint64_t seed = kFirstSeed + number;
-                VirtualScanOptions options = scan_options_for(habit);
-                options.seed = seed;
-                options.noise = one.noise;
-                options.occlusion = one.occlusion;
-                options.leaves = one.leaves;
-                options.points = points_for(habit, one.leaves, one.bare_points);
-                const VirtualScan scan = scan_tree(grow_tree({habit, 0.0, seed}), options);
-                std::vector<uint8_t> truth;
-                for (const uint8_t origin : scan.origin)
-                    truth.push_back(origin == kFromLeaf ? 1 : 0);
-                char name[120];
-                std::snprintf(name, sizeof name, "grown %zu %s %g %g", number, habit_name(habit).c_str(),
-                              one.noise, one.leaves);
-                write_inputs(name, scan.cloud.positions, truth, weights(), settings.out);
-                number++;
-            }
-        }
+    for (const auto& [setting, name] : named_cases(kSettings, all_habits(), kFirstSeed, settings.seeds)) {
+        const VirtualScan scan =
+            scan_tree(grow_tree({setting.habit, 0.0, setting.seed}), scan_options_of(setting));
+        std::vector<uint8_t> truth;
+        for (const uint8_t origin : scan.origin)
+            truth.push_back(origin == kFromLeaf ? 1 : 0);
+        write_inputs(name, scan.cloud.positions, truth, weights(), settings.out);
+        number++;
+    }
     for (const std::string& path : scans) {
         PointCloud cloud = read_cloud(path);
         orient_cloud(cloud, {});

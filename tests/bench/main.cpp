@@ -150,7 +150,7 @@ int run(CommandLine line) {
     }
     if (line.mode == "--twig-inputs") {
         bench_twig_inputs(line.settings);
-        return 0;
+        return EXIT_SUCCESS;
     }
     if (line.mode == "--leaf-inputs") {
         bench_leaf_inputs(line.scans, line.settings);

@@ -1,10 +1,10 @@
 // What tests/bench/fit_leaves.py fits the rule of skeleton/twigs/leaf_twigs.h to.
 #include <cstdio>
 
-#include "accuracy.h"
 #include "bench.h"
 #include "file_bytes.h"
 #include "geometry/capsule_tree.h"
+#include "grown_settings.h"
 #include "scan/leaves/wood_leaf.h"
 #include "skeleton/skeleton.h"
 #include "skeleton/twigs/leaf_twigs.h"
@@ -18,10 +18,6 @@ namespace {
 constexpr uint64_t kFirstSeed = 2000;  // no other table's
 
 // Sharp and blurred, half and fully in leaf, as dense as a mobile scanner's and as a terrestrial one's.
-struct GrownSetting {
-    double noise, leaves, occlusion;
-    size_t bare_points;
-};
 constexpr GrownSetting kSettings[] = {
     {0.003, 0.8, 0.0, 15000},  {0.01, 0.4, 0.3, 20000},  {0.003, 0.3, 0.0, 250000},
     {0.003, 0.8, 0.3, 120000}, {0.01, 0.5, 0.0, 150000}, {0.003, 0.2, 0.0, 40000},
@@ -45,60 +41,54 @@ double true_share(const std::vector<DVec3>& line, const CapsuleTree& truth) {
     return all > 0.0 ? right / all : 0.0;
 }
 
+double length_of(const std::vector<DVec3>& line) {
+    double length = 0.0;
+    for (size_t i = 1; i < line.size(); i++)
+        length += glm::distance(line[i - 1], line[i]);
+    return length;
+}
+
+// The looks of each stretch of the skeleton that a scan in leaf gives, its length and its true share. Nothing
+// where the scan is not told to be in leaf.
+std::string inputs_of(PointCloud cloud, const Tree& truth) {
+    cloud.colors.clear();
+    const WoodLeaf told = tell_wood_from_leaves(cloud);
+    std::string bytes;
+    if (told.leafiness.empty()) return bytes;
+    PointCloud followed = cloud;
+    if (!told.wood_path.empty()) followed.keep_only(told.wood_path);
+    SkeletonOptions options;
+    options.noise = told.noise;
+    const Tree tree = skeletonize(followed, options).tree;
+    const DVec3 moved = tree.frame().origin - cloud.frame.origin;
+    for (Vec3& p : cloud.positions)
+        p -= Vec3(moved);
+    const CapsuleTree wood(wood_segments(truth));
+    const SubProgress progress(nullptr, 0.0, 1.0);
+    for (TwigSample& sample : look_at_twigs(tree, cloud.positions, told.leafiness, progress)) {
+        for (DVec3& p : sample.line)
+            p += moved;
+        std::vector<float> row(sample.looks.begin(), sample.looks.end());
+        row.push_back(static_cast<float>(length_of(sample.line)));
+        row.push_back(static_cast<float>(true_share(sample.line, wood)));
+        bytes.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
+    }
+    return bytes;
+}
+
 }  // namespace
 
 void bench_twig_inputs(const Settings& settings) {
     make_folder(settings.out);
-    const SubProgress progress(nullptr, 0.0, 1.0);
-    size_t number = 0;
-    for (int round = 0; round < settings.seeds; round++)
-        for (const Habit habit : all_habits()) {
-            if (habit == Habit::kPalm) continue;
-            for (const GrownSetting& one : kSettings) {
-                const uint64_t seed = kFirstSeed + number;
-                VirtualScanOptions options = scan_options_for(habit);
-                options.seed = seed;
-                options.noise = one.noise;
-                options.occlusion = one.occlusion;
-                options.leaves = one.leaves;
-                options.points = points_for(habit, one.leaves, one.bare_points);
-                const Tree truth = grow_tree({habit, 0.0, seed});
-                PointCloud cloud = scan_tree(truth, options).cloud;
-                cloud.colors.clear();
-                const WoodLeaf told = tell_wood_from_leaves(cloud);
-                std::string bytes;
-                if (!told.leafiness.empty()) {
-                    PointCloud followed = cloud;
-                    if (!told.wood_path.empty()) followed.keep_only(told.wood_path);
-                    SkeletonOptions skeleton;
-                    skeleton.noise = told.noise;
-                    const Tree tree = skeletonize(followed, skeleton).tree;
-                    const DVec3 moved = tree.frame().origin - cloud.frame.origin;
-                    std::vector<Vec3> points = cloud.positions;
-                    for (Vec3& p : points)
-                        p -= Vec3(moved);
-                    const CapsuleTree wood(wood_segments(truth));
-                    for (TwigSample& sample : look_at_twigs(tree, points, told.leafiness, progress)) {
-                        for (DVec3& p : sample.line)
-                            p += moved;
-                        std::vector<float> row(sample.looks.begin(), sample.looks.end());
-                        double length = 0.0;
-                        for (size_t i = 1; i < sample.line.size(); i++)
-                            length += glm::distance(sample.line[i - 1], sample.line[i]);
-                        row.push_back(static_cast<float>(length));
-                        row.push_back(static_cast<float>(true_share(sample.line, wood)));
-                        bytes.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
-                    }
-                }
-                char name[120];
-                std::snprintf(name, sizeof name, "grown %zu %s %g %g", number, habit_name(habit).c_str(),
-                              one.noise, one.leaves);
-                write_file(settings.out + "/" + name + ".bin", bytes);
-                std::printf("%s: %zu points\n", name, cloud.size());
-                std::fflush(stdout);
-                number++;
-            }
-        }
+    std::vector<Habit> habits = all_habits();
+    std::erase(habits, Habit::kPalm);
+    for (const auto& [setting, name] : named_cases(kSettings, habits, kFirstSeed, settings.seeds)) {
+        const Tree truth = grow_tree({setting.habit, 0.0, setting.seed});
+        const PointCloud cloud = scan_tree(truth, scan_options_of(setting)).cloud;
+        write_file(settings.out + "/" + name + ".bin", inputs_of(cloud, truth));
+        std::printf("%s: %zu points\n", name.c_str(), cloud.size());
+        std::fflush(stdout);
+    }
 }
 
 }  // namespace treerec::bench

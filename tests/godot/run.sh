@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the engine's tests without a screen: those that need no picture, what collides with the engine's other physics,
-# and the renderers that work here, as many at once as there are cores. ./dev test godot calls it, with GODOT set and project/ built and imported. The last line is
-# 'N passed, N failed'.
+# and the renderers that work here, as many at once as there are cores. ./dev test godot calls it, with GODOT set and
+# project/ built and imported. The last line is 'N passed, N failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 . tests/tools/screen.sh

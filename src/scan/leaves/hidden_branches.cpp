@@ -265,7 +265,7 @@ void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& cr
 }  // namespace
 
 FollowedBranches follow_branches(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
-                                 std::vector<uint8_t>& leaf, const Progress& progress) {
+                                 std::vector<uint8_t>& leaf, bool palms, const Progress& progress) {
     const size_t count = cells.count();
     FollowedBranches branches;
     branches.path.assign(count, 0);
@@ -277,7 +277,7 @@ FollowedBranches follow_branches(const Cells& cells, const CellShapes& shapes, c
     clear_foot(cells, crown, leaf);
     progress.check();
     DVec3 hub(0.0);
-    branches.fronds = has_fronds(cells, shapes, tree, leaf, crown, hub);
+    branches.fronds = palms && has_fronds(cells, shapes, tree, leaf, crown, hub);
     if (branches.fronds) {
         follow_stem(cells, leaf, crown, hub, branches);
         return branches;

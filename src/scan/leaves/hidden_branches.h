@@ -21,8 +21,8 @@ struct FollowedBranches {
 // ground, and leaves on the stem's foot. A branch that leaves hide is followed where paths go on for long
 // behind them, and the leader up to the very top. Leaves in sheets, all from the end of one bare stem, are a
 // palm's fronds, and so is a tuft that hangs around the end of a tall one: there the stem alone is followed,
-// up through the middle of the crown.
+// up through the middle of the crown. palms: whether the tree may be one.
 FollowedBranches follow_branches(const Cells& cells, const CellShapes& shapes, const CellPaths& tree,
-                                 std::vector<uint8_t>& leaf, const Progress& progress);
+                                 std::vector<uint8_t>& leaf, bool palms, const Progress& progress);
 
 }  // namespace treerec

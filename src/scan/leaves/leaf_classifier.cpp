@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/parallel.h"
-#include "geometry/point_tree.h"
 #include "geometry/portable_math.h"
 
 namespace treerec {
@@ -155,7 +154,7 @@ void cell_inputs(const CellShape* shapes, const CellPath& path, float* inputs) {
 
 LeafClassifier::LeafClassifier(const std::vector<Vec3>& points, const Cells& cells, const CellShapes& shapes,
                                const CellPaths& paths, const Progress& progress)
-    : points_(points), cells_(cells), paths_(paths), shapes_(shapes), progress_(progress) {}
+    : points_(points), cells_(cells), paths_(paths), shapes_(shapes), progress_(progress), tree_(points) {}
 
 std::vector<float> LeafClassifier::run(const LeafNetwork& network, const std::vector<float>& inputs) const {
     std::vector<float> logits(points_.size());
@@ -168,7 +167,6 @@ std::vector<float> LeafClassifier::run(const LeafNetwork& network, const std::ve
 }
 
 std::vector<float> LeafClassifier::point_inputs() const {
-    const PointTree tree(points_);
     const auto cell = static_cast<float>(cells_.size);
     std::vector<float> inputs(points_.size() * kPointInputs);
     parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
@@ -183,7 +181,7 @@ std::vector<float> LeafClassifier::point_inputs() const {
             cell_inputs(&shapes_[v * kShapeScales], paths_.paths[v], at);
             at += kCellInputs;
             const Vec3 heading = heading_of(v, cells_, paths_);
-            const size_t others = tree.nearest(points_[i], kMost + 1, found.data(), squares.data()) - 1;
+            const size_t others = tree_.nearest(points_[i], kMost + 1, found.data(), squares.data()) - 1;
             for (size_t k = 0; k < others; k++) {
                 const Vec3 d = points_[found[k + 1]] - points_[i];
                 around.x[k] = d.x;
@@ -231,7 +229,6 @@ std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logi
         woody[p] = std::min(woody[p], own);
     }
 
-    const PointTree tree(points_);
     std::vector<float> inputs(points_.size() * kContextInputs);
     parallel_for(points_.size(), kGrain, [&](size_t begin, size_t end) {
         progress_.check();
@@ -241,7 +238,7 @@ std::vector<float> LeafClassifier::context_inputs(const std::vector<float>& logi
         for (size_t i = begin; i < end; i++) {
             float* at = &inputs[i * kContextInputs];
             const uint32_t v = cells_.of_point[i];
-            const size_t others = tree.nearest(points_[i], kLooked + 1, found.data(), squares.data()) - 1;
+            const size_t others = tree_.nearest(points_[i], kLooked + 1, found.data(), squares.data()) - 1;
             float near = 0.0F, square = 0.0F, least = logits[i];
             *at++ = logits[i];
             for (size_t k = 0; k < others; k++) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/point_tree.h"
 #include "progress.h"
 #include "scan/leaves/leaf_cells.h"
 #include "scan/leaves/leaf_network.h"
@@ -52,6 +53,7 @@ class LeafClassifier {
     const CellPaths& paths_;
     const CellShapes& shapes_;
     const Progress& progress_;
+    const PointTree tree_;  // of the points
 };
 
 }  // namespace treerec

@@ -38,8 +38,9 @@ constexpr double kMostBlurShare = 0.6;
 constexpr double kLushNotBlur = 3.5;
 
 // A tree with a smaller share of leaves counts as bare, unless its leafiness is far from that of bare trees:
-// leafless trees that are lush at all reach 0.23.
-constexpr double kLeastShare = 0.3;
+// by shape leafless trees of dense twigs reach 0.36 by chance, and 0.45 where they were thinned; by the
+// classifier those that are lush at all reach 0.23.
+constexpr double kLeastShare = 0.4, kLeastCloseShare = 0.3;
 constexpr double kSureShare = 0.5;
 constexpr double kSurelyLush = 3.0;
 // Bare trees that were thinned to a tenth fill 0.36 at most, where they have a leafy tree's share.
@@ -189,13 +190,13 @@ bool looks_like_fronds(const CrownLooks& looks) {
     return looks.flat > kFrondPlanarity;
 }
 
-bool is_in_leaf(const CrownLooks& looks, double share, double leafiness) {
-    if (share < kLeastShare) return leafiness > kSurelyLush;
+bool is_in_leaf(const CrownLooks& looks, const LeafShare& share, double leafiness) {
+    if (share.of_points < (share.closely ? kLeastCloseShare : kLeastShare)) return leafiness > kSurelyLush;
     // Of a bare tree's twigs too few points may be left to look like twigs.
-    return leafiness > 0.0 || (share >= kSureShare && looks.filled >= kSparseFilled);
+    return leafiness > 0.0 || (share.of_points >= kSureShare && looks.filled >= kSparseFilled);
 }
 
-bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness) {
+bool is_surely_in_leaf(const CrownLooks& looks, const LeafShare& share, double leafiness) {
     return is_in_leaf(looks, share, leafiness) && leafiness > kSurelyLush && looks.filled > kSurelyFilled;
 }
 

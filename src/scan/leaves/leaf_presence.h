@@ -47,9 +47,14 @@ bool looks_like_fronds(const CrownLooks& looks);
 bool may_outshine_blur(const CrownLooks& looks, double points);
 bool outshines_blur(double leafiness);
 
-// Of a cloud that resolves leaves. share: of leaves, as the classifier finds it. leafiness: mean_leafiness().
-bool is_in_leaf(const CrownLooks& looks, double share, double leafiness);
+struct LeafShare {
+    double of_points = 0.0;
+    bool closely = false;  // by the classifier, else by the shape rule, which is less sure
+};
+
+// Of a cloud that resolves leaves. leafiness: mean_leafiness().
+bool is_in_leaf(const CrownLooks& looks, const LeafShare& share, double leafiness);
 // Likewise beyond the doubts that remain where means of a blurred scan's points are looked at.
-bool is_surely_in_leaf(const CrownLooks& looks, double share, double leafiness);
+bool is_surely_in_leaf(const CrownLooks& looks, const LeafShare& share, double leafiness);
 
 }  // namespace treerec

@@ -19,6 +19,22 @@ double logit(double p) {
     return portable::log(p / (1.0 - p));
 }
 
+// Of logits; those beyond the span count as at its end.
+struct Histogram {
+    static constexpr size_t kBins = 400;
+
+    explicit Histogram(double to) : span(to) {}
+
+    void add(double logit, double much) {
+        const double at = (std::clamp(logit, -span, span) + span) / (2.0 * span);
+        weight[static_cast<size_t>(at * (kBins - 1) + 0.5)] += much;
+    }
+    double logit_of(size_t bin) const { return 2.0 * span * static_cast<double>(bin) / (kBins - 1) - span; }
+
+    const double span;
+    std::array<double, kBins> weight{};
+};
+
 }  // namespace
 
 double find_leaf_share(const std::vector<float>& logits, const std::vector<uint32_t>& weights,
@@ -26,13 +42,10 @@ double find_leaf_share(const std::vector<float>& logits, const std::vector<uint3
     constexpr int kSteps = 60;
     constexpr double kLeast = 1e-3;
     // One look at the distribution is enough for all steps.
-    constexpr int kBins = 400;
-    constexpr double kSpan = 20.0;
-    std::array<double, kBins> histogram{};
+    Histogram leaves(20.0);
     double all = 0.0;
     for (size_t i = 0; i < logits.size(); i++) {
-        const double at = (std::clamp<double>(logits[i], -kSpan, kSpan) + kSpan) / (2.0 * kSpan);
-        histogram[static_cast<size_t>(at * (kBins - 1) + 0.5)] += weights[i];
+        leaves.add(logits[i], weights[i]);
         all += weights[i];
     }
     progress.check();
@@ -40,33 +53,26 @@ double find_leaf_share(const std::vector<float>& logits, const std::vector<uint3
     for (int step = 0; step < kSteps; step++) {
         const double offset = logit(share);
         double sum = 0.0;
-        for (int b = 0; b < kBins; b++) {
-            const double z = 2.0 * kSpan * b / (kBins - 1) - kSpan + offset;
-            sum += histogram[static_cast<size_t>(b)] / (1.0 + portable::exp(-z));
-        }
+        for (size_t b = 0; b < Histogram::kBins; b++)
+            sum += leaves.weight[b] / (1.0 + portable::exp(-(leaves.logit_of(b) + offset)));
         share = std::clamp(sum / all, kLeast, 1.0 - kLeast);
     }
     return share;
 }
 
 float wood_reach(const std::vector<float>& logits, double share, double recall) {
-    constexpr int kBins = 400;
-    constexpr double kSpan = 10.0;
     const double offset = logit(share);
-    std::array<double, kBins> wood{};
+    Histogram wood(10.0);
     double all = 0.0;
     for (const float z : logits) {
-        const double at = (std::clamp<double>(z, -kSpan, kSpan) + kSpan) / (2.0 * kSpan);
         const double chance = 1.0 / (1.0 + portable::exp(z + offset));
-        wood[static_cast<size_t>(at * (kBins - 1) + 0.5)] += chance;
+        wood.add(z, chance);
         all += chance;
     }
-    double sum = 0.0;
-    for (int b = 0; b < kBins; b++) {
-        sum += wood[static_cast<size_t>(b)];
-        if (sum >= recall * all) return static_cast<float>(2.0 * kSpan * b / (kBins - 1) - kSpan);
-    }
-    return static_cast<float>(kSpan);
+    size_t b = 0;
+    for (double sum = wood.weight[0]; sum < recall * all && b + 1 < Histogram::kBins;)
+        sum += wood.weight[++b];
+    return static_cast<float>(wood.logit_of(b));
 }
 
 float leaf_threshold(double share, double trust) {
@@ -93,13 +99,14 @@ void smooth_over_cells(std::vector<float>& values, int times, const Cells& cells
 }
 
 LeafVerdict judge_cells(std::vector<float> logits, float threshold, const Cells& cells,
-                        const CellShapes& shapes, const CellPaths& paths, const Progress& progress) {
+                        const CellShapes& shapes, const CellPaths& paths, bool palms,
+                        const Progress& progress) {
     LeafVerdict verdict;
     verdict.threshold = threshold;
     verdict.leaf.resize(logits.size());
     for (size_t v = 0; v < logits.size(); v++)
         verdict.leaf[v] = logits[v] > verdict.threshold;
-    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, progress);
+    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, palms, progress);
     verdict.logits = std::move(logits);
     return verdict;
 }
@@ -117,7 +124,7 @@ void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& po
     if (!changes) return;
     for (size_t v = 0; v < surplus.size(); v++)
         verdict.leaf[v] = verdict.logits[v] > verdict.threshold && surplus[v] < 0;
-    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, progress);
+    verdict.followed = follow_branches(cells, shapes, paths, verdict.leaf, false, progress);
     verdict.other = points_around_feet(cells.centres, stems);
     for (size_t v = 0; v < surplus.size(); v++)
         verdict.other[v] = verdict.other[v] && surplus[v] < 0;

@@ -36,11 +36,13 @@ struct LeafVerdict {
     FollowedBranches followed;
 };
 
+// palms: whether one is looked for.
 LeafVerdict judge_cells(std::vector<float> logits, float threshold, const Cells& cells,
-                        const CellShapes& shapes, const CellPaths& paths, const Progress& progress);
+                        const CellShapes& shapes, const CellPaths& paths, bool palms,
+                        const Progress& progress);
 
 // Bark that is seen between leaves is wood, however bushy it looks; what lies around the stems' feet grows by
-// itself. points: those that the cells were made of.
+// itself. points: those that the cells were made of. Of a tree that is no palm.
 void keep_stems(const std::vector<RoundStem>& stems, const std::vector<Vec3>& points, const Cells& cells,
                 const CellShapes& shapes, const CellPaths& paths, LeafVerdict& verdict,
                 const Progress& progress);

@@ -37,6 +37,7 @@ constexpr double kTrustClosely = 0.8;
 // nothing that is leafier than this beyond the threshold, in logits.
 constexpr double kFollowedWood = 0.94;
 constexpr float kMostFollowed = 1.45F;
+
 constexpr float kColourWeight = 8.0F;  // logit between the groups' means
 constexpr float kMostByShape = 3.0F;   // logit, where colours tell, too: photos make bark as wavy as leaves
 
@@ -76,10 +77,10 @@ class SampleTeller {
     void find_greens();
     double agreement() const;
     void tell_by_tint();
-    LeafVerdict judge(std::vector<float> logits, float threshold) const;
+    LeafVerdict judge(std::vector<float> logits, float threshold, bool palms) const;
     LeafVerdict judge_by_shape();
     std::vector<float> close_logits();
-    LeafVerdict judge_closely();
+    LeafVerdict judge_closely(bool palms);
     void tell_points(const LeafVerdict& verdict, bool closely);
     void tell_leafiness();
     void follow_hardly_leafy(const LeafVerdict& verdict);
@@ -218,8 +219,8 @@ void SampleTeller::tell_by_tint() {
         static_cast<double>(cloud_.size());
 }
 
-LeafVerdict SampleTeller::judge(std::vector<float> logits, float threshold) const {
-    return judge_cells(std::move(logits), threshold, cells_, shapes_, *paths_, progress_);
+LeafVerdict SampleTeller::judge(std::vector<float> logits, float threshold, bool palms) const {
+    return judge_cells(std::move(logits), threshold, cells_, shapes_, *paths_, palms, progress_);
 }
 
 LeafVerdict SampleTeller::judge_by_shape() {
@@ -231,7 +232,7 @@ LeafVerdict SampleTeller::judge_by_shape() {
         share = share_of(logits);
     }
     smooth_over_cells(logits, kSmoothings, cells_, progress_);
-    return judge(std::move(logits), leaf_threshold(share, kTrustInShape));
+    return judge(std::move(logits), leaf_threshold(share, kTrustInShape), true);
 }
 
 // By the classifier, of which a cell has its points' mean.
@@ -248,10 +249,10 @@ std::vector<float> SampleTeller::close_logits() {
     return logits;
 }
 
-LeafVerdict SampleTeller::judge_closely() {
+LeafVerdict SampleTeller::judge_closely(bool palms) {
     std::vector<float> logits = close_logits();
     const float threshold = leaf_threshold(share_of(logits), kTrustClosely);
-    return judge(std::move(logits), threshold);
+    return judge(std::move(logits), threshold, palms);
 }
 
 WoodLeaf SampleTeller::tell() {
@@ -279,13 +280,13 @@ WoodLeaf SampleTeller::tell() {
     result_.by_colour = greens_.apart;
 
     const auto& decide = averaged_ ? is_surely_in_leaf : is_in_leaf;
-    bool leafy = result_.by_colour || (told_by_shape_ && decide(looks_, shape_share_, lush_));
+    bool leafy = result_.by_colour || (told_by_shape_ && decide(looks_, {shape_share_, false}, lush_));
     const bool closely = told_by_shape_ && lush_ > 0.0;  // else the classifier would find no leaves at all
     LeafVerdict verdict;
-    if (!leafy && closely) leafy = decide(looks_, share_of(close_logits()), lush_);
+    if (!leafy && closely) leafy = decide(looks_, {share_of(close_logits()), true}, lush_);
     if (leafy) verdict = judge_by_shape();
     if (!result_.by_colour && frond_like && !verdict.followed.fronds && (closely || !told_by_shape_)) {
-        LeafVerdict palm = closely ? judge_closely() : judge_by_shape();
+        LeafVerdict palm = closely ? judge_closely(true) : judge_by_shape();
         if (palm.followed.fronds) verdict = std::move(palm);
     }
     const bool in_leaf = leafy || verdict.followed.fronds;
@@ -295,8 +296,7 @@ WoodLeaf SampleTeller::tell() {
         return std::move(result_);
     }
     if (!verdict.followed.fronds) {
-        if (closely) verdict = judge_closely();
-        verdict.followed.fronds = false;
+        if (closely) verdict = judge_closely(false);
         if (!stems_) stems_ = find_round_stems(samples_.points, &progress_);
         keep_stems(*stems_, samples_.points, cells_, shapes_, *paths_, verdict, progress_);
     }
@@ -381,7 +381,7 @@ void look_for_fronds(const PointCloud& cloud, WoodLeaf& result, Progress* listen
         cell_of_point[i] = cells.of_point[samples.of_point[i]];
     std::vector<float> shares = shares_of(result.leaf, cell_of_point, cells.count());
     const LeafVerdict verdict =
-        judge_cells(std::move(shares), 0.5F, cells, shapes, trace_paths(cells, progress), progress);
+        judge_cells(std::move(shares), 0.5F, cells, shapes, trace_paths(cells, progress), true, progress);
     if (!verdict.followed.fronds) return;
     result.fronds = true;
     result.reach = verdict.followed.reach / factor;

@@ -17,17 +17,17 @@ namespace {
 constexpr double kHighestFork = 0.6;  // of the height: where a branch that touches the ground meets its trunk
 constexpr double kAlike = 0.1;        // of the thicker stem's radius: two culms, or a bundle and one
 constexpr double kLook = 4.0;         // of a branch's thickness: how far it is looked along, to both sides
-constexpr double kSlender =
-    2.0;                        // variance along a branch over that across: of a ball it is .5, of a sheet 1
+// Variance along a branch over that across: of a ball it is .5, of a sheet 1.
+constexpr double kSlender = 2.0;
 constexpr double kThick = 0.5;  // of the thinner stem's radius: a branch that may bear it
 // Of the trunk's radius: as thick as its root or branch gets.
 constexpr double kMostAlike = 0.4;
 constexpr double kBothSides = 0.5;   // of the look: the branch goes on that far to either side
 constexpr double kReach = 2.5;       // voxels: what is no further away is beside, as the scan has gaps
 constexpr size_t kFewestAcross = 8;  // voxels where a branch is cut through
-constexpr double kCoarse =
-    2.2;                        // of the thinner stem's radius: larger voxels do not tell branches from twigs
-constexpr size_t kFewest = 12;  // voxels of a branch
+// Of the thinner stem's radius: larger voxels do not tell branches from twigs.
+constexpr double kCoarse = 2.2;
+constexpr size_t kFewest = 12;   // voxels of a branch
 constexpr double kWidest = 8.0;  // of the thicker stem's radius: what is wider is no branch
 
 // Voxels next to each other that grew from different stems.

@@ -79,6 +79,7 @@ class LiesOn {
 struct Stretch {
     NodeId first = kNoNode;  // its lowest segment, by the node at the end
     NodeId last = kNoNode;
+    int32_t below = -1;  // the one that it grows from; -1 for none
     double length = 0.0;
     double carried = 0.0;  // metres of wood of it and beyond it
     double reach = 0.0;    // metres from its start to the farthest tip
@@ -104,7 +105,7 @@ Stretches find_stretches(const Tree& tree, const std::vector<NodeId>& order, con
         const bool alone = sibling == id && tree.node(id).next_sibling == kNoNode;
         if (parent == tree.root() || !alone) {
             found.of_node[id] = static_cast<int32_t>(found.all.size());
-            found.all.push_back({id, id});
+            found.all.push_back({id, id, found.of_node[parent]});
         } else {
             found.of_node[id] = found.of_node[parent];
         }
@@ -116,10 +117,10 @@ Stretches find_stretches(const Tree& tree, const std::vector<NodeId>& order, con
         Stretch& stretch = found.all[s];
         stretch.carried += stretch.length;
         stretch.reach += stretch.length;
-        const int32_t below = found.of_node[tree.node(stretch.first).parent];
-        if (below < 0) continue;
-        found.all[below].carried += stretch.carried;
-        found.all[below].reach = std::max(found.all[below].reach, stretch.reach);
+        if (stretch.below < 0) continue;
+        Stretch& below = found.all[stretch.below];
+        below.carried += stretch.carried;
+        below.reach = std::max(below.reach, stretch.reach);
     }
     int64_t sum = 0, voices = 0, on_wood = 0;
     for (size_t i = 0; i < on.size(); i++) {
@@ -164,7 +165,7 @@ TwigLooks looks_of(const Stretch& stretch, const Stretches& all, const Tree& tre
     if (start.parent != kNoNode) before = start.position - tree.node(start.parent).position;
     const double reach = std::max(stretch.reach, kLeastRadius);
     const double radius = tree.node(stretch.first).radius;
-    const int32_t below = all.of_node[tree.node(stretch.first).parent];
+    const Stretch* const below = stretch.below >= 0 ? &all.all[stretch.below] : nullptr;
     return {portable::log(stretch.carried / extent + kLeastCarried),
             leafiness_of(stretch, all.mean_logit),
             all.mean_logit,
@@ -172,11 +173,20 @@ TwigLooks looks_of(const Stretch& stretch, const Stretches& all, const Tree& tre
             glm::dot(normalized_or(chord, DVec3(0.0)), normalized_or(before, DVec3(0.0))),
             portable::log(reach / (radius + kLeastRadius)),
             portable::log(reach) * all.mean_logit,
-            below >= 0 ? leafiness_of(all.all[below], all.mean_logit) : kRootLeafiness,
-            below >= 0 ? log_density(all.all[below], all) : 0.0,
+            below ? leafiness_of(*below, all.mean_logit) : kRootLeafiness,
+            below ? log_density(*below, all) : 0.0,
             log_density(stretch, all),
             portable::log(stretch.length + kLeastLength),
             portable::log(radius + kLeastRadius)};
+}
+
+std::vector<TwigLooks> looks_of_all(const Stretches& stretches, const Tree& tree) {
+    const DVec3 size = tree.bounds().size();
+    const double extent = std::max({size.x, size.y, size.z});
+    std::vector<TwigLooks> looks;
+    for (const Stretch& stretch : stretches.all)
+        looks.push_back(looks_of(stretch, stretches, tree, extent));
+    return looks;
 }
 
 double chance_of(const TwigLooks& looks) {
@@ -192,27 +202,18 @@ double least_chance(const LeavesTold& told) {
     return many * (told.by_colour ? kLeastByColour : kLeastChance) * (told.grown_anew ? kLeastAnew : 1.0);
 }
 
-// By stretch the one that it grows from, or -1.
-std::vector<int32_t> below_of(const Stretches& stretches, const Tree& tree) {
-    std::vector<int32_t> below;
-    for (const Stretch& stretch : stretches.all)
-        below.push_back(stretches.of_node[tree.node(stretch.first).parent]);
-    return below;
-}
-
 // Which stretches go, where keeping one costs `least` of its length and gains as much of it as is likely
 // wood: those that with all that they carry are not worth it at best, unless they have to stay.
-std::vector<uint8_t> fall(const std::vector<Stretch>& all, const std::vector<int32_t>& below,
-                          const std::vector<double>& chances, const std::vector<uint8_t>& stays,
-                          double least) {
+std::vector<uint8_t> fall(const std::vector<Stretch>& all, const std::vector<double>& chances,
+                          const std::vector<uint8_t>& stays, double least) {
     std::vector<double> worth(all.size(), 0.0);
     for (size_t s = all.size(); s-- > 0;) {
         worth[s] += all[s].length * (chances[s] - least);
-        if (below[s] >= 0) worth[below[s]] += std::max(0.0, worth[s]);
+        if (all[s].below >= 0) worth[all[s].below] += std::max(0.0, worth[s]);
     }
     std::vector<uint8_t> falls(all.size(), 0);
     for (size_t s = 0; s < all.size(); s++)
-        falls[s] = (below[s] >= 0 && falls[below[s]]) || (!stays[s] && !(worth[s] > 0.0));
+        falls[s] = (all[s].below >= 0 && falls[all[s].below]) || (!stays[s] && !(worth[s] > 0.0));
     return falls;
 }
 
@@ -224,11 +225,10 @@ std::vector<TwigSample> look_at_twigs(const Tree& tree, const std::vector<Vec3>&
     places.find([&](size_t i) { return !std::isnan(leafiness[i]); }, progress);
     const std::vector<NodeId> order = tree.depth_first();
     const Stretches stretches = find_stretches(tree, order, places.on(), leafiness);
-    const DVec3 size = tree.bounds().size();
-    const double extent = std::max({size.x, size.y, size.z});
-    std::vector<TwigSample> samples(stretches.all.size());
+    const std::vector<TwigLooks> looks = looks_of_all(stretches, tree);
+    std::vector<TwigSample> samples(looks.size());
     for (size_t s = 0; s < samples.size(); s++) {
-        samples[s].looks = looks_of(stretches.all[s], stretches, tree, extent);
+        samples[s].looks = looks[s];
         samples[s].line.push_back(tree.node(tree.node(stretches.all[s].first).parent).position);
     }
     for (const NodeId id : order)
@@ -269,19 +269,16 @@ DroppedTwigs drop_leaf_twigs(Tree& tree, const std::vector<Vec3>& points, const 
     for (const NodeId id : order)
         if (id != tree.root() && tree.node(id).is_trunk()) stays[stretches.of_node[id]] = 1;
 
-    const DVec3 size = tree.bounds().size();
-    const double extent = std::max({size.x, size.y, size.z});
-    std::vector<double> chances(all.size());
-    for (size_t s = 0; s < all.size(); s++)
-        chances[s] = chance_of(looks_of(all[s], stretches, tree, extent));
-    const std::vector<int32_t> below = below_of(stretches, tree);
-    const std::vector<uint8_t> dropped = fall(all, below, chances, stays, least);
+    std::vector<double> chances;
+    for (const TwigLooks& looks : looks_of_all(stretches, tree))
+        chances.push_back(chance_of(looks));
+    const std::vector<uint8_t> dropped = fall(all, chances, stays, least);
     std::vector<NodeId> tops;
     DroppedTwigs result;
     for (size_t s = 0; s < all.size(); s++) {
         if (!dropped[s]) continue;
         result.length += all[s].length;
-        if (below[s] < 0 || !dropped[below[s]]) tops.push_back(all[s].first);
+        if (all[s].below < 0 || !dropped[all[s].below]) tops.push_back(all[s].first);
     }
     if (tops.empty()) return {};
     places.find([&](size_t i) { return std::isnan(leafiness[i]); }, progress);
