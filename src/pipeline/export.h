@@ -9,6 +9,7 @@
 #include "exchange/material_textures.h"
 #include "foliage/leaves.h"
 #include "mesh/grown_bark.h"
+#include "mesh/levels.h"
 #include "mesh/mesh.h"
 #include "photos/leaf_colours.h"
 #include "progress.h"
@@ -34,8 +35,6 @@ struct ExportOptions {
 
 // Writes one tree to any number of files; bark, leaves and pictures are made once, when first needed. The
 // tree and the progress must outlive it; every method may throw Cancelled.
-inline constexpr int kMostLevels = 5;
-
 class TreeExporter {
   public:
     TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress = nullptr);

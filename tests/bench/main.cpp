@@ -26,6 +26,8 @@ const char* const kUsage =
     "                                          PROGRAM SCAN.xyz FOLDER ARG…\n"
     "       bench --lighter [SCAN…|SKELETON…]  size and outline of lighter trees, ours and Zhang's (2013)\n"
     "       bench --bytes [SCAN…|FOLDER]       bytes of the cloud, of its skeleton and of lighter ones\n"
+    "       bench --looks [SCAN…|FOLDER]       what a vegetation artist sees: leaf area, twigs, bark, "
+    "sections\n"
     "       bench --fidelity [SCAN…]           how quickly the fidelity follows edits\n"
     "       bench --synth                      precision, recall, radius and DBH errors on grown trees\n"
     "       bench --ablate [SCAN…|FOLDER] [-- PASS…]  what is worse without each pass of the skeleton\n"
@@ -84,10 +86,10 @@ CommandLine parse(const std::vector<std::string>& words) {
         if (word == "--scaling" || word == "--scans" || word == "--synth" || word == "--strings" ||
             word == "--guard" || word == "--record" || word == "--beside" || word == "--resize" ||
             word == "--methods" || word == "--clicks" || word == "--lighter" || word == "--fidelity" ||
-            word == "--bytes" || word == "--photos" || word == "--tracks" || word == "--edits" ||
-            word == "--variants" || word == "--drawn" || word == "--sketch" || word == "--growth" ||
-            word == "--plots" || word == "--ablate" || word == "--leaf-inputs" || word == "--twig-inputs" ||
-            word == "--help") {
+            word == "--bytes" || word == "--looks" || word == "--photos" || word == "--tracks" ||
+            word == "--edits" || word == "--variants" || word == "--drawn" || word == "--sketch" ||
+            word == "--growth" || word == "--plots" || word == "--ablate" || word == "--leaf-inputs" ||
+            word == "--twig-inputs" || word == "--help") {
             if (!line.mode.empty()) throw Error(line.mode + " and " + word + " are two things.");
             line.mode = word;
             if (word == "--beside") line.settings.beside = value();
@@ -226,6 +228,10 @@ int run(CommandLine line) {
     }
     if (line.mode == "--bytes") {
         bench_bytes(scans);
+        return EXIT_SUCCESS;
+    }
+    if (line.mode == "--looks") {
+        bench_looks(scans);
         return EXIT_SUCCESS;
     }
     if (line.mode == "--fidelity") {
