@@ -7,7 +7,7 @@ extends Node3D
 const FLOOR: Shader = preload("forest_floor.gdshader")
 const BLADES: Shader = preload("meadow.gdshader")
 const _SIDE: float = 3000.0
-const _BLADES: int = 7  # of a tuft
+const _BLADES: int = 9  # of a tuft
 const _LITTER: Color = Color(0.36, 0.25, 0.14)
 
 ## Metres around the middle within which grass grows.
@@ -73,6 +73,9 @@ func _add_floor(noise: FastNoiseLite) -> void:
 	var material: ShaderMaterial = ShaderMaterial.new()
 	material.shader = FLOOR
 	material.set_shader_parameter(&"noise", picture)
+	material.set_shader_parameter(&"litter", Color(0.37, 0.35, 0.21))
+	material.set_shader_parameter(&"moss", Color(0.29, 0.33, 0.15))
+	material.set_shader_parameter(&"grass", Color(0.36, 0.41, 0.19))
 	var plane: PlaneMesh = PlaneMesh.new()
 	plane.size = Vector2.ONE * _SIDE
 	plane.material = material
@@ -160,8 +163,8 @@ func _make_tuft(random: RandomNumberGenerator) -> ArrayMesh:
 	for blade: int in _BLADES:
 		var yaw: float = TAU * (blade + random.randf()) / _BLADES
 		var out: Vector3 = Basis(Vector3.UP, yaw) * Vector3.RIGHT
-		var across: Vector3 = out.cross(Vector3.UP) * random.randf_range(0.003, 0.0055)
-		var root: Vector3 = out * random.randf_range(0.0, 0.05)
+		var across: Vector3 = out.cross(Vector3.UP) * random.randf_range(0.004, 0.008)
+		var root: Vector3 = out * random.randf_range(0.0, 0.12)
 		var tall: float = 0.2 * random.randf_range(0.5, 1.0)
 		var lean: float = random.randf_range(0.1, 0.5) * tall
 		var before: int = blade * 5

@@ -43,9 +43,9 @@ void bench_lighter(const std::vector<std::string>& files);
 // Bytes of each scan, of its skeleton, and of lighter ones (Zhang 2013, table 9.2).
 void bench_bytes(const std::vector<std::string>& scans);
 // What a vegetation artist sees at once in the tree of each scan: triangles of its levels; the area of its
-// leaves, over that of the ground below them; tips that hug wood three times as thick (within 3 of its radii),
-// bends above 60 degrees, radii of tips; texels of the trunk's bark; how far its section at breast height is
-// from a circle, peak to peak over the mean radius, in the scan and in the tree.
+// leaves, over that of the ground below them; tips that hug wood three times as thick (within 3 of its
+// radii), bends above 60 degrees, radii of tips; texels of the trunk's bark; how far its section at breast
+// height is from a circle, peak to peak over the mean radius, in the scan and in the tree.
 void bench_looks(const std::vector<std::string>& scans);
 // How long the fidelity takes to follow edits of the tree of each scan.
 void bench_fidelity(const std::vector<std::string>& scans, const Settings& settings);
