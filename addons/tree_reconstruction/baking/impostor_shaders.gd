@@ -38,6 +38,7 @@ const _CUT: String = """
 	ALPHA = 1.0;
 """
 const _UNIFORMS: String = """
+#define TREE_IMPOSTOR
 uniform int impostor_pass = 0;
 uniform float impostor_distance = 1.0;
 uniform float impostor_reach = 1.0;
