@@ -26,7 +26,7 @@ enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
 
 // Where a coarser level takes over, in heights of the tree: as in nodes/tree_levels.gd.
 constexpr double kSwitch[kMostLevels - 1] = {2.5, 6.0, 14.0, 30.0};
-constexpr double kShade = 0.7;              // of stored colours: leaf.gdshader's, deep in the crown
+constexpr double kShade = 0.7;              // of stored colours, deep in the crown
 constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
 
 Format format_of(const std::string& path) {
@@ -49,7 +49,7 @@ bool is_own_model(const std::string& path, std::string_view mark) {
     return begin.find(mark) != std::string::npos;
 }
 
-// The course over its peak, and what leaf.gdshader makes of shade.
+// The course over its peak, and shade: other programs know nothing of the light in a crown.
 LeafTint leaf_tint(const LeafColours& colours) {
     return [colours](const Vec3& place, float openness) {
         const double shade = linear_of(kShade + (1.0 - kShade) * static_cast<double>(openness));
