@@ -50,7 +50,7 @@ BarkPoint old_bark(const std::string& preset, const Place& place) {
     if (preset == "ginkgo") return ridged(place, {0.045, 0.24, 0.014, 0.013, 0.15, 0.0016}, palette);
     if (preset == "willow") return ridged(place, {0.048, 0.26, 0.017, 0.015, 0.3, 0.0014}, palette);
     if (preset == "poplar") return ridged(place, {0.055, 0.30, 0.018, 0.016, 0.5, 0.0010}, palette);
-    if (preset == "oak") return ridged(place, {0.046, 0.19, 0.016, 0.014, 0.9, 0.0010}, palette);
+    if (preset == "oak") return ridged(place, {0.046, 0.21, 0.016, 0.014, 0.65, 0.0012}, palette);
     return ridged(place, {0.036, 0.17, 0.011, 0.010, 0.45, 0.0010}, palette);
 }
 

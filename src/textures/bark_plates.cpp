@@ -54,8 +54,9 @@ BarkPoint scaly(const Place& place, const Scales& scales, const Palette& palette
     const Flake& shown = covered ? upper : lower;
     const double layer = covered ? 1.0 + upper.level : lower.level;
     const double body = smoothstep(0.0, 0.12, shown.inside);
-    // The lower edge stands off: towards it the scale rises, then it ends.
-    const double curl = scales.curl * smoothstep(-0.2, 0.9, shown.offset.y);
+    // The lower edge stands off: towards it the scale rises, then it ends. A picture's upper edge is its end
+    // below.
+    const double curl = scales.curl * smoothstep(-0.2, 0.9, -shown.offset.y);
     const double fibre = place.noise({0.22 * s.x, 0.8 * s.y}, 3, 30),
                  grain = place.noise({0.0028, 0.0035}, 3, 31);
 

@@ -26,7 +26,7 @@ BarkPoint ridged(const Place& place, const Ridges& ridges, const Palette& palett
     const double from_fissure = std::min(one.distance, two.distance / std::max(second, 0.4));
     // Cracks across, the deeper the wider the ridge has grown.
     const Line cross =
-        place.moved({0.0, 0.25 * s * place.noise({0.35 * s, 0.3 * s}, 3, 7)}).line({0.9 * s, 0.75 * s}, 2, 8);
+        place.moved({0.0, 0.25 * s * place.noise({0.35 * s, 0.3 * s}, 3, 7)}).line({1.4 * s, 0.5 * s}, 2, 8);
     const double crossing = ridges.blocks *
                             smoothstep(0.15, 0.45, place.noise({1.1 * s, 2.5 * s}, 2, 9) + 0.32) *
                             (1.0 - smoothstep(0.0, 0.0026, cross.distance));

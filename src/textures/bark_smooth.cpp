@@ -69,8 +69,8 @@ BarkPoint birch(const Place& place, bool young) {
     colour = glm::mix(DVec3(0.52, 0.44, 0.37), colour, mix(0.35, 1.0, edge)) * (1.0 + 0.05 * roll);
     colour = glm::mix(colour, DVec3(0.30, 0.26, 0.22), 0.88 * slit);
     // Black corky scars: rhombs where the skin has burst, rough inside.
-    const double ragged = 0.55 * place.noise({0.02, 0.012}, 4, 10);
-    const double burst = std::max(place.lens({0.20, 0.16}, {0.03, 0.02}, {0.15, 0.09}, 0.55, 11),
+    const double ragged = 0.8 * place.noise({0.02, 0.012}, 4, 10);
+    const double burst = std::max(place.lens({0.17, 0.15}, {0.03, 0.02}, {0.17, 0.11}, 0.7, 11),
                                   place.lens({0.09, 0.11}, {0.015, 0.008}, {0.06, 0.022}, 0.5, 12));
     const double scar = smoothstep(0.10, 0.30, burst + ragged * smoothstep(0.0, 0.25, burst));
     const double cork = 0.5 + 0.8 * place.noise({0.014, 0.030}, 4, 13);

@@ -21,7 +21,8 @@ using texture::wrap;
 constexpr double kDarkest = 54.0 / 255.0, kLightest = 238.0 / 255.0;
 constexpr size_t kRows = 16;
 
-// To multiples of `step`: a graphics card's compression keeps five or six bits, and files are a third smaller.
+// To multiples of `step`: a graphics card's compression keeps five or six bits, and files are a third
+// smaller.
 uint8_t stepped(double value, int step) {
     return static_cast<uint8_t>(std::min((to_byte(value) + step / 2) / step * step, 255));
 }
@@ -96,7 +97,8 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
                 heights.metres[static_cast<size_t>(y) * static_cast<size_t>(size) + static_cast<size_t>(x)] =
                     static_cast<float>(point.height);
                 for (int c = 0; c < 3; c++)
-                    textures.albedo.at(x, y)[c] = stepped(std::clamp(point.colour[c], kDarkest, kLightest), 4);
+                    textures.albedo.at(x, y)[c] =
+                        stepped(std::clamp(point.colour[c], kDarkest, kLightest), 4);
                 packed.at(x, y)[1] = to_byte(point.roughness);
                 packed.at(x, y)[2] = to_byte(point.cover);
             }
