@@ -28,8 +28,8 @@ void write_png(const std::string& path, const Image& image);
 struct NamedPicture {
     // "bark_albedo", "bark_normal", "bark_roughness" (textures/textures.h), "bark_roughness_grey" (the
     // roughness alone, for formats that want it so), "bark_young_albedo", "bark_young_normal",
-    // "bark_young_roughness" (half as large, as is what they cover), "leaf_albedo", "leaf_normal" (a spray),
-    // "blade_albedo" or "blade_normal" (one leaf, half as large).
+    // "bark_young_roughness", "bark_young_roughness_grey" (half as large, as is what they cover),
+    // "leaf_albedo", "leaf_normal" (a spray), "blade_albedo" or "blade_normal" (one leaf, half as large).
     std::string name;
     std::string_view png;                               // its bytes
     std::shared_ptr<const std::vector<uint8_t>> drawn;  // what holds them; null for the build's own
@@ -48,7 +48,7 @@ void set_ready_pictures(std::span<const ReadyPicture> pictures);
 // What these are called, whatever the preset.
 std::vector<std::string> picture_names();
 
-// The eleven pictures of a preset, in this order: the build's, where it drew these.
+// The twelve pictures of a preset, in this order: the build's, where it drew these.
 std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kTextureSize,
                                         uint64_t seed = kTextureSeed);
 
@@ -58,9 +58,10 @@ std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uin
 // The four pictures of a bark, with these names.
 std::vector<NamedPicture> encode_bark(const BarkTextures& bark);
 
-// Those that one tree needs as a model file: the leaf's are of a spray or, with `blade`, of one leaf. Bark is
-// the old one, since other programs' materials know no age.
-std::vector<NamedPicture> pictures_of_leaves(std::vector<NamedPicture> pictures, bool blade);
+// Those that the model file of one tree needs: the leaf's are of a spray or, with `blade`, of one leaf, and
+// the bark's of the young one with `young`; all by the names of the others.
+std::vector<NamedPicture> pictures_of_model(std::vector<NamedPicture> pictures, bool blade,
+                                            bool young = false);
 
 // Writes <directory>/<preset>_<name>.png for each picture and returns the paths; makes the directory. Throws
 // Error, naming the path, where it cannot write.
