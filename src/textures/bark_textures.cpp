@@ -111,8 +111,11 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
                 const double dx = (heights.at(x + 1, y) - heights.at(x - 1, y)) / (2.0 * across);
                 const double dy = (heights.at(x, y - 1) - heights.at(x, y + 1)) / (2.0 * along);  // upwards
                 const DVec3 normal = glm::normalize(DVec3(-dx, -dy, 1.0));
-                for (int c = 0; c < 3; c++)
-                    textures.normal.at(x, y)[c] = stepped(0.5 + 0.5 * normal[c], 2);
+                uint8_t* const pixel = textures.normal.at(x, y);
+                pixel[0] = stepped(0.5 + 0.5 * normal.x, 2);
+                pixel[1] = stepped(0.5 + 0.5 * normal.y, 2);
+                const DVec2 kept = DVec2(pixel[0], pixel[1]) / 127.5 - 1.0;
+                pixel[2] = to_byte(0.5 + 0.5 * std::sqrt(std::max(1.0 - glm::dot(kept, kept), 0.0)));
                 packed.at(x, y)[0] = to_byte(occlusion_at(heights, x, y, across));
             }
         }
