@@ -308,6 +308,7 @@ void Builder::add_bark_material(const std::vector<NamedPicture>& all) {
     surface.baseColorTexture.index = add_texture(all, "bark_albedo", kWrap);
     material.normalTexture.index = add_texture(all, "bark_normal", kWrap);
     surface.metallicRoughnessTexture.index = add_texture(all, "bark_roughness", kWrap);
+    surface.metallicFactor = 0.0;  // the picture has something else there
     material.occlusionTexture.index = surface.metallicRoughnessTexture.index;
     model.materials.push_back(std::move(material));
 }

@@ -24,8 +24,11 @@ namespace treerec {
 
 namespace {
 
-constexpr const char* kNames[] = {"bark_albedo", "bark_normal", "bark_roughness", "bark_roughness_grey",
-                                  "leaf_albedo", "leaf_normal", "blade_albedo",   "blade_normal"};
+constexpr const char* kNames[] = {
+    "bark_albedo",       "bark_normal",       "bark_roughness",       "bark_roughness_grey",
+    "bark_young_albedo", "bark_young_normal", "bark_young_roughness", "bark_young_roughness_grey",
+    "leaf_albedo",       "leaf_normal",       "blade_albedo",         "blade_normal"};
+constexpr size_t kOldBark = 4;  // of these come first
 std::span<const ReadyPicture> ready_pictures;
 
 Image channel_of(const Image& image, int channel) {
@@ -72,19 +75,22 @@ std::vector<NamedPicture> encode_all(std::span<const char* const> names,
 }  // namespace
 
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed) {
-    const BarkTextures bark = make_bark_textures(preset, size, seed);
+    const BarkTextures bark = make_bark_textures(preset, bark_size(size), seed);
+    const BarkTextures young =
+        make_bark_textures(preset, std::max(16, bark_size(size) / 4 * 2), seed, BarkAge::kYoung);
     const LeafTextures leaf = make_leaf_textures(preset, size, seed);
     const LeafTextures blade = make_blade_textures(preset, std::max(16, size / 2), seed);
-    const Image grey = channel_of(bark.roughness, 1);
-    const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey,
-                             &leaf.albedo, &leaf.normal, &blade.albedo,   &blade.normal};
+    const Image grey = channel_of(bark.roughness, 1), young_grey = channel_of(young.roughness, 1);
+    const Image* images[] = {&bark.albedo,  &bark.normal,  &bark.roughness,  &grey,
+                             &young.albedo, &young.normal, &young.roughness, &young_grey,
+                             &leaf.albedo,  &leaf.normal,  &blade.albedo,    &blade.normal};
     return encode_all(kNames, images);
 }
 
 std::vector<NamedPicture> encode_bark(const BarkTextures& bark) {
     const Image grey = channel_of(bark.roughness, 1);
     const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey};
-    return encode_all(std::span(kNames).first(std::size(images)), images);
+    return encode_all(std::span(kNames).first(kOldBark), images);
 }
 
 void set_ready_pictures(std::span<const ReadyPicture> pictures) {
@@ -104,11 +110,16 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size, uin
     return pictures.size() == std::size(kNames) ? pictures : draw_pictures(preset, size, seed);
 }
 
-std::vector<NamedPicture> pictures_of_leaves(std::vector<NamedPicture> pictures, bool blade) {
+std::vector<NamedPicture> pictures_of_model(std::vector<NamedPicture> pictures, bool blade, bool young) {
     const std::string_view dropped = blade ? "leaf_" : "blade_";
-    std::erase_if(pictures, [&](const NamedPicture& picture) { return picture.name.starts_with(dropped); });
-    for (NamedPicture& picture : pictures)
+    std::erase_if(pictures, [&](const NamedPicture& picture) {
+        return picture.name.starts_with(dropped) ||
+               (picture.name.starts_with("bark_") && picture.name.starts_with("bark_young_") != young);
+    });
+    for (NamedPicture& picture : pictures) {
         if (picture.name.starts_with("blade_")) picture.name.replace(0, 5, "leaf");
+        if (picture.name.starts_with("bark_young_")) picture.name.replace(0, 10, "bark");
+    }
     return pictures;
 }
 

@@ -147,7 +147,7 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
     if (any) {
         out += "mtllib " + stem + ".mtl\n";
         const std::vector<NamedPicture> pictures =
-            model.pictures.empty() ? pictures_of_leaves(make_pictures(model.preset), false) : model.pictures;
+            model.pictures.empty() ? pictures_of_model(make_pictures(model.preset), false) : model.pictures;
         for (const NamedPicture& picture : pictures) {
             const bool used = picture.name.starts_with("bark") ? bark : leaves;
             // MTL takes a roughness from a grey picture, and knows no occlusion.

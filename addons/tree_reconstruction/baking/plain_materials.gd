@@ -6,7 +6,14 @@ const _ADDON: String = "res://addons/tree_reconstruction/"
 const _QUALITY: float = 0.9
 # What baked trees do without: it is the editor's.
 const _REST: String = "tree_wind_rest.gdshaderinc"
-const _PICTURES: Array[StringName] = [&"albedo_texture", &"normal_texture", &"roughness_texture"]
+const _PICTURES: Array[StringName] = [
+	&"albedo_texture",
+	&"normal_texture",
+	&"roughness_texture",
+	&"young_albedo_texture",
+	&"young_normal_texture",
+	&"young_roughness_texture",
+]
 
 
 ## Copies of those of [param material]'s pictures that are the addon's and have a source, by their
