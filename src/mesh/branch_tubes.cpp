@@ -27,6 +27,7 @@ constexpr double kHeightSlack = 1e-3;       // how far rings may leave out any b
 constexpr double kTaperSlack = 0.06;        // how far they may leave out a change of the radius, over it,
 constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
+constexpr int kCollarLevel = 1;             // the coarsest that has collars, on ever stouter branches
 constexpr int kRootedSides = 16;            // coarser trunks have no roots
 constexpr uint32_t kSidesPerRoot = 5;       // at level 0
 constexpr size_t kFewBranches = 256;        // are built sooner than threads start
@@ -76,7 +77,7 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
     tube.exit = std::min(attach.radius / std::max(sine, 0.3), 0.7 * length);
     // One that first goes its parent's way parts from it without a collar.
     const double follows = 1.0 - glm::smoothstep(0.3, 0.8, sine);
-    if (options.level == 0 && own >= kCollarRadius && own < 0.98 * hidden) {
+    if (options.level <= kCollarLevel && own >= kCollarRadius * (1 << options.level) && own < 0.98 * hidden) {
         // Rings at the bark, and two more where the collar has run out.
         size_t hint = 0;
         for (double along : {0.85 * tube.exit, tube.exit + 0.8 * own, tube.exit + 2.2 * own}) {
@@ -149,7 +150,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
         const AxisPoint& from = points[last];
         size_t best = last + 1;
         const double gap = std::max(closeness * from.radius, 2.0 * least);
-        const bool collar_begins = tube.exit > 0.0 && level == 0;
+        const bool collar_begins = tube.exit > 0.0 && level <= kCollarLevel;
         for (size_t next = last + 1; next < points.size(); next++) {
             const AxisPoint& to = points[next];
             const bool near = points[best].along - from.along < gap;
@@ -158,8 +159,8 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
             if (!near && (far || bent || changed || misses(last, next))) break;
             best = next;
-            const bool collar =
-                collar_begins && to.radius >= kCollarRadius && to.along < tube.exit + 2.5 * to.radius;
+            const bool collar = collar_begins && to.radius >= kCollarRadius * (1 << level) &&
+                                to.along < tube.exit + 2.5 * to.radius;
             if (collar && to.along - from.along >= gap) break;
         }
         // A last ring right above another only makes slivers.
@@ -200,9 +201,9 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     pick_rings(branch, points, tube, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
-    if (branch.attach != kNoNode && begins && options.level == 0) {
+    if (branch.attach != kNoNode && begins && options.level <= kCollarLevel) {
         const double own = tree.node(list.nodes[branch.begin]).radius;
-        if (own >= kCollarRadius)
+        if (own >= kCollarRadius * (1 << options.level))
             limit_slant(out.data() + tube.first_ring, tube.rings,
                         std::max(tube.exit + 3.0 * own, 2.0 * tube.exit));
     }
@@ -276,8 +277,9 @@ void Builder::seat(size_t index) {
 void Builder::join(size_t index) {
     const Branch& branch = list.branches[index];
     Tube& tube = tubes[index];
-    if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode || covered[index] > 0.0) return;
-    if (tree.node(list.nodes[branch.begin]).radius < kWebRadius) return;
+    if (options.level > kCollarLevel || tube.rings < 2 || branch.attach == kNoNode || covered[index] > 0.0)
+        return;
+    if (tree.node(list.nodes[branch.begin]).radius < kWebRadius * (1 << options.level)) return;
     const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
     const double along = node_along[branch.attach];
     if (tubes[host].rings < 2 || along < covered[host]) return;
@@ -286,7 +288,8 @@ void Builder::join(size_t index) {
     std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];
     tube.first_collar = out.size();
     tube.collar = make_collar({rings_of(index), tube.rings, tube.sides},
-                              {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring, out);
+                              {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring,
+                              options.level == 0, out);
 }
 
 void Builder::for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const {

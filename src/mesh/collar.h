@@ -38,10 +38,11 @@ struct Collar {
     uint32_t next_ring = 0;  // the branch's first ring after it
 };
 
-// Appends the rows to `out`. host_span: about which of the host's rings the branch starts. No collar where
+// Appends the rows to `out`. host_span: about which of the host's rings the branch starts;
+// fine: more rows on thick wood. No collar where
 // the branch does not come out of the host's bark all round, or has not the room for it. A corner's base lies
 // within the host, by about a hundredth of its radius.
-Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span,
+Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span, bool fine,
                    std::vector<CollarVertex>& out);
 
 }  // namespace treerec
