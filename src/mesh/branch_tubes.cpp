@@ -28,6 +28,8 @@ constexpr double kTaperSlack = 0.06;        // how far they may leave out a chan
 constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
 constexpr int kCollarLevel = 1;             // the coarsest that has collars, on ever stouter branches
+constexpr int kUnevenLevel = 1;             // the coarsest that shows that wood is not round,
+constexpr double kUnevenRadius = 0.03;      // metres: and the thinnest that does
 constexpr int kRootedSides = 16;            // coarser trunks have no roots
 constexpr uint32_t kSidesPerRoot = 5;       // at level 0
 constexpr size_t kFewBranches = 256;        // are built sooner than threads start
@@ -213,6 +215,12 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     tube.sides = sides_of(thickest, options);
     if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk()) stand(points, tube, out);
     tube.base_radius = points.front().radius;
+    if (options.level <= kUnevenLevel && thickest >= kUnevenRadius) {
+        const double round = branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest;
+        tube.section =
+            uneven_section(hash_seed(foot_seed(tree), static_cast<uint64_t>(list.nodes[branch.begin])),
+                           thickest, round, out.back().along);
+    }
     // From as far as coarser levels are seen, a thick end still shows.
     tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
     tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
@@ -287,9 +295,7 @@ void Builder::join(size_t index) {
     if (along < tubes[host].flare.reach + tree.node(list.nodes[branch.begin]).radius) return;
     std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];
     tube.first_collar = out.size();
-    tube.collar = make_collar({rings_of(index), tube.rings, tube.sides},
-                              {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring,
-                              options.level == 0, out);
+    tube.collar = make_collar(shape_of(index), shape_of(host), tube.host_ring, options.level == 0, out);
 }
 
 void Builder::for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const {

@@ -103,11 +103,20 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     if (angle < 0.0) angle += 2.0 * kPi;
     place.corner = std::min(angle / step, static_cast<double>(tube.sides));
     const double within = angle - step * std::floor(place.corner);
-    place.surface = place.radius * polygon_flat(tube.sides) / portable::cos(within - 0.5 * step);
+    const auto corner = [&](double index) {
+        const double turned = index * step;
+        return glm::mix(low.radius * tube.section->factor(low.along, turned),
+                        high.radius * tube.section->factor(high.along, turned), at.t);
+    };
+    // The straight side between two corners.
+    const double one = corner(std::floor(place.corner)), other = corner(std::floor(place.corner) + 1.0);
+    place.surface = one * other * portable::sin(step) /
+                    (one * portable::sin(within) + other * portable::sin(step - within));
     place.height = out - place.surface;
     const double slope = ring_slope(tube.rings, tube.count, at.span) * (1.0 - at.t) +
                          ring_slope(tube.rings, tube.count, at.span + 1) * at.t;
-    place.normal = glm::normalize(place.radial - axis * slope);
+    place.normal =
+        glm::normalize(place.radial - axis * slope - place.side * tube.section->turn(place.along, angle));
     return place;
 }
 

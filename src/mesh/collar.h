@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/tube_rings.h"
+#include "mesh/uneven_section.h"
 
 namespace treerec {
 
@@ -14,6 +15,7 @@ struct TubeShape {
     const Ring* rings = nullptr;
     size_t count = 0;  // two or more
     uint32_t sides = 0;
+    const UnevenSection* section = nullptr;
 };
 
 // One vertex. Metres, tree space.

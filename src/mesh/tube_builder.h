@@ -14,6 +14,7 @@
 #include "mesh/root_flare.h"
 #include "mesh/tube_rings.h"
 #include "mesh/twig_shares.h"
+#include "mesh/uneven_section.h"
 #include "tree/branches.h"
 
 namespace treerec::tubes {
@@ -43,10 +44,11 @@ struct Tube {
     DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
     RootFlare flare;              // of a standing trunk,
     size_t foot_rows = 0;         // and its first rings, which show it
-    Collar collar;                // on its parent's bark
-    size_t first_collar = 0;      // its vertices in the chunk
-    double base_radius = 0.0;     // metres, of the wood where it starts; coarser levels only
-    uint32_t host_ring = 0;       // of the parent, below where this one starts
+    UnevenSection section;
+    Collar collar;             // on its parent's bark
+    size_t first_collar = 0;   // its vertices in the chunk
+    double base_radius = 0.0;  // metres, of the wood where it starts; coarser levels only
+    uint32_t host_ring = 0;    // of the parent, below where this one starts
     size_t first_vertex = 0;
     size_t first_index = 0;
 
@@ -104,6 +106,10 @@ struct Builder {
     bool cut_covered(size_t index, std::vector<AxisPoint>& points) const;
     void add_grown(Mesh& mesh) const;
 
+    TubeShape shape_of(size_t branch) const {
+        const Tube& tube = tubes[branch];
+        return {rings_of(branch), tube.rings, tube.sides, &tube.section};
+    }
     const Ring* rings_of(size_t branch) const {
         return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
     }

@@ -172,7 +172,11 @@ void Emitter::put_ring(size_t i) {
         const DVec3 radial = ring.x * circle_[j].x + y * circle_[j].y;
         DVec3 tangent = (y * circle_[j].x - ring.x * circle_[j].y);
         DVec3 outward = (radial - ring.normal * slope) * scale;
-        const DVec3 position = ring.centre + radial * ring.radius;
+        const DVec3 around = tangent;
+        const double angle = 2.0 * kPi * (j % sides_) / sides_;
+        const DVec3 position = ring.centre + radial * (ring.radius * tube_.section.factor(ring.along, angle));
+        outward = normalized_or(outward - around * (tube_.section.turn(ring.along, angle) * scale), outward);
+        tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
         Vec4 corner_color = color;
         if (blend > 0.0) {
             const DVec3 from = position - run_[0].centre;
