@@ -155,6 +155,25 @@ TEST(Textures, SameSeedSameBytesWhateverTheThreads) {
     }
 }
 
+// Models cannot blend: they have the bark of one age, by the same names.
+TEST(Textures, AModelHasOneBark) {
+    const std::vector<NamedPicture> all = make_pictures("oak", 64, 1);
+    const auto png_of = [](const std::vector<NamedPicture>& pictures, const std::string& name) {
+        for (const NamedPicture& picture : pictures)
+            if (picture.name == name) return picture.png;
+        return std::string_view();
+    };
+    for (const bool young : {false, true}) {
+        const std::vector<NamedPicture> kept = pictures_of_model(all, false, young);
+        EXPECT_EQ(kept.size(), 6u);
+        for (const char* name : {"albedo", "normal", "roughness", "roughness_grey"}) {
+            const std::string_view given = png_of(kept, std::string("bark_") + name);
+            EXPECT_FALSE(given.empty()) << name;
+            EXPECT_EQ(given, png_of(all, std::string(young ? "bark_young_" : "bark_") + name)) << name;
+        }
+    }
+}
+
 Image pixels_of(const NamedPicture& picture) {
     Image image;
     stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(picture.png.data()),
@@ -179,7 +198,6 @@ TEST(Textures, ReadyPicturesAreTheDrawnOnes) {
     }
     const std::vector<NamedPicture> ready = make_pictures("birch");
     const std::vector<NamedPicture> drawn = draw_pictures("birch", kTextureSize, kTextureSeed);
-    set_ready_pictures({});
     EXPECT_NE(make_pictures("pine", 64, 1)[0].drawn, nullptr);
     ASSERT_EQ(ready.size(), drawn.size());
     for (size_t i = 0; i < ready.size(); i++) {
