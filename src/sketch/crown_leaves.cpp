@@ -34,7 +34,7 @@ double twig_growth(const SketchSpecies& species, double height) {
 }
 
 double shrunk(double height) {
-    return std::sqrt(std::min(height / 12.0, 1.0));
+    return std::sqrt(std::min(height / 6.0, 1.0));
 }
 
 double leaf_length(const LeafRules& rules, double height) {

@@ -367,7 +367,7 @@ TEST(Leaves, TheSizeOfALeafIsKnownBeforeItIsMade) {
             std::vector<AxisPoint> axis;
             std::vector<LeafSpot> spots;
             for (const Branch& branch : placer.list.branches)
-                placer.bear(branch, 1.0, axis, spots);
+                placer.bear(branch, 1.0, 1.0, axis, spots);
             EXPECT_FALSE(spots.empty());
             for (const LeafSpot& spot : spots)
                 ASSERT_EQ(placer.size_of(spot), placer.leaf_at(spot).size) << name << " " << spot.number;
