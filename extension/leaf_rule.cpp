@@ -349,6 +349,7 @@ void LeafRule::_bind_properties() {
                  "set_density_by_radius", "get_density_by_radius");
     ADD_PROPERTY(PropertyInfo(Variant::PACKED_FLOAT32_ARRAY, "density_by_order"), "set_density_by_order",
                  "get_density_by_order");
+    add_value("leaf_area_index", "leaf_area_index");
     ADD_GROUP("Leaf", "");
     ADD_PROPERTY(
         PropertyInfo(Variant::INT, "form", PROPERTY_HINT_ENUM, "Spray,Simple,Pinnate,Palmate,Needles,Sprig"),

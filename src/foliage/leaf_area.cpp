@@ -21,6 +21,7 @@ constexpr double kSprigLeaf = 0.34;     // of the sprig's length, as leaf_card_s
 constexpr double kExtinction = 0.5;   // of light, by an area of leaves as large as the ground (Monsi, Saeki)
 constexpr double kSideLight = 0.6;    // of the light from above: what comes in where there is nothing beside
 constexpr double kLeastLight = 0.05;  // scattered
+constexpr double kWoodland = 1.5;     // a crown's height over its width, as those have that an index is of
 constexpr double kTipsFirst = 2.0;    // a twig's end shows more when it is bare
 constexpr size_t kSpotsPerChunk = 512;
 constexpr uint64_t kIndexKey = 0x6c616900ULL;  // "lai"
@@ -129,6 +130,14 @@ double blade_area(const LeafRules& rules) {
             break;
     }
     return single;
+}
+
+double light_on(const Crown& crown) {
+    // Knud Thomsen's surface of an ellipsoid; a quarter of it is the mean of its shadows (Cauchy).
+    constexpr double kPower = 1.6;
+    const double slender = crown.radii.y / (kWoodland * crown.radii.x);
+    if (slender <= 1.0) return 1.0;
+    return portable::pow((1.0 + 2.0 * portable::pow(slender, kPower)) / 3.0, 1.0 / kPower);
 }
 
 CrownGround::CrownGround(const Crown& crown) : edge_(kSquare) {

@@ -13,6 +13,10 @@ namespace treerec {
 // Square metres of blades, one side of them, on a card of size 1.
 double blade_area(const LeafRules& rules);
 
+// By how much more leaf a slender crown bears than its ground says, 1 or more: it has light from the sides,
+// too.
+double light_on(const Crown& crown);
+
 // The ground that a crown covers, in squares: leaves are counted above each by itself, so that what changes
 // in one part of a crown leaves the others alone.
 class CrownGround {

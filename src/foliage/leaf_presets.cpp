@@ -116,10 +116,10 @@ struct Foliar {
     double spray_cover;
 };
 constexpr Foliar kFoliar[] = {
-    {"generic", 4.5, 0.30}, {"maple", 5.0, 0.30},  {"cherry", 4.0, 0.30},   {"oak", 4.5, 0.30},
-    {"birch", 3.5, 0.30},   {"willow", 4.0, 0.30}, {"apple", 3.5, 0.30},    {"pine", 3.0, 0.30},
-    {"spruce", 6.5, 0.30},  {"palm", 0.0, 0.30},  // a palm has as many fronds as stand
-    {"ginkgo", 4.0, 0.30},  {"poplar", 3.5, 0.30}, {"magnolia", 4.5, 0.30},
+    {"generic", 4.5, 0.34}, {"maple", 5.0, 0.29},  {"cherry", 4.0, 0.30},   {"oak", 4.5, 0.32},
+    {"birch", 3.5, 0.28},   {"willow", 4.0, 0.22}, {"apple", 3.5, 0.32},    {"pine", 3.0, 0.22},
+    {"spruce", 6.5, 0.23},  {"palm", 0.0, 0.35},  // a palm has as many fronds as stand
+    {"ginkgo", 4.0, 0.41},  {"poplar", 3.5, 0.38}, {"magnolia", 4.5, 0.47},
 };
 
 LeafRules by_name(const std::string& name) {

@@ -75,6 +75,11 @@ class Bearing {
     std::vector<double> ways_;  // by list.nodes: metres along its branch's chords
 };
 
+// What the rules' index is for this crown.
+double index_of(const LeafPlacer& placer) {
+    return placer.rules.leaf_area_index * light_on(placer.crown);
+}
+
 // Leaves where a scan saw them.
 class Follower {
   public:
@@ -144,7 +149,7 @@ class Follower {
     // For each cell of the usual density; `all`: of them.
     double sprays(double ends, double all) const {
         const ScaledLeaf& size = placer_.size;
-        const double index = placer_.rules.leaf_area_index;
+        const double index = index_of(placer_);
         if (index <= 0.0)
             return kSpraysPerVolume * foliage_.edge * foliage_.edge * foliage_.edge /
                    (size.internode * size.leaf_size * size.leaf_size);
@@ -287,7 +292,7 @@ Spots bear_enough(const LeafPlacer& placer, double share) {
     constexpr double kStep = 1.25;
     Spots spots = bear_all(placer, share, 1.0);
     const LeafBudget budget = measure_leaves(placer, all_of(spots));
-    const double wanted = share * placer.rules.leaf_area_index * budget.ground;
+    const double wanted = share * index_of(placer) * budget.ground;
     double crowding = 1.0;
     while (crowding * budget.blades < wanted && crowding * kStep < kMostCrowding)
         crowding *= kStep;
@@ -318,7 +323,7 @@ std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, 
     if (!rules.enabled || wood.size() < 2 || rules.maximum_leaves <= 0) return leaves;
     const double follow = foliage.empty() ? 0.0 : rules.follow_density;
     const LeafPlacer placer(wood, rules, seed);
-    const double index = rules.leaf_area_index;
+    const double index = index_of(placer);
     Spots parts;
     double share = 1.0;
     if (follow < 1.0)

@@ -87,7 +87,9 @@ TEST(Leaves, EveryTipBearsOne) {
     Tree tree = test::random_tree(4, 500);
     for (NodeId id : tree.depth_first())
         tree.set_radius(id, std::min(tree.node(id).radius, 0.02));
-    const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("birch"), 1);
+    LeafRules rules = leaf_preset("birch");
+    rules.leaf_area_index = 0.0;
+    const std::vector<LeafPlacement> leaves = place_leaves(tree, rules, 1);
     for (NodeId tip : tree.nodes_of_kind(NodeKind::kLeaf))
         EXPECT_TRUE(bears_leaf_at(leaves, tree.node(tip).position));
 }
@@ -310,11 +312,13 @@ TEST(Leaves, SmallTreesBearSmallLeaves) {
         EXPECT_LT(leaf.size, 0.18f);
     for (const LeafPlacement& leaf : grown)
         EXPECT_GT(leaf.size, 0.18f);
-    // Sprays of a tree of 4 m, as many an orchard's, are well under 20 cm.
+    // A tree of 4 m, as many an orchard's, has the twigs of a tree, and a little smaller.
     LeafRules rules = leaf_preset("generic");
     rules.size_variation = 0.0;
-    for (const LeafPlacement& leaf : place_leaves(test::random_tree(2, 150, 4.0), rules, 1))
-        EXPECT_LT(leaf.size, 0.16f);
+    for (const LeafPlacement& leaf : place_leaves(test::random_tree(2, 150, 4.0), rules, 1)) {
+        EXPECT_GT(leaf.size, 0.20f);
+        EXPECT_LT(leaf.size, 0.28f);
+    }
 }
 
 TEST(Leaves, WildTreesAndNothing) {
