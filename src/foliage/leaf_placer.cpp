@@ -10,7 +10,8 @@ namespace treerec {
 
 namespace {
 
-constexpr double kFullTreeHeight = 6.0;       // metres; smaller trees have shorter, thinner twigs, and sprays
+constexpr double kFullTreeHeight = 6.0;       // metres; smaller trees have shorter, thinner twigs
+constexpr double kFullSprayHeight = 12.0;     // metres; smaller trees bear smaller sprays
 constexpr double kClusterSteepness = 5.0;     // how fast a fully clustered twig gets bare below its tip
 constexpr double kBunchSplay = 16.0;          // degrees between neighbours of a bunch
 constexpr double kJitter = 0.0175;            // radians around the twig per degree of angle_variation
@@ -20,9 +21,10 @@ constexpr uint64_t kFallKey = 0x66616c6cULL;  // "fall"
 constexpr uint64_t kThinKey = 0x7468696eULL;  // "thin"
 
 ScaledLeaf scaled(const LeafRules& rules, double height) {
-    const double share = std::min(1.0, std::sqrt(height / kFullTreeHeight));
-    return {std::max(rules.internode * share, 1e-4 * height), rules.twig_length * share,
-            rules.maximum_radius * share, rules.leaf_size * (rules.form == LeafForm::kSpray ? share : 1.0)};
+    const double twig = std::min(1.0, std::sqrt(height / kFullTreeHeight));
+    const double spray = std::min(1.0, std::sqrt(height / kFullSprayHeight));
+    return {std::max(rules.internode * spray, 1e-4 * height), rules.twig_length * twig,
+            rules.maximum_radius * twig, rules.leaf_size * (rules.form == LeafForm::kSpray ? spray : 1.0)};
 }
 
 // A table of even steps, straight lines between them.

@@ -19,7 +19,7 @@ LeafRules rules(LeafArrangement arrangement, double internode, double leaf_size,
 
 LeafRules willow() {
     // Long whips that hang, with narrow leaves.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.069, 0.38, 28.0, 62.0);
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.062, 0.36, 28.0, 62.0);
     made.twig_length = 0.9;
     made.angle_variation = 14.0;
     made.blade_width = 0.17;
@@ -29,7 +29,7 @@ LeafRules willow() {
 
 LeafRules apple() {
     // Leaves stand in rosettes on spurs.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.082, 0.28, 58.0, 14.0);
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.070, 0.26, 58.0, 14.0);
     made.clustering = 0.25;
     made.closing = 0.2;
     made.blade_width = 0.62;
@@ -49,7 +49,7 @@ LeafRules pine() {
 
 LeafRules spruce() {
     // Flat sprays to both sides of the twigs, which hang a little.
-    LeafRules made = rules(LeafArrangement::kAlternate, 0.062, 0.30, 50.0, 24.0);
+    LeafRules made = rules(LeafArrangement::kAlternate, 0.054, 0.28, 50.0, 24.0);
     made.twig_length = 0.9;
     made.angle_variation = 12.0;
     made.leaflets = 1;
@@ -79,7 +79,7 @@ LeafRules palm() {
 
 LeafRules ginkgo() {
     // Bunches from short shoots, which stand all along shoots of several years.
-    LeafRules made = rules(LeafArrangement::kFascicled, 0.048, 0.30, 60.0, 16.0);
+    LeafRules made = rules(LeafArrangement::kFascicled, 0.043, 0.28, 60.0, 16.0);
     made.twig_length = 1.1;
     made.blade_width = 1.45;
     made.curl = 12.0;
@@ -88,7 +88,7 @@ LeafRules ginkgo() {
 
 LeafRules poplar() {
     // Long flat petioles: blades hang, and the least wind turns them.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.062, 0.30, 48.0, 36.0);
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.050, 0.27, 48.0, 36.0);
     made.divergence = 144.0;  // every sixth leaf above the first
     made.blade_width = 0.95;
     made.curl = 12.0;
@@ -97,7 +97,7 @@ LeafRules poplar() {
 
 LeafRules magnolia() {
     // Stiff leaves crowded at the ends of the shoots.
-    LeafRules made = rules(LeafArrangement::kSpiral, 0.062, 0.38, 56.0, 4.0);
+    LeafRules made = rules(LeafArrangement::kSpiral, 0.050, 0.34, 56.0, 4.0);
     made.clustering = 0.4;
     made.closing = 0.45;
     made.blade_width = 0.42;
@@ -125,18 +125,18 @@ constexpr Foliar kFoliar[] = {
 LeafRules by_name(const std::string& name) {
     if (name == "generic") return {};
     if (name == "maple") {
-        LeafRules maple = rules(LeafArrangement::kDecussate, 0.117, 0.40, 52.0, 18.0);
+        LeafRules maple = rules(LeafArrangement::kDecussate, 0.075, 0.32, 52.0, 18.0);
         maple.blade_width = 1.0;
         return maple;
     }
-    if (name == "cherry") return rules(LeafArrangement::kSpiral, 0.070, 0.32, 50.0, 28.0);
+    if (name == "cherry") return rules(LeafArrangement::kSpiral, 0.058, 0.29, 50.0, 28.0);
     if (name == "oak") {
-        LeafRules oak = rules(LeafArrangement::kSpiral, 0.082, 0.34, 55.0, 10.0);
+        LeafRules oak = rules(LeafArrangement::kSpiral, 0.073, 0.32, 55.0, 10.0);
         oak.blade_width = 0.6;
         return oak;
     }
     if (name == "birch") {
-        LeafRules birch = rules(LeafArrangement::kSpiral, 0.077, 0.30, 42.0, 45.0);
+        LeafRules birch = rules(LeafArrangement::kSpiral, 0.062, 0.27, 42.0, 45.0);
         birch.blade_width = 0.74;
         return birch;
     }

@@ -48,7 +48,7 @@ inline constexpr double kUsualFold = 8.0;
 inline constexpr double kMostCrowding = 3.0;
 
 // Lengths in metres. On a smaller tree they shrink with the square root of its height: leaf_size (of sprays
-// alone: a single leaf has its own size), internode, twig_length and maximum_radius below 6 m.
+// alone: a single leaf has its own size) and internode below 12 m, twig_length and maximum_radius below 6 m.
 // Angles in degrees.
 struct LeafRules {
     bool enabled = true;
@@ -58,7 +58,7 @@ struct LeafRules {
     int whorl = 3;                // leaves in a whorl or a bunch
     double divergence = 137.508;  // the golden angle: leaves above one another shade least
     // Metres of twig for each card; nodes that bear several stand so many times as far apart.
-    double internode = 0.08;
+    double internode = 0.063;
     double twig_length = 0.6;  // how far from its tip a branch bears leaves
     double clustering = 0.0;   // 0: evenly along it .. 1: nearly all just below the tip
     double maximum_radius =
@@ -80,7 +80,7 @@ struct LeafRules {
     double spray_cover = 0.3;     // of a spray's card: what blades cover of it
     double blade_width = 0.5;     // of a single leaf or leaflet, over its length
     double petiole = 0.0;         // metres of stalk below the card's own
-    double leaf_size = 0.32;      // length of the card without the petiole
+    double leaf_size = 0.28;      // length of the card without the petiole
     double size_variation = 0.3;  // share
     double angle = 55.0;          // between the twig and the leaf
     double closing = 0.0;         // share of the angle by which the uppermost leaves close in on the tip

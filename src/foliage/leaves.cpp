@@ -31,8 +31,8 @@ constexpr double kHostReach = 2.0;        // of the spacing of foliage_twigs.h: 
 constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
 constexpr double kLeastInside = 0.3;                       // of the leaves: those beside the twigs' ends
-constexpr double kFull = 1.15;   // of the index: above one place, since there is less at a crown's rim
-constexpr double kUneven = 1.6;  // of the usual leaves above one place: what a scan may have seen there
+constexpr double kFull = 1.15;  // of the index: above one place, since there is less at a crown's rim
+constexpr double kUneven = kMostDensity;  // where a scan saw more
 // A whole wood that was taken for one tree would have tens of millions; few of them become leaves.
 constexpr double kMostSprays = 1e6;
 
@@ -290,9 +290,10 @@ Spots bear_all(const LeafPlacer& placer, double share, double crowding) {
 // one part of a crown does not move all leaves.
 Spots bear_enough(const LeafPlacer& placer, double share) {
     constexpr double kStep = 1.25;
+    constexpr double kSpare = 2.0;  // of what is wanted: where they stand too close some go again
     Spots spots = bear_all(placer, share, 1.0);
     const LeafBudget budget = measure_leaves(placer, all_of(spots));
-    const double wanted = share * index_of(placer) * budget.ground;
+    const double wanted = kSpare * share * index_of(placer) * budget.ground;
     double crowding = 1.0;
     while (crowding * budget.blades < wanted && crowding * kStep < kMostCrowding)
         crowding *= kStep;

@@ -10,9 +10,9 @@ namespace treerec {
 
 namespace {
 
-// Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
-// many times what the rules allow, since beyond that fewer and larger ones stand.
-constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
+// Twigs are to have room for leaves that cover the outline so many times, with the holes that their pictures
+// have; but for no more than so many times as many as a large crown has.
+constexpr double kCovers = 34.0, kOfMostLeaves = 2.0, kLargeCrown = 24000.0;
 // The share of a twig's wood that is near enough to a tip to bear leaves, of our species and at least.
 constexpr double kBearing = 0.6, kLeastBearing = 0.25;
 // Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
@@ -34,7 +34,7 @@ double twig_growth(const SketchSpecies& species, double height) {
 }
 
 double shrunk(double height) {
-    return std::sqrt(std::min(height / 6.0, 1.0));
+    return std::sqrt(std::min(height / 12.0, 1.0));
 }
 
 double leaf_length(const LeafRules& rules, double height) {
@@ -43,7 +43,7 @@ double leaf_length(const LeafRules& rules, double height) {
 
 double leaf_margin(const CrownSections& crown, const LeafRules& rules, double height) {
     // Where they would be more than the rules allow, fewer and larger ones stand.
-    const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
+    const double larger = std::sqrt(covering_leaves(crown, rules, height) / kLargeCrown);
     const double margin =
         kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
         rules.petiole;
@@ -69,8 +69,7 @@ double bearing_share(const SketchSpecies& species, double height) {
 
 double wanted_wood(const CrownSections& crown, const SketchSpecies& species, double height) {
     const LeafRules& rules = species.leaves;
-    const double count =
-        std::min(covering_leaves(crown, rules, height), kOfMostLeaves * rules.maximum_leaves);
+    const double count = std::min(covering_leaves(crown, rules, height), kOfMostLeaves * kLargeCrown);
     return count * rules.internode * shrunk(height) / bearing_share(species, height);
 }
 

@@ -46,6 +46,7 @@ std::vector<LeafPlacement> leaves_of(const SketchedTree& made) {
 std::vector<OutlinePart> full_outline(const SketchedTree& made) {
     LeafRules rules = leaf_preset(made.species);
     rules.leaf_area_index = 0.0;
+    rules.maximum_leaves = 24000;
     return outline_parts(made.tree, rules, made.species, 1, {});
 }
 
