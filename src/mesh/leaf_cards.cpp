@@ -19,8 +19,12 @@ constexpr float kHalfThickness = 0.0005f;  // of a leaf with two faces, over its
 constexpr float kMiddle = 0.5f;            // of a card, over its length
 constexpr float kLeafReach = 0.75f;        // of a card from its middle, over its length, at any turn
 constexpr double kKept = 0.42;             // of the leaves of one level, by the next
-constexpr double kFewest = 64.0;           // leaves: fewer are not thinned,
-constexpr double kLastWhole = 4.0;         // up to this level
+// Leaves of one twig hide each other, and less so the fewer there are. So those that stay grow by less than
+// all that went: by share to the power of this, not of -1/2. Measured on what grown crowns of oak and birch
+// cover at 150 m, seen from eight sides.
+constexpr double kGrowth = -0.46;
+constexpr double kFewest = 64.0;    // leaves: fewer are not thinned,
+constexpr double kLastWhole = 4.0;  // up to this level
 
 double leaf_share(double level) {
     return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
@@ -31,6 +35,10 @@ double leaf_share(double level) {
 double kept_share(double level, size_t count) {
     const double few = std::min(1.0, kFewest / static_cast<double>(std::max(count, size_t{1})));
     return std::max(leaf_share(level), few * leaf_share(level - kLastWhole));
+}
+
+float growth_of(double share) {
+    return static_cast<float>(portable::pow(share, kGrowth));
 }
 
 // As leaf.gdshader has it: the crown is shaded as one round volume, from whichever side a leaf is seen.
@@ -127,7 +135,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level) {
     if (!(level > 0.0)) return leaves;
     const double share = kept_share(level, leaves.size());
-    const auto growth = static_cast<float>(1.0 / std::sqrt(share));
+    const auto growth = growth_of(share);
     std::vector<LeafPlacement> kept;
     kept.reserve(static_cast<size_t>(static_cast<double>(leaves.size()) * share) + 2);
     for (size_t i = 0; i < leaves.size(); i++) {
@@ -143,7 +151,7 @@ std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves,
 }
 
 float leaf_growth(double level) {
-    return static_cast<float>(1.0 / std::sqrt(leaf_share(level)));
+    return growth_of(leaf_share(level));
 }
 
 void add_leaves(Bounds& bounds, const std::vector<LeafPlacement>& leaves, float growth) {

@@ -36,9 +36,10 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card,
 // With the cards of sprays.
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const Progress* progress = nullptr);
 
-// Which leaves a level of detail keeps, and how much larger it draws them: fewer, larger, the same area, and
-// about the same middles, so that the crown keeps its outline. Levels may lie between the whole ones; what
-// one keeps, all finer ones do. Where there are no more than 64, all stay as they are up to level 4.
+// Which leaves a level of detail keeps, and how much larger it draws them: fewer, larger, as much of a
+// picture covered, and about the same middles, so that the crown keeps its outline. Levels may lie between
+// the whole ones; what one keeps, all finer ones do. Where there are no more than 64, all stay as they are up
+// to level 4.
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level);
 float leaf_growth(double level);  // how much larger
 // Adds all that the cards of leaves may take, however they turn, each grown by `growth`.
