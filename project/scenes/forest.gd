@@ -54,11 +54,12 @@ func height_at(x: float, z: float) -> float:
 
 # Between trees one sees far: what is there is veiled.
 func _make_air() -> void:
-	var world: WorldEnvironment = $World/Environment
+	var world: WorldEnvironment = $World/Daylight/Environment
 	# The other scenes share it.
 	world.environment = world.environment.duplicate() as Environment
-	world.environment.fog_density = 0.004
-	world.environment.fog_light_color = Color(0.78, 0.83, 0.82)
+	world.environment.fog_depth_begin = 10.0
+	world.environment.fog_depth_end = 420.0
+	world.environment.fog_light_color = Color(0.74, 0.81, 0.84)
 
 
 # Goes to where no tree stands in the way, and looks to where the next ones are a little way off.

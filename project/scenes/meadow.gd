@@ -1,66 +1,34 @@
 @tool
-class_name Meadow
 extends Node3D
 ## Ground to stand a tree on: soil, moss and grass that meet without a seam, blades of grass, and
-## dead leaves below the crown. All of it is made of [member seed] when the node enters the scene.
+## dead leaves below the crown. It grows when the node enters the scene.
 
 const FLOOR: Shader = preload("forest_floor.gdshader")
 const BLADES: Shader = preload("meadow.gdshader")
 const _SIDE: float = 3000.0
-const _BLADES: int = 7  # of a tuft
+const _BLADES: int = 9  # of a tuft
 const _LITTER: Color = Color(0.36, 0.25, 0.14)
 
 ## Metres around the middle within which grass grows.
-@export_range(1.0, 60.0) var reach: float = 14.0:
-	set(value):
-		reach = value
-		_grow()
+@export_range(1.0, 60.0) var reach: float = 14.0
 ## Tufts on a square metre in the middle; there are fewer further out.
-@export_range(0.0, 100.0) var density: float = 60.0:
-	set(value):
-		density = value
-		_grow()
+@export_range(0.0, 100.0) var density: float = 60.0
 ## Metres: how high the highest blades are.
-@export_range(0.02, 1.0) var height: float = 0.26:
-	set(value):
-		height = value
-		_grow()
+@export_range(0.02, 1.0) var height: float = 0.26
 ## Metres around the middle that the crown shades: grass is thin there, and dead leaves lie.
-@export_range(0.0, 30.0) var shade: float = 3.0:
-	set(value):
-		shade = value
-		_grow()
-@export var seed: int = 1:
-	set(value):
-		seed = value
-		_grow()
-
-var _grown: bool = false
+@export_range(0.0, 30.0) var shade: float = 3.0
+## Another number, other ground.
+@export var number: int = 1
 
 
 func _ready() -> void:
-	_grow()
-
-
-func _grow() -> void:
-	if not is_inside_tree():
-		return
-	if not _grown:
-		_grown = true
-		_regrow.call_deferred()
-
-
-func _regrow() -> void:
-	_grown = false
-	for child: Node in get_children(true):
-		child.free()
 	var noise: FastNoiseLite = FastNoiseLite.new()
-	noise.seed = seed
+	noise.seed = number
 	noise.frequency = 0.02
 	noise.fractal_octaves = 4
 	_add_floor(noise)
 	var random: RandomNumberGenerator = RandomNumberGenerator.new()
-	random.seed = seed
+	random.seed = number
 	_add_grass(noise, random)
 	_add_litter(random)
 
@@ -73,6 +41,9 @@ func _add_floor(noise: FastNoiseLite) -> void:
 	var material: ShaderMaterial = ShaderMaterial.new()
 	material.shader = FLOOR
 	material.set_shader_parameter(&"noise", picture)
+	material.set_shader_parameter(&"litter", Color(0.37, 0.35, 0.21))
+	material.set_shader_parameter(&"moss", Color(0.29, 0.33, 0.15))
+	material.set_shader_parameter(&"grass", Color(0.36, 0.41, 0.19))
 	var plane: PlaneMesh = PlaneMesh.new()
 	plane.size = Vector2.ONE * _SIDE
 	plane.material = material
@@ -160,8 +131,8 @@ func _make_tuft(random: RandomNumberGenerator) -> ArrayMesh:
 	for blade: int in _BLADES:
 		var yaw: float = TAU * (blade + random.randf()) / _BLADES
 		var out: Vector3 = Basis(Vector3.UP, yaw) * Vector3.RIGHT
-		var across: Vector3 = out.cross(Vector3.UP) * random.randf_range(0.003, 0.0055)
-		var root: Vector3 = out * random.randf_range(0.0, 0.05)
+		var across: Vector3 = out.cross(Vector3.UP) * random.randf_range(0.004, 0.008)
+		var root: Vector3 = out * random.randf_range(0.0, 0.12)
 		var tall: float = 0.2 * random.randf_range(0.5, 1.0)
 		var lean: float = random.randf_range(0.1, 0.5) * tall
 		var before: int = blade * 5

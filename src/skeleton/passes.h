@@ -114,6 +114,14 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kGapTaper, "gap taper"},
 }};
 
+static_assert(
+    [] {
+        for (size_t i = 0; i < kPasses; i++)
+            if (kPassNames[i].pass != static_cast<Pass>(i)) return false;
+        return true;
+    }(),
+    "each pass has a name");
+
 class PassSet {
   public:
     constexpr PassSet() = default;

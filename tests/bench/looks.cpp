@@ -3,8 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "bench.h"
@@ -12,9 +13,11 @@
 #include "exchange/material_textures.h"
 #include "file_bytes.h"
 #include "geometry/capsule_tree.h"
-#include "mesh/branch_tubes.h"
+#include "geometry/circle_fit.h"
+#include "geometry/quantile.h"
 #include "mesh/leaf_cards.h"
 #include "mesh/levels.h"
+#include "photos/cameras_tell.h"
 #include "pipeline/reconstruct.h"
 #include "textures/textures.h"
 #include "tree/wood_segments.h"
@@ -34,13 +37,6 @@ double degrees_between(const DVec3& a, const DVec3& b) {
     const double lengths = glm::length(a) * glm::length(b);
     if (!(lengths > 0.0)) return 0.0;
     return std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) * 180.0 / std::numbers::pi;
-}
-
-double quantile(std::vector<double> values, double share) {
-    if (values.empty()) return 0.0;
-    const auto at = values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
 }
 
 // --- leaves -----------------------------------------------------------------------------------------------
@@ -88,35 +84,35 @@ double projection_of(const std::vector<LeafPlacement>& leaves, double height) {
     return static_cast<double>(covered.size()) * cell * cell;
 }
 
-struct LeafLooks {
+struct LeafFigures {
     double area = 0.0, over_projection = 0.0;
     size_t cards = 0;
 };
 
-LeafLooks look_at_leaves(const TreeLevel& level, const std::string& look, const LeafRules& rules,
-                         double height) {
-    LeafLooks looks;
-    if (level.foliage.empty() || level.foliage.front().leaves.empty()) return looks;
+LeafFigures measure_leaves(const TreeLevel& level, const std::string& look, const LeafRules& rules,
+                           double height) {
+    LeafFigures found;
+    if (level.foliage.empty() || level.foliage.front().leaves.empty()) return found;
     const LevelLeaves& kind = level.foliage.front();
     const Image picture = uses_blade_picture(rules)
                               ? make_blade_textures(look, kPictureSize, kTextureSeed).albedo
                               : make_leaf_textures(look, kPictureSize, kTextureSeed).albedo;
     const double filled = filled_area(kind.card, picture);
     for (const LeafPlacement& leaf : kind.leaves)
-        looks.area += filled * leaf.size * leaf.size;
-    looks.cards = kind.leaves.size();
-    looks.over_projection = looks.area / projection_of(kind.leaves, height);
-    return looks;
+        found.area += filled * leaf.size * leaf.size;
+    found.cards = kind.leaves.size();
+    found.over_projection = found.area / projection_of(kind.leaves, height);
+    return found;
 }
 
 // --- twigs ------------------------------------------------------------------------------------------------
 
-struct TwigLooks {
+struct TwigFigures {
     double hugging = 0.0, sharp = 0.0;  // shares of tips, and of bends
     std::array<double, 3> tips{};       // metres: radii of the 10th, 50th and 90th of 100
 };
 
-TwigLooks look_at_twigs(const Tree& tree) {
+TwigFigures measure_twigs(const Tree& tree) {
     std::vector<double> tips;
     std::vector<WoodSegment> stout;
     for (const NodeId id : tree.depth_first())
@@ -128,7 +124,7 @@ TwigLooks look_at_twigs(const Tree& tree) {
     size_t hugging = 0, bends = 0, sharp = 0;
     for (const NodeId id : tree.depth_first()) {
         const Node& node = tree.node(id);
-        if (node.child_count == 0 && !near.empty() && node.radius * kStout < usual * kStout * kStout) {
+        if (node.child_count == 0 && !near.empty() && node.radius < kStout * usual) {
             const CapsuleTree::Hit hit = near.nearest_axis(node.position);
             hugging += hit.distance < kHugs * near.segment(hit.segment).radius;
         }
@@ -144,28 +140,26 @@ TwigLooks look_at_twigs(const Tree& tree) {
 
 // --- sections ---------------------------------------------------------------------------------------------
 
-// Of points around an axis, by direction: how much their distance varies from peak to peak, over its mean;
-// less than 0 where they surround too little of it.
-double spread_of(const std::vector<std::pair<double, double>>& polar) {
+// How far a section is from a circle: from peak to peak of its distance from its middle, by direction, over
+// the mean; less than 0 where points surround too little of it.
+double spread_of(const std::vector<DVec2>& section) {
     constexpr size_t kSectors = 24;
     constexpr double kCovered = 0.7;
+    const std::optional<CircleFit> ring = fit_ring(section);
+    if (!ring) return -1.0;
     std::array<std::vector<double>, kSectors> sectors;
-    for (const auto& [angle, distance] : polar) {
-        const double turn = angle / (2.0 * std::numbers::pi) + 0.5;
-        sectors[static_cast<size_t>(turn * kSectors) % kSectors].push_back(distance);
+    for (const DVec2& p : section) {
+        const DVec2 out = p - ring->centre;
+        const double turn = std::atan2(out.y, out.x) / (2.0 * std::numbers::pi) + 0.5;
+        sectors[static_cast<size_t>(turn * kSectors) % kSectors].push_back(glm::length(out));
     }
-    double least = 1e30, most = 0.0, sum = 0.0;
-    size_t seen = 0;
-    for (const std::vector<double>& sector : sectors) {
-        if (sector.empty()) continue;
-        const double middle = quantile(sector, 0.5);
-        least = std::min(least, middle);
-        most = std::max(most, middle);
-        sum += middle;
-        seen++;
-    }
-    if (static_cast<double>(seen) < kCovered * kSectors) return -1.0;
-    return (most - least) * static_cast<double>(seen) / sum;
+    std::vector<double> reach;
+    for (std::vector<double>& sector : sectors)
+        if (!sector.empty()) reach.push_back(quantile(sector, 0.5));
+    if (static_cast<double>(reach.size()) < kCovered * kSectors) return -1.0;
+    const auto [least, most] = std::minmax_element(reach.begin(), reach.end());
+    return (*most - *least) * static_cast<double>(reach.size()) /
+           std::accumulate(reach.begin(), reach.end(), 0.0);
 }
 
 // Where the trunk is at breast height, or half way up where it is lower.
@@ -196,21 +190,20 @@ Section section_of(const Tree& tree, double height) {
     return {tree.node(before).position, tree.node(before).radius};
 }
 
-std::vector<std::pair<double, double>> around(const Section& section, const MeshArray<Vec3>& points,
-                                              double thick) {
+// Those of the points that lie around the section, within its plane.
+std::vector<DVec2> around(const Section& section, const MeshArray<Vec3>& points, double thick) {
     const DVec3 across = glm::normalize(glm::cross(section.axis, DVec3(0.36, 0.48, 0.8)));
     const DVec3 other = glm::cross(section.axis, across);
-    std::vector<std::pair<double, double>> polar;
+    std::vector<DVec2> found;
     for (const Vec3& p : points) {
         const DVec3 d = DVec3(p) - section.middle;
         const DVec2 out(glm::dot(d, across), glm::dot(d, other));
         const double distance = glm::length(out);
-        if (std::abs(glm::dot(d, section.axis)) > thick || distance > 1.8 * section.radius ||
-            distance < 0.3 * section.radius)
-            continue;
-        polar.emplace_back(std::atan2(out.y, out.x), distance);
+        if (std::abs(glm::dot(d, section.axis)) <= thick && distance <= 1.8 * section.radius &&
+            distance >= 0.3 * section.radius)
+            found.push_back(out);
     }
-    return polar;
+    return found;
 }
 
 // The trunk's bark, cut across.
@@ -245,27 +238,27 @@ std::pair<double, double> texels_of(const Mesh& bark, const Section& section) {
         round.push_back(kTextureSize / glm::length((p * v.y - q * u.y) / turn));
         along.push_back(kTextureSize / glm::length((q * u.x - p * v.x) / turn));
     }
+    if (along.empty()) return {0.0, 0.0};
     return {quantile(along, 0.5), quantile(round, 0.5)};
 }
 
 void look_at(const std::string& scan) {
     const Reconstruction made = reconstruct_file(scan, {});
     const std::string look = chosen_leaves("auto", made);
-    LeafRules rules = suited_leaves(look, made);
+    const LeafRules rules = suited_leaves(look, made);
     const double height = made.tree.bounds().size().y;
-    std::vector<LeafKind> kinds = leaf_kinds(made.tree, rules);
-    const LevelBuilder builder(made.tree, kinds, 1, made.foliage);
+    const LevelBuilder builder(made.tree, leaf_kinds(made.tree, rules), 1, made.foliage);
     std::array<size_t, 4> triangles{};
-    LeafLooks leaves;
+    LeafFigures leaves;
     Mesh bark;
     for (int level = 0; level < 4; level++) {
         TreeLevel built = builder.build(level);
         triangles[static_cast<size_t>(level)] = built.triangle_count();
         if (level > 0) continue;
-        leaves = look_at_leaves(built, look, rules, height);
+        leaves = measure_leaves(built, look, rules, height);
         bark = std::move(built.bark);
     }
-    const TwigLooks twigs = look_at_twigs(made.tree);
+    const TwigFigures twigs = measure_twigs(made.tree);
     const Section section = section_of(made.tree, height);
     const double drawn = spread_of(around(section, cut_bark(bark, section), 0.001));
     const MeshArray<Vec3> points(made.cloud.positions.begin(), made.cloud.positions.end());

@@ -1,8 +1,8 @@
 extends SceneTree
 ## Ten views of a tree as a vegetation artist would look at it, which ./dev bench --pictures draws:
 ## always the same, in the same light, so that pictures of two days can be laid side by side.
-## Arguments after '--': a scan or skeleton, a folder for the pictures, a leaf preset ("" for the
-## tree's own), and names of views, or none for all.
+## Arguments after '--': a scan, a folder for the pictures, a leaf preset ("" for the tree's own),
+## and names of views, or none for all.
 
 const Daylight: PackedScene = preload("res://addons/tree_reconstruction/presets/daylight.tscn")
 const Ground := preload("res://scenes/meadow.gd")
@@ -39,13 +39,16 @@ func _draw_all() -> bool:
 	var maker: TreeReconstructor = TreeReconstructor.new()
 	_tree = maker.reconstruct_file(given[0], {})
 	if _tree == null:
-		_tree = maker.import_skeleton(given[0])
-	if _tree == null:
 		printerr(maker.get_error_message())
 		return false
-	if not given[2].is_empty():
+	if given.size() > 2 and not given[2].is_empty():
+		if not TreeReconstruction.get_leaf_preset_names().has(given[2]):
+			printerr("There are no leaves '%s'." % given[2])
+			return false
 		_tree.leaf_preset = given[2]
-	DirAccess.make_dir_recursive_absolute(given[1])
+	if DirAccess.make_dir_recursive_absolute(given[1]) != OK:
+		printerr("The folder %s could not be made." % given[1])
+		return false
 	await _stage()
 	for view: String in VIEWS if given.size() < 4 else given.slice(3):
 		if not VIEWS.has(view):
