@@ -17,7 +17,7 @@ void require_own_pictures(const std::string& folder, const std::string& preset) 
     std::string found;
     bool all = true;
     for (const std::string& name : picture_names()) {
-        const std::string path = folder + "/" + preset + "_" + name + ".png";
+        const std::string path = folder + "/" + preset + "_" + name + picture_ending(name);
         const bool there = std::filesystem::exists(path_of(path), failure);
         all = all && there;
         if (there && found.empty()) found = path;
@@ -33,7 +33,7 @@ void require_own_pictures(const std::string& folder, const std::string& preset) 
 const Command& textures_command() {
     static const Command command{"textures",
                                  "textures -o DIR [options]",
-                                 "Writes the bark and leaf pictures as PNG.",
+                                 "Writes the bark and leaf pictures as JPEG and PNG.",
                                  {{"-o", "DIR", "the folder to write to; it is made"},
                                   {"--preset", "NAME", "only this leaf preset (default: all)"},
                                   {"--size", "N", "pixels along an edge, 16 to 4096 (default 512)"},

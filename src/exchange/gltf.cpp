@@ -177,16 +177,17 @@ int Builder::add_texture(const std::vector<NamedPicture>& all, const std::string
         all.begin(), all.end(), [&](const NamedPicture& picture) { return picture.name == picture_name; });
     if (found == all.end()) throw Error("The model lacks the picture '" + picture_name + "'.");
     // Two kinds of leaves may show one picture.
-    const auto kept = std::find_if(pictures.begin(), pictures.end(),
-                                   [&](const NamedPicture& picture) { return picture.png == found->png; });
+    const auto kept = std::find_if(pictures.begin(), pictures.end(), [&](const NamedPicture& picture) {
+        return picture.bytes == found->bytes;
+    });
     if (kept != pictures.end() && !suffix.empty()) return static_cast<int>(kept - pictures.begin());
     const std::string name = picture_name + suffix;
     pictures.push_back(*found);
     pictures.back().name = name;
     tinygltf::Image image;
     image.name = name;
-    image.mimeType = "image/png";
-    image.bufferView = add_view(found->png, 0);
+    image.mimeType = std::string_view(picture_ending(found->name)) == ".jpg" ? "image/jpeg" : "image/png";
+    image.bufferView = add_view(found->bytes, 0);
     tinygltf::Texture texture;
     texture.name = name;
     texture.source = add_to(model.images, std::move(image));
@@ -308,6 +309,7 @@ void Builder::add_bark_material(const std::vector<NamedPicture>& all) {
     surface.baseColorTexture.index = add_texture(all, "bark_albedo", kWrap);
     material.normalTexture.index = add_texture(all, "bark_normal", kWrap);
     surface.metallicRoughnessTexture.index = add_texture(all, "bark_roughness", kWrap);
+    surface.metallicFactor = 0.0;  // the picture has something else there
     material.occlusionTexture.index = surface.metallicRoughnessTexture.index;
     model.materials.push_back(std::move(material));
 }
@@ -376,8 +378,8 @@ void write_pictures(const std::string& path, const Builder& built, Json& json, c
             "The folder '" + sibling_of(path, folder) +
             "' for the pictures could not be made; check the rights, or whether a file has its name.");
     for (size_t i = 0; i < built.pictures.size(); i++) {
-        const std::string name = built.pictures[i].name + ".png";
-        write_file(sibling_of(path, folder + "/" + name), built.pictures[i].png, progress);
+        const std::string name = built.pictures[i].name + picture_ending(built.pictures[i].name);
+        write_file(sibling_of(path, folder + "/" + name), built.pictures[i].bytes, progress);
         json["images"][i] = {{"name", built.pictures[i].name},
                              {"uri", percent_encoded(folder) + "/" + percent_encoded(name)}};
     }

@@ -147,19 +147,19 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
     if (any) {
         out += "mtllib " + stem + ".mtl\n";
         const std::vector<NamedPicture> pictures =
-            model.pictures.empty() ? pictures_of_leaves(make_pictures(model.preset), false) : model.pictures;
+            model.pictures.empty() ? pictures_of_model(make_pictures(model.preset), false) : model.pictures;
         for (const NamedPicture& picture : pictures) {
             const bool used = picture.name.starts_with("bark") ? bark : leaves;
             // MTL takes a roughness from a grey picture, and knows no occlusion.
             if (!used || picture.name == "bark_roughness") continue;
-            const std::string name = stem + "_" + picture.name + ".png";
-            write_file(sibling_of(path, name), picture.png, progress);
+            const std::string name = stem + "_" + picture.name + picture_ending(picture.name);
+            write_file(sibling_of(path, name), picture.bytes, progress);
         }
     }
     if (bark) {
-        materials += "newmtl bark\nKd 1 1 1\nKs 0 0 0\nPr 1\nmap_Kd " + stem + "_bark_albedo.png\nmap_Pr " +
-                     stem + "_bark_roughness_grey.png\nnorm " + stem + "_bark_normal.png\nmap_Bump " + stem +
-                     "_bark_normal.png\n";
+        materials += "newmtl bark\nKd 1 1 1\nKs 0 0 0\nPr 1\nmap_Kd " + stem + "_bark_albedo.jpg\nmap_Pr " +
+                     stem + "_bark_roughness_grey.png\nnorm " + stem + "_bark_normal.jpg\nmap_Bump " + stem +
+                     "_bark_normal.jpg\n";
         append_mesh(out, *model.bark, "bark", 1, progress);
     }
     uint64_t next = bark ? model.bark->positions.size() + 1 : 1;
@@ -177,7 +177,8 @@ void write_obj(const std::string& path, const ModelFile& model, const Progress* 
         std::string suffix = "_";
         suffix += std::to_string(i + 2);
         for (const NamedPicture& picture : model.other_materials.at(i).pictures)
-            write_file(sibling_of(path, stem + "_" + picture.name + suffix + ".png"), picture.png, progress);
+            write_file(sibling_of(path, stem + "_" + picture.name + suffix + ".png"), picture.bytes,
+                       progress);
         add_leaves(*model.other_leaves[i], suffix);
     }
     if (!materials.empty()) write_file(sibling_of(path, stem + ".mtl"), materials, progress);

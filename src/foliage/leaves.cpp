@@ -8,6 +8,7 @@
 #include "error.h"
 #include "foliage/branch_axis.h"
 #include "foliage/foliage_twigs.h"
+#include "foliage/leaf_area_grid.h"
 #include "foliage/leaf_placer.h"
 #include "foliage/near_wood.h"
 #include "foliage/snags.h"
@@ -310,8 +311,11 @@ std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, 
 std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules, uint64_t seed,
                                         const Foliage& foliage) {
     check_leaf_rules(rules);
-    if (!follows(rules, foliage)) return place_kind(tree, rules, -1, seed, foliage);
-    return place_kind(leafy_tree(tree, rules, foliage), rules, -1, seed, foliage);
+    std::vector<LeafPlacement> leaves =
+        follows(rules, foliage) ? place_kind(leafy_tree(tree, rules, foliage), rules, -1, seed, foliage)
+                                : place_kind(tree, rules, -1, seed, foliage);
+    light_leaves({{&leaves, card_area(rules)}});
+    return leaves;
 }
 
 std::vector<std::vector<LeafPlacement>> place_foliage(const Tree& tree, const std::vector<LeafKind>& kinds,
@@ -328,6 +332,10 @@ std::vector<std::vector<LeafPlacement>> place_foliage(const Tree& tree, const st
         leaves.push_back(
             place_kind(follows(rules, foliage) ? leafy : tree, rules, static_cast<int>(kind), seed, foliage));
     }
+    std::vector<LeafGroup> groups;
+    for (size_t kind = 0; kind < kinds.size(); kind++)
+        groups.push_back({&leaves[kind], card_area(kinds[kind].rules)});
+    light_leaves(groups);
     return leaves;
 }
 

@@ -13,8 +13,8 @@
 namespace treerec {
 
 // One card. x,y,z: the card's axes (unit, right-handed): x across, y from the base to the tip, z out of
-// its upper face. position: where the petiole leaves the bark. outward: unit, from the crown's centre (for
-// rounded normals).
+// its upper face. position: where the petiole leaves the bark. outward: unit, out of the leaves around it and
+// of the crown (for rounded normals; leaf_area_grid.h).
 struct LeafPlacement {
     Vec3 position;
     Vec3 x, y, z;
@@ -25,15 +25,15 @@ struct LeafPlacement {
     float hue = 0.0f;        // 0..1 (INSTANCE_CUSTOM.z)
     float stiffness = 0.0f;  // 0..1 of its branch
     float sway = 0.0f;       // 0..1, the bark's COLOR.r at its place
-    float occlusion = 1.0f;  // 1 open to the sky .. 0 deep in the crown
+    float occlusion = 1.0f;  // of light from all sides: 1 at a crown's edge .. 0.35 deep in it
     float terminal = 0.0f;   // 1 at a twig's end, else 0
     float hold = 1.0f;       // 0..1: it falls when that share of the leaves has fallen
 };
 
 // Leaves on the last `twig_length` of every branch, and one at every tip. An empty tree or a lone root has
 // none. seed: the same seed gives the same leaves. Each leaf's random numbers belong to its place
-// (hash_seed), so pruning one branch leaves the leaves of others alone, and a leaf that a smaller density or
-// share of standing leaves keeps is the same one.
+// (hash_seed), so pruning one branch leaves the leaves of others where they are, though in other light, and a
+// leaf that a smaller density or share of standing leaves keeps is the same one.
 // foliage, unless it is empty or the rules do not follow it: leaves fill its cells instead, each on the
 // branch nearest to it and as many as the scan's density there asks for, none where there is no wood within
 // about a metre; twigs end in a leaf only where the scan saw leaves. Between, with follow_density f, a share

@@ -1,10 +1,12 @@
 #include "mesh/branch_tubes.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "error.h"
 #include "geometry/parallel.h"
 #include "geometry/portable_math.h"
+#include "geometry/random.h"
 #include "mesh/parallel_transport.h"
 #include "mesh/tube_builder.h"
 
@@ -25,6 +27,12 @@ constexpr double kHeightSlack = 1e-3;       // how far rings may leave out any b
 constexpr double kTaperSlack = 0.06;        // how far they may leave out a change of the radius, over it,
 constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
+constexpr int kCollarLevel = 1;             // the coarsest that has collars, on stouter branches:
+constexpr double kLightCollars = 2.0;       // so many times as thick there
+constexpr int kUnevenLevel = 1;             // the coarsest that shows that wood is not round,
+constexpr double kUnevenRadius = 0.03;      // metres: and the thinnest that does
+constexpr int kRootedSides = 16;            // coarser trunks have no roots
+constexpr uint32_t kSidesPerRoot = 5;       // at level 0
 constexpr size_t kFewBranches = 256;        // are built sooner than threads start
 
 // How much rings leave out at level 0 of branches of such a radius in metres: the eye rests on the stout
@@ -36,6 +44,20 @@ struct BendLimit {
 };
 constexpr BendLimit kBendLimits[] = {
     {0.08, 0.13, 0.1}, {0.04, 0.2, 0.2}, {0.02, 0.35, 0.3}, {0.01, 0.7, 0.3}, {0.0, 1.2, 0.3}};
+
+// Times kCollarRadius and kWebRadius.
+double collar_share(int level) {
+    return level == 0 ? 1.0 : kLightCollars;
+}
+
+// Tells trees apart, and is the same at all levels and wherever a tree stands in a game.
+uint64_t foot_seed(const Tree& tree) {
+    uint64_t seed = 0;
+    const DVec3 origin = tree.frame().origin;
+    for (const double value : {origin.x, origin.y, origin.z, tree.node(tree.root()).radius})
+        seed = hash_seed(seed, std::bit_cast<uint64_t>(value + 0.0));
+    return seed;
+}
 
 }  // namespace
 
@@ -63,7 +85,8 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
     tube.exit = std::min(attach.radius / std::max(sine, 0.3), 0.7 * length);
     // One that first goes its parent's way parts from it without a collar.
     const double follows = 1.0 - glm::smoothstep(0.3, 0.8, sine);
-    if (options.level == 0 && own >= kCollarRadius && own < 0.98 * hidden) {
+    if (options.level <= kCollarLevel && own >= kCollarRadius * collar_share(options.level) &&
+        own < 0.98 * hidden) {
         // Rings at the bark, and two more where the collar has run out.
         size_t hint = 0;
         for (double along : {0.85 * tube.exit, tube.exit + 0.8 * own, tube.exit + 2.2 * own}) {
@@ -136,7 +159,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
         const AxisPoint& from = points[last];
         size_t best = last + 1;
         const double gap = std::max(closeness * from.radius, 2.0 * least);
-        const bool collar_begins = tube.exit > 0.0 && level == 0;
+        const bool collar_begins = tube.exit > 0.0 && level <= kCollarLevel;
         for (size_t next = last + 1; next < points.size(); next++) {
             const AxisPoint& to = points[next];
             const bool near = points[best].along - from.along < gap;
@@ -145,10 +168,9 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
             if (!near && (far || bent || changed || misses(last, next))) break;
             best = next;
-            const bool flares = level == 0 && to.along <= tube.flare.reach;
-            const bool collar =
-                collar_begins && to.radius >= kCollarRadius && to.along < tube.exit + 2.5 * to.radius;
-            if ((collar || flares) && to.along - from.along >= gap) break;
+            const bool collar = collar_begins && to.radius >= kCollarRadius * collar_share(options.level) &&
+                                to.along < tube.exit + 2.5 * to.radius;
+            if (collar && to.along - from.along >= gap) break;
         }
         // A last ring right above another only makes slivers.
         if (best + 1 == points.size() && last > 0 &&
@@ -185,33 +207,47 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
             return;
         add_collar(branch, points, tube);
     }
-    if (branch.attach == kNoNode && begins && options.level <= 1 && tree.node(tree.root()).is_trunk())
-        tube.flare = plan_flare(points, sides_of(tree.node(tree.root()).radius, options));
     pick_rings(branch, points, tube, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
-    if (branch.attach != kNoNode && begins && options.level == 0) {
+    if (branch.attach != kNoNode && begins && options.level <= kCollarLevel) {
         const double own = tree.node(list.nodes[branch.begin]).radius;
-        if (own >= kCollarRadius)
+        if (own >= kCollarRadius * collar_share(options.level))
             limit_slant(out.data() + tube.first_ring, tube.rings,
                         std::max(tube.exit + 3.0 * own, 2.0 * tube.exit));
     }
     double thickest = 0.0;
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
-    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk())
-        tube.ground = cut_level(out.data() + tube.first_ring, tube.rings);
-    if (!tube.ground) tube.flare = {};
-    if (tube.ground) stretch_base(tube.flare, out.data() + tube.first_ring, tube.rings);
     tube.sides = sides_of(thickest, options);
+    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk()) stand(points, tube, out);
     tube.base_radius = points.front().radius;
+    if (options.level <= kUnevenLevel && thickest >= kUnevenRadius) {
+        const double round = branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest;
+        tube.section =
+            uneven_section(hash_seed(foot_seed(tree), static_cast<uint64_t>(list.nodes[branch.begin])),
+                           thickest, round, out.back().along);
+    }
     // From as far as coarser levels are seen, a thick end still shows.
     tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
     tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
-    tube.base = branch.attach == kNoNode && !tube.ground && begins;
+    tube.base = branch.attach == kNoNode && tube.foot_rows == 0 && begins;
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
-    parallel_transport(out.data() + tube.first_ring, tube.rings);
+    parallel_transport(out.data() + tube.first_ring, tube.rings, tube.flare.turn);
+}
+
+// A standing trunk has a foot, and goes on below the ground.
+void Builder::stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const {
+    if (!stands(out.data() + tube.first_ring, tube.rings)) return;
+    // Palms and poles have no roots to show.
+    const bool roots = list.branches.size() > 1;
+    tube.flare = plan_flare(points, foot_depth(crown.height), foot_seed(tree), roots);
+    if (options.level > 1 || options.maximum_sides < kRootedSides) tube.flare = without_roots(tube.flare);
+    tube.sides = std::max(tube.sides, (kSidesPerRoot * tube.flare.count) >> options.level);
+    tube.foot_rows = lay_foot_rings(tube.flare, points, options.level, out, tube.first_ring);
+    tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
+    stretch_base(tube.flare, out.data() + tube.first_ring, tube.rings);
 }
 
 // Moves a tube's start into its parent's tube as it is drawn: rings are fewer than nodes, and cut corners.
@@ -247,7 +283,11 @@ void Builder::seat(size_t index) {
     tubes[index].host_ring = static_cast<uint32_t>(lower - begin);
     const double hidden = 0.92 * polygon_flat(parent.sides) * radius;
     Ring& start = rings[index / kBranchesPerChunk][tubes[index].first_ring];
-    start.centre = lower->centre + chord * t;
+    const DVec3 moved = lower->centre + chord * t - start.centre;
+    // What lies within the parent goes along, or the tube would fold there.
+    Ring* own = &start;
+    for (size_t i = 0; i + 1 < tubes[index].rings && own[i].along < reach; i++)
+        own[i].centre += moved * (1.0 - own[i].along / reach);
     tubes[index].parent_direction = normalized_or(chord, DVec3(0.0, 1.0, 0.0));
     start.radius = std::max(std::min(start.radius, hidden), least);
 }
@@ -256,14 +296,17 @@ void Builder::seat(size_t index) {
 void Builder::join(size_t index) {
     const Branch& branch = list.branches[index];
     Tube& tube = tubes[index];
-    if (options.level > 0 || tube.rings < 2 || branch.attach == kNoNode || covered[index] > 0.0) return;
-    if (tree.node(list.nodes[branch.begin]).radius < kWebRadius) return;
+    if (options.level > kCollarLevel || tube.rings < 2 || branch.attach == kNoNode || covered[index] > 0.0)
+        return;
+    if (tree.node(list.nodes[branch.begin]).radius < kWebRadius * collar_share(options.level)) return;
     const size_t host = static_cast<size_t>(list.branch_of[branch.attach]);
-    if (tubes[host].rings < 2 || static_cast<double>(node_along[branch.attach]) < covered[host]) return;
+    const double along = node_along[branch.attach];
+    if (tubes[host].rings < 2 || along < covered[host]) return;
+    // On a foot there is no prism to lie on.
+    if (along < tubes[host].flare.reach + tree.node(list.nodes[branch.begin]).radius) return;
     std::vector<CollarVertex>& out = collars[index / kBranchesPerChunk];
     tube.first_collar = out.size();
-    tube.collar = make_collar({rings_of(index), tube.rings, tube.sides},
-                              {rings_of(host), tubes[host].rings, tubes[host].sides}, tube.host_ring, out);
+    tube.collar = make_collar(shape_of(index), shape_of(host), tube.host_ring, options.level == 0, out);
 }
 
 void Builder::for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const {

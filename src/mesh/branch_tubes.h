@@ -29,11 +29,12 @@ struct TubeOptions {
 // Vertices carry normals, tangents, UVs (u around in repeats, v along in metres), wind channels.
 // At level 0 stout branches have collars: their first vertices lie on their parent's bark, with its normal,
 // light and UVs, and a curved web leads up from there; u goes on beyond a round there, below 0 or above it.
-// Thinner branches start within their parents. A trunk that stands and does not widen at its base is given a
-// flare there. A trunk that stands is cut level and goes on below the root, by its radius or 0.25 m,
-// whichever is less (and further where a thick one leans), so that slopes hide the cut; a branch without a
-// trunk is cut across. An empty tree or a lone root gives an empty mesh. Deterministic. Throws Error for a
-// tree that reaches beyond 1000 km or has too much bark, or Cancelled.
+// Thinner branches start within their parents. A trunk that stands goes on below the
+// root (foot_depth()) and is cut level there, so that slopes hide the cut. It is given a flare where it does
+// not widen by itself, and, unless it has no branch, runs out into four to seven surface roots, which the
+// tree's place in its scan tells apart from another's. A branch without a trunk is cut across. An empty tree
+// or a lone root gives an empty mesh. Deterministic. Throws Error for a tree that reaches beyond 1000 km or
+// has too much bark, or Cancelled.
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options = {},
                         const Progress* progress = nullptr);
 

@@ -103,11 +103,20 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     if (angle < 0.0) angle += 2.0 * kPi;
     place.corner = std::min(angle / step, static_cast<double>(tube.sides));
     const double within = angle - step * std::floor(place.corner);
-    place.surface = place.radius * polygon_flat(tube.sides) / portable::cos(within - 0.5 * step);
+    const auto corner = [&](double index) {
+        const double turned = index * step;
+        return glm::mix(low.radius * tube.section->factor(low.along, turned),
+                        high.radius * tube.section->factor(high.along, turned), at.t);
+    };
+    // The straight side between two corners.
+    const double one = corner(std::floor(place.corner)), other = corner(std::floor(place.corner) + 1.0);
+    place.surface = one * other * portable::sin(step) /
+                    (one * portable::sin(within) + other * portable::sin(step - within));
     place.height = out - place.surface;
     const double slope = ring_slope(tube.rings, tube.count, at.span) * (1.0 - at.t) +
                          ring_slope(tube.rings, tube.count, at.span + 1) * at.t;
-    place.normal = glm::normalize(place.radial - axis * slope);
+    place.normal =
+        glm::normalize(place.radial - axis * slope - place.side * tube.section->turn(place.along, angle));
     return place;
 }
 
@@ -126,8 +135,8 @@ struct Generator {
 
 class CollarMaker {
   public:
-    CollarMaker(const TubeShape& branch, const TubeShape& host, size_t host_span)
-        : branch_(branch), host_(host), span_(host_span), circle_(polygon(branch.sides)) {}
+    CollarMaker(const TubeShape& branch, const TubeShape& host, size_t host_span, bool fine)
+        : branch_(branch), host_(host), span_(host_span), fine_(fine), circle_(polygon(branch.sides)) {}
 
     Collar make(std::vector<CollarVertex>& out) {
         for (uint32_t j = 0; j < branch_.sides; j++)
@@ -201,6 +210,7 @@ class CollarMaker {
     const TubeShape branch_;
     const TubeShape host_;
     size_t span_;
+    const bool fine_;
     double middle_ = 0.0;  // of the host's corners: where the branch's axis comes out
     const DVec2* const circle_;
     std::array<Generator, kMostSides> lines_;
@@ -378,9 +388,9 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
     uint32_t slant = 0;
     for (size_t i = 0; i < collar.next_ring; i++)
         slant += branch_.rings[i].along > first + gap && branch_.rings[i].along < until - gap;
-    slant = std::min(slant, 3u);
+    slant = std::min(slant, fine_ ? 3u : 1u);
     const uint32_t sides = branch_.sides, stride = sides + 1;
-    const bool thick = own > kThickRadius;
+    const bool thick = fine_ && own > kThickRadius;
     const size_t room = out.size() + size_t{stride} * ((thick ? 5 : 4) + slant);
     if (out.capacity() < room) out.reserve(std::max(room, 2 * out.capacity()));
     // The next row; its last column is the first one, a round further.
@@ -430,10 +440,10 @@ Collar CollarMaker::write(std::vector<CollarVertex>& out) const {
 
 }  // namespace
 
-Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span,
+Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span, bool fine,
                    std::vector<CollarVertex>& out) {
     if (branch.count < 2 || host.count < 2) return {};
-    return CollarMaker(branch, host, host_span).make(out);
+    return CollarMaker(branch, host, host_span, fine).make(out);
 }
 
 }  // namespace treerec

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/tube_rings.h"
+#include "mesh/uneven_section.h"
 
 namespace treerec {
 
@@ -14,6 +15,7 @@ struct TubeShape {
     const Ring* rings = nullptr;
     size_t count = 0;  // two or more
     uint32_t sides = 0;
+    const UnevenSection* section = nullptr;
 };
 
 // One vertex. Metres, tree space.
@@ -38,10 +40,11 @@ struct Collar {
     uint32_t next_ring = 0;  // the branch's first ring after it
 };
 
-// Appends the rows to `out`. host_span: about which of the host's rings the branch starts. No collar where
+// Appends the rows to `out`. host_span: about which of the host's rings the branch starts;
+// fine: more rows on thick wood. No collar where
 // the branch does not come out of the host's bark all round, or has not the room for it. A corner's base lies
 // within the host, by about a hundredth of its radius.
-Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span,
+Collar make_collar(const TubeShape& branch, const TubeShape& host, size_t host_span, bool fine,
                    std::vector<CollarVertex>& out);
 
 }  // namespace treerec

@@ -5,21 +5,22 @@
 #include <utility>
 
 #include "error.h"
+#include "foliage/crown.h"
 #include "foliage/foliage_twigs.h"
 #include "geometry/portable_math.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/leaf_cards.h"
+#include "mesh/root_flare.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kWidth = 0.0004;     // over the tree's height, at level 0
-constexpr double kCoarsest = 16.0;    // a trunk of a few triangles
-constexpr double kStep = 1.0 / 64;    // between two levels that a budget tells apart
-constexpr double kWidestBark = 1.5;   // of a node's radius
-constexpr double kBase = 1.5;         // likewise, where the trunk stands
-constexpr double kDeepestBase = 0.3;  // metres below the root
+constexpr double kWidth = 0.0004;    // over the tree's height, at level 0
+constexpr double kCoarsest = 16.0;   // a trunk of a few triangles
+constexpr double kStep = 1.0 / 64;   // between two levels that a budget tells apart
+constexpr double kWidestBark = 1.5;  // of a node's radius
+constexpr double kBase = 4.0;        // likewise, where the trunk stands on its roots
 
 int whole(double level) {
     return static_cast<int>(level + 0.5);
@@ -61,7 +62,9 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
         box_.min -= wider;
         box_.max += wider;
         const Node& root = wood_.node(wood_.root());
-        box_.add(root.position - DVec3(0.0, kDeepestBase + root.radius, 0.0), kBase * root.radius);
+        const double depth = foot_depth(measure_crown(wood_).height);
+        box_.add(root.position, kBase * root.radius);
+        box_.add(root.position - DVec3(0.0, depth, 0.0), kBase * root.radius);
     }
     if (grown_)
         for (const GrownBark::Vertex& vertex : grown_->vertices)

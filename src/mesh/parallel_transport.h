@@ -8,7 +8,7 @@
 namespace treerec {
 
 // Parallel transport (rotation-minimising frames): each ring's x is the last one's by the smallest turn that
-// takes its normal to this one. rings: from the root.
-void parallel_transport(Ring* rings, size_t count);
+// takes its normal to this one. rings: from the root; turn: radians that the first one's is turned by.
+void parallel_transport(Ring* rings, size_t count, double turn = 0.0);
 
 }  // namespace treerec

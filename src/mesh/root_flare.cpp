@@ -4,67 +4,315 @@
 #include <cmath>
 
 #include "geometry/portable_math.h"
+#include "geometry/random.h"
+#include "mesh/polygon.h"
 
 namespace treerec {
 
 namespace {
 
-constexpr double kWider = 1.32;        // the base's radius over that of the trunk above it, as trunks stand
-constexpr double kReach = 1.6;         // radii up the trunk, but
-constexpr double kMostReach = 0.45;    // metres at most
-constexpr double kLookUp = 3.0;        // radii: where the trunk above is measured
-constexpr double kLobe = 0.45;         // of the flare: how much further out it is at a root than between two
-constexpr double kRoughly = 0.05;      // less than that is left out
-constexpr uint32_t kSidesPerLobe = 4;  // fewer show no root
-constexpr double kBaseHeight = 3.0;    // radii: how far up a trunk widens into its roots
+// A trunk's foot is a prior, as tree forms are described (Mattheck 1998, "Design in Nature": root flare and
+// buttresses): it begins half a diameter to one diameter up, and four to seven roots run out and under.
+constexpr double kWider = 1.32;       // the base's radius over that of the trunk above it, as trunks stand
+constexpr double kReach = 2.6;        // radii up the trunk, but
+constexpr double kMostReach = 1.4;    // metres at most
+constexpr double kMostOfTrunk = 0.3;  // of its length
+constexpr double kLookUp = 3.0;       // radii: where the trunk above is measured
+constexpr double kThinStem = 0.015;   // metres of radius: thinner stems show no roots,
+constexpr double kStoutStem = 0.08;   // and from here on all of them
+constexpr double kSteady =
+    0.4;                        // of a root's back: what leaves the trunk steadily, and does not run out flat
+constexpr double kUnder = 0.9;  // how much further a root goes out below the ground, over its out
+constexpr double kSlender = 0.4;     // how much less of the angle a root takes that stands out by a radius
+constexpr double kBare = 1.2;        // radii below the ground that a slope may lay bare
+constexpr double kDrawnIn = 0.5;     // of its width, at the cut
+constexpr double kBaseHeight = 3.0;  // radii: how far up a trunk widens into its roots
+constexpr double kHollow = 0.45;     // of the light: what is lost between two roots
+constexpr double kDepthShare = 0.1;  // of the tree's height
+constexpr double kLeastDepth = 0.6;  // metres,
+constexpr double kMostDepth = 2.0;
+constexpr double kMostOfHeight = 0.5;
+constexpr size_t kOutline = 96;   // corners that it is measured by,
+constexpr size_t kSamples = 360;  // and between roots on the ground
+
+// Heights of rings over the reach, from the top, and depths below the ground over the radius.
+constexpr double kFineHeights[] = {0.8, 0.6, 0.44, 0.3, 0.18, 0.08, 0.0};
+constexpr double kFineDepths[] = {0.1, 0.35, 1.2};
+constexpr double kCoarseHeights[] = {0.55, 0.25, 0.0};
+constexpr double kCoarseDepths[] = {0.25, 1.2};
+
+double wrapped(double angle) {
+    return angle - 2.0 * kPi * std::round(angle / (2.0 * kPi));
+}
+
+// 0 at a flare's top, 1 on the ground, more below it.
+double descent(double reach, double along) {
+    return std::max(1.0 - along / reach, 0.0);
+}
+
+// How far a root stands out of the trunk there, over what it does on the ground: its back leaves the trunk
+// slowly and lies nearly flat where it goes under.
+double root_out(double down) {
+    if (down <= 1.0) return down * down * (kSteady + (1.0 - kSteady) * down * down * down);
+    const double slope = 2.0 * kSteady + 5.0 * (1.0 - kSteady);
+    return 1.0 + kUnder * (1.0 - portable::exp(-slope / kUnder * (down - 1.0)));
+}
+
+double bent_angle(const SurfaceRoot& root, double along) {
+    const double out = root_out(descent(root.reach, along));
+    return root.angle + root.bend * out;
+}
+
+double widened(const RootFlare& flare, double along) {
+    const double down = std::min(descent(flare.reach, along), 1.0);
+    return 1.0 + flare.amount * down * down;
+}
+
+// The foot's radius at an angle, over the ring's.
+double foot_factor(const RootFlare& flare, double along, double angle) {
+    double factor = widened(flare, along);
+    for (uint32_t i = 0; i < flare.count; i++) {
+        const SurfaceRoot& root = flare.roots[i];
+        const double down = descent(root.reach, along);
+        if (down <= 0.0) continue;
+        const double out = root.out * root_out(down);
+        // A root is about as wide far out as near: it takes less of the angle there.
+        const double width = root.width * (1.0 + 1.2 * std::max(1.0 - down, 0.0)) / (1.0 + kSlender * out);
+        const double off = wrapped(angle - bent_angle(root, along)) / width;
+        factor += out * portable::exp(-0.5 * off * off);
+    }
+    // Deeper than slopes lay bare it draws in, so that as little as can be looks out of a steeper one.
+    const double bare = std::min(kBare * flare.radius, 0.5 * flare.depth);
+    const double deep = glm::smoothstep(bare, flare.depth, -along);
+    return factor * (1.0 - kDrawnIn * deep);
+}
+
+void grow_roots(RootFlare& flare, double radius, uint64_t seed) {
+    const double stout = glm::smoothstep(kThinStem, kStoutStem, radius);
+    Random random(seed, 31);
+    if (stout <= 0.0) return;
+    const uint32_t count = 4 + random.below(kMostRoots - 3);
+    flare.count = count;
+    flare.turn = random.uniform(0.0, 2.0 * kPi);
+    const double spacing = 2.0 * kPi / count;
+    for (uint32_t i = 0; i < count; i++) {
+        SurfaceRoot& root = flare.roots[i];
+        root.angle = i > 0 ? spacing * (i + random.uniform(-0.28, 0.28)) : 0.0;
+        root.bend = random.uniform(-0.22, 0.22);
+        root.out = stout * random.uniform(0.4, 1.25);
+        root.width = spacing * random.uniform(0.17, 0.25);
+        root.reach = flare.reach * random.uniform(0.6, 1.0);
+    }
+}
+
+// Between which angles columns lie on the ground: the backs of roots have a column each, and the outline
+// between two is shared by its length.
+struct Columns {
+    std::vector<uint32_t> root;   // by column: the root before it,
+    std::vector<double> between;  // and where from there to the next one: 0 .. 1
+};
+
+Columns spread_columns(const RootFlare& flare, uint32_t sides) {
+    // By root: the outline's length to the next one.
+    std::vector<std::vector<double>> lengths(flare.count);
+    std::vector<double> start(flare.count + 1, 0.0);
+    for (uint32_t i = 0; i < flare.count; i++) {
+        const double from = bent_angle(flare.roots[i], 0.0);
+        const double whole = wrapped(bent_angle(flare.roots[(i + 1) % flare.count], 0.0) - from);
+        const double gap = whole > 0.0 ? whole : whole + 2.0 * kPi;
+        std::vector<double>& sum = lengths[i];
+        sum.push_back(0.0);
+        DVec2 last(0.0);
+        for (size_t k = 0; k <= kSamples / flare.count; k++) {
+            const double angle =
+                from + gap * static_cast<double>(k) / static_cast<double>(kSamples / flare.count);
+            const double radius = foot_factor(flare, 0.0, angle);
+            const DVec2 at(radius * portable::cos(angle), radius * portable::sin(angle));
+            if (k > 0) sum.push_back(sum.back() + glm::distance(at, last));
+            last = at;
+        }
+        start[i + 1] = start[i] + sum.back();
+    }
+    Columns columns;
+    columns.root.resize(sides);
+    columns.between.resize(sides);
+    const double per_side = start[flare.count] / sides;
+    for (uint32_t i = 0; i < flare.count; i++) {
+        const auto column_of = [&](uint32_t root) {
+            return static_cast<uint32_t>(std::round(start[root] / per_side));
+        };
+        const uint32_t begin = column_of(i), end = i + 1 == flare.count ? sides : column_of(i + 1);
+        const std::vector<double>& sum = lengths[i];
+        for (uint32_t j = begin; j < end; j++) {
+            const double wanted = sum.back() * (j - begin) / (end - begin);
+            const size_t over =
+                static_cast<size_t>(std::upper_bound(sum.begin(), sum.end() - 1, wanted) - sum.begin());
+            const double step = std::max(sum[over] - sum[over - 1], 1e-30);
+            columns.root[j] = i;
+            columns.between[j] =
+                (static_cast<double>(over - 1) + std::clamp((wanted - sum[over - 1]) / step, 0.0, 1.0)) /
+                static_cast<double>(sum.size() - 1);
+        }
+    }
+    return columns;
+}
+
+// Where a column is at that height: even above the flare, and gathered at the roots on the ground.
+double column_angle(const RootFlare& flare, const Columns& columns, uint32_t column, uint32_t sides,
+                    double along) {
+    const double even = 2.0 * kPi * column / sides;
+    if (flare.count == 0) return even;
+    const uint32_t i = columns.root[column], next = (i + 1) % flare.count;
+    const double from = bent_angle(flare.roots[i], along);
+    double gap = wrapped(bent_angle(flare.roots[next], along) - from);
+    if (gap <= 0.0) gap += 2.0 * kPi;
+    const double gathered = from + gap * columns.between[column];
+    const double share = glm::smoothstep(0.0, 0.7, descent(flare.reach, along));
+    return even + share * wrapped(gathered - even);
+}
 
 }  // namespace
 
-RootFlare plan_flare(std::vector<AxisPoint>& points, uint32_t sides) {
+double foot_depth(double height) {
+    return std::min(std::clamp(kDepthShare * height, kLeastDepth, kMostDepth), kMostOfHeight * height);
+}
+
+RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_t seed, bool roots) {
     RootFlare flare;
-    if (points.size() < 2) return flare;
-    const double length = points.back().along;
     size_t hint = 0;
     const double base = points.front().radius;
     const double up = kLookUp * base;
-    if (up > 0.5 * length) return flare;
-    const double above = axis_at(points, up, hint).radius;
+    const double length = points.back().along;
+    const double above = axis_at(points, std::min(up, 0.5 * length), hint).radius;
     // What it is at the base already, and must stay.
-    const double lacks = kWider * above / base - 1.0;
-    if (lacks < kRoughly) return flare;
-    flare.amount = std::min(lacks, kWider - 1.0);
-    flare.reach = std::min(kReach * base, kMostReach);
-    flare.lobes = static_cast<int>(std::min(sides / kSidesPerLobe, 6u));
-    if (flare.lobes < 3) flare.lobes = 0;
-    for (double share : {0.25, 0.55, 1.0}) {
-        const double along = share * flare.reach;
-        const AxisPoint point = axis_at(points, along, hint);
-        const double gap = 0.1 * flare.reach;
-        if (along - points[hint].along < gap || points[hint + 1].along - along < gap) continue;
-        points.insert(points.begin() + static_cast<std::ptrdiff_t>(hint) + 1, point);
-    }
+    flare.amount = std::clamp(kWider * above / base - 1.0, 0.0, kWider - 1.0);
+    flare.reach = std::min({kReach * above, kMostReach, kMostOfTrunk * length});
+    flare.depth = depth;
+    flare.radius = base;
+    if (roots && up <= 0.5 * length) grow_roots(flare, above, seed);
     return flare;
 }
 
-FlareAt flare_at(const RootFlare& flare, const Ring& ring, double angle) {
-    const double left = std::clamp(1.0 - ring.along / flare.reach, 0.0, 1.0);
-    const double lobe = 1.0 + kLobe * portable::cos(flare.lobes * angle);
-    const double wide = flare.amount * left * left * (flare.lobes > 0 ? lobe : 1.0);
-    FlareAt at;
-    at.radius = ring.radius * (1.0 + wide);
-    at.slope = -2.0 * ring.radius * flare.amount * left / flare.reach * (flare.lobes > 0 ? lobe : 1.0);
-    at.turn = flare.lobes > 0 ? -flare.amount * left * left * kLobe * flare.lobes *
-                                    portable::sin(flare.lobes * angle) / (1.0 + wide)
-                              : 0.0;
-    return at;
+RootFlare without_roots(RootFlare flare) {
+    for (uint32_t i = 0; i < flare.count; i++) {
+        const SurfaceRoot& root = flare.roots[i];
+        // The mean of a bell over a round.
+        flare.amount += root.out * root.width / (1.0 + kSlender * root.out) / std::sqrt(2.0 * kPi);
+    }
+    flare.count = 0;
+    return flare;
+}
+
+size_t lay_foot_rings(const RootFlare& flare, const std::vector<AxisPoint>& points, int level,
+                      std::vector<Ring>& rings, size_t first) {
+    size_t above = first;
+    while (above + 1 < rings.size() && rings[above].along < 1.05 * flare.reach)
+        above++;
+    size_t hint = 0;
+    const AxisPoint top = axis_at(points, flare.reach, hint);
+    std::vector<Ring> foot;
+    const auto add = [&](double along, const DVec3& centre, double radius, double way) {
+        // Level on the ground, so that rows of wide roots do not cross where the trunk leans.
+        const double level = glm::smoothstep(0.0, 1.0, descent(flare.reach, along));
+        const DVec3 up(0.0, 1.0, 0.0);
+        foot.push_back(
+            {centre, normalized_or(glm::mix(top.direction, up, level), up), radius, along, DVec3(0.0), way});
+    };
+    const auto add_below = [&](double depth) {
+        add(-depth, points[0].position - DVec3(0.0, depth, 0.0), points[0].radius, 0.0);
+    };
+    const auto add_above = [&](double share) {
+        const AxisPoint at = axis_at(points, share * flare.reach, hint);
+        add(at.along, at.position, at.radius, at.way);
+    };
+    add_below(flare.depth);
+    const auto lay = [&](const auto& heights, const auto& depths) {
+        for (size_t i = std::size(depths); i-- > 0;)
+            if (const double depth = depths[i] * points[0].radius; depth < 0.9 * flare.depth)
+                add_below(depth);
+        for (size_t i = std::size(heights); i-- > 0;)
+            add_above(heights[i]);
+    };
+    hint = 0;
+    if (level == 0)
+        lay(kFineHeights, kFineDepths);
+    else if (level == 1)
+        lay(kCoarseHeights, kCoarseDepths);
+    else
+        add_above(0.0);
+    add_above(1.0);
+    rings.erase(rings.begin() + static_cast<std::ptrdiff_t>(first),
+                rings.begin() + static_cast<std::ptrdiff_t>(above));
+    rings.insert(rings.begin() + static_cast<std::ptrdiff_t>(first), foot.begin(), foot.end());
+    return foot.size() - 1;
+}
+
+std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides) {
+    const Columns columns = flare.count > 0 ? spread_columns(flare, sides) : Columns();
+    const size_t stride = sides + 1;
+    // The ring above the foot is among them for what is measured between rows.
+    std::vector<FootVertex> out((rows + 1) * stride);
+    for (size_t row = 0; row <= rows; row++) {
+        const Ring& ring = rings[row];
+        const DVec3 y = ring.y();
+        const double mean = widened(flare, ring.along);
+        for (uint32_t j = 0; j < sides; j++) {
+            const double angle = column_angle(flare, columns, j, sides, ring.along);
+            const double factor = foot_factor(flare, ring.along, angle);
+            const DVec3 radial = ring.x * portable::cos(angle) + y * portable::sin(angle);
+            FootVertex& vertex = out[row * stride + j];
+            vertex.position = ring.centre + radial * (ring.radius * factor);
+            vertex.normal = radial;
+            vertex.light = factor - mean;  // how far it stands out
+        }
+        double farthest = 0.0;
+        for (uint32_t j = 0; j < sides; j++)
+            farthest = std::max(farthest, out[row * stride + j].light);
+        for (uint32_t j = 0; j < sides; j++) {
+            double& light = out[row * stride + j].light;
+            light = 1.0 - kHollow * std::max(0.0, 1.0 - light / std::max(farthest, 1e-9)) * farthest /
+                              (0.6 + farthest);
+        }
+        out[row * stride + sides] = out[row * stride];
+    }
+    for (size_t j = 0; j < stride; j++) {
+        out[rows * stride + j].v = rings[rows].along;
+        for (size_t row = rows; row-- > 0;)
+            out[row * stride + j].v =
+                out[(row + 1) * stride + j].v -
+                glm::distance(out[row * stride + j].position, out[(row + 1) * stride + j].position);
+    }
+    for (size_t row = 0; row <= rows; row++) {
+        for (uint32_t j = 0; j < sides; j++) {
+            FootVertex& vertex = out[row * stride + j];
+            const DVec3 along = out[std::min(row + 1, rows) * stride + j].position -
+                                out[(row > 0 ? row - 1 : 0) * stride + j].position;
+            const DVec3 around = out[row * stride + (j + 1) % sides].position -
+                                 out[row * stride + (j + sides - 1) % sides].position;
+            vertex.normal = normalized_or(glm::cross(around, along), vertex.normal);
+            vertex.tangent = normalized_or(around - vertex.normal * glm::dot(around, vertex.normal), around);
+        }
+        FootVertex& seam = out[row * stride + sides];
+        seam.normal = out[row * stride].normal;
+        seam.tangent = out[row * stride].tangent;
+    }
+    return out;
 }
 
 void stretch_base(const RootFlare& flare, Ring* rings, size_t count) {
     for (size_t i = 0; i < count && rings[i].along < flare.reach; i++) {
-        const double left = 1.0 - rings[i].along / flare.reach;
-        rings[i].stretch = 1.0 + flare.amount * left * left;
+        double around = 0.0;
+        DVec2 last(0.0);
+        for (size_t k = 0; k <= kOutline; k++) {
+            const double angle = 2.0 * kPi * static_cast<double>(k) / kOutline;
+            const double factor = foot_factor(flare, rings[i].along, angle);
+            const DVec2 at(factor * portable::cos(angle), factor * portable::sin(angle));
+            if (k > 0) around += glm::distance(at, last);
+            last = at;
+        }
+        rings[i].stretch = around / (2.0 * kPi);
     }
-    limit_slant(rings, count, std::max(kBaseHeight * rings[0].radius, flare.reach));
+    limit_slant(rings, count, std::max(kBaseHeight * flare.radius, flare.reach));
 }
 
 }  // namespace treerec

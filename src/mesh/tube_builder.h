@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "foliage/branch_axis.h"
@@ -15,6 +14,7 @@
 #include "mesh/root_flare.h"
 #include "mesh/tube_rings.h"
 #include "mesh/twig_shares.h"
+#include "mesh/uneven_section.h"
 #include "tree/branches.h"
 
 namespace treerec::tubes {
@@ -35,19 +35,20 @@ struct Tube {
     uint32_t rings = 0;  // 0: not drawn
     uint32_t sides = 0;
     bool round_tip = false;
-    bool cut = false;              // the tip is a cut face
-    bool base = false;             // closed where it begins
-    bool point = false;            // the last ring is only the apex
-    bool plug = false;             // closed where it begins by flat faces on its own corners
-    double exit = 0.0;             // metres along, where it leaves its parent's bark; 0 for the trunk
-    double parent_radius = 0.0;    // metres, 0 for the trunk
-    DVec3 parent_direction{0.0};   // unit, of the parent where the tube starts
-    std::optional<double> ground;  // y of a standing trunk's level cut
-    RootFlare flare;               // of that trunk
-    Collar collar;                 // on its parent's bark
-    size_t first_collar = 0;       // its vertices in the chunk
-    double base_radius = 0.0;      // metres, of the wood where it starts; coarser levels only
-    uint32_t host_ring = 0;        // of the parent, below where this one starts
+    bool cut = false;             // the tip is a cut face
+    bool base = false;            // closed where it begins
+    bool point = false;           // the last ring is only the apex
+    bool plug = false;            // closed where it begins by flat faces on its own corners
+    double exit = 0.0;            // metres along, where it leaves its parent's bark; 0 for the trunk
+    double parent_radius = 0.0;   // metres, 0 for the trunk
+    DVec3 parent_direction{0.0};  // unit, of the parent where the tube starts
+    RootFlare flare;              // of a standing trunk,
+    size_t foot_rows = 0;         // and its first rings, which show it
+    UnevenSection section;
+    Collar collar;             // on its parent's bark
+    size_t first_collar = 0;   // its vertices in the chunk
+    double base_radius = 0.0;  // metres, of the wood where it starts; coarser levels only
+    uint32_t host_ring = 0;    // of the parent, below where this one starts
     size_t first_vertex = 0;
     size_t first_index = 0;
 
@@ -105,6 +106,10 @@ struct Builder {
     bool cut_covered(size_t index, std::vector<AxisPoint>& points) const;
     void add_grown(Mesh& mesh) const;
 
+    TubeShape shape_of(size_t branch) const {
+        const Tube& tube = tubes[branch];
+        return {rings_of(branch), tube.rings, tube.sides, &tube.section};
+    }
     const Ring* rings_of(size_t branch) const {
         return rings[branch / kBranchesPerChunk].data() + tubes[branch].first_ring;
     }
@@ -131,6 +136,7 @@ struct Builder {
     void join(size_t index);
     // Coarser levels cover as much as level 0: see tube_widths.cpp.
     void widen(size_t index);
+    void stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const;
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                     std::vector<Ring>& out) const;

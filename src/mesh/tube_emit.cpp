@@ -73,6 +73,7 @@ class Emitter {
         return 0.9 * (1.0 - glm::smoothstep(-0.2, 1.0, past));
     }
 
+    void put_foot();
     void put_ring(size_t i);
 
     const Builder& b_;
@@ -128,8 +129,31 @@ void Emitter::put_collar() {
 }
 
 void Emitter::put_rings() {
-    for (size_t i = tube_.collar.next_ring; i < tube_.rings - (tube_.point ? 1 : 0); i++)
+    put_foot();
+    for (size_t i = std::max<size_t>(tube_.collar.next_ring, tube_.foot_rows);
+         i < tube_.rings - (tube_.point ? 1 : 0); i++)
         put_ring(i);
+}
+
+void Emitter::put_foot() {
+    if (tube_.foot_rows == 0) return;
+    const std::vector<FootVertex> foot = shape_foot(tube_.flare, run_, tube_.foot_rows, sides_);
+    const double per_side = 1.0 / sides_;
+    for (size_t i = 0; i < tube_.foot_rows; i++) {
+        const Ring& ring = run_[i];
+        const double shown = ring.radius * ring.stretch;
+        const double light = light_at(ring.centre, ring.along);
+        // The cut's alone are at the branch's very start.
+        const double along = i == 0 ? 0.0 : std::max(ring.along, 1e-4 * length());
+        code_ = b_.wind.codes(index_, ring.way);
+        for (uint32_t j = 0; j < stride_; j++) {
+            const FootVertex& vertex = foot[i * stride_ + j];
+            if (!b_.wind.is_free(index_, ring.way))
+                code_ = b_.wind.codes(index_, ring.way, vertex.position - ring.centre);
+            put(vertex.position, vertex.normal, vertex.tangent, per_side * j, b_.repeats_of(index_, shown),
+                vertex.v, shown, color_at(ring.centre, along, light * vertex.light, phase_));
+        }
+    }
 }
 
 void Emitter::put_ring(size_t i) {
@@ -138,7 +162,6 @@ void Emitter::put_ring(size_t i) {
     const double slope = ring_slope(run_, tube_.rings, i);
     const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
     const Vec4 color = color_at(ring.centre, ring.along, light_at(ring.centre, ring.along), phase_);
-    const bool flares = tube_.flare.amount > 0.0 && ring.along < tube_.flare.reach;
     const double shown = ring.radius * ring.stretch;
     const double ring_repeats = b_.repeats_of(index_, shown);
     const double blend = i == 0 ? 0.0 : blend_at(ring);
@@ -149,23 +172,11 @@ void Emitter::put_ring(size_t i) {
         const DVec3 radial = ring.x * circle_[j].x + y * circle_[j].y;
         DVec3 tangent = (y * circle_[j].x - ring.x * circle_[j].y);
         DVec3 outward = (radial - ring.normal * slope) * scale;
-        double radius = ring.radius;
-        if (flares) {
-            const FlareAt flare = flare_at(tube_.flare, ring, 2.0 * kPi * (j % sides_) / sides_);
-            radius = flare.radius;
-            outward = normalized_or(
-                radial - ring.normal * flare.slope - (y * circle_[j].x - ring.x * circle_[j].y) * flare.turn,
-                radial);
-            tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
-        }
-        DVec3 position = ring.centre + radial * radius;
-        double v = ring.along;
-        if (i == 0 && tube_.ground) {
-            // Along the trunk to the level cut.
-            const double down = (position.y - *tube_.ground) / ring.normal.y;
-            position -= ring.normal * down;
-            v -= down;
-        }
+        const DVec3 around = tangent;
+        const double angle = 2.0 * kPi * (j % sides_) / sides_;
+        const DVec3 position = ring.centre + radial * (ring.radius * tube_.section.factor(ring.along, angle));
+        outward = normalized_or(outward - around * (tube_.section.turn(ring.along, angle) * scale), outward);
+        tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
         Vec4 corner_color = color;
         if (blend > 0.0) {
             const DVec3 from = position - run_[0].centre;
@@ -179,7 +190,7 @@ void Emitter::put_ring(size_t i) {
             tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
         }
         if (!free) code_ = b_.wind.codes(index_, ring.way, position - ring.centre);
-        put(position, outward, tangent, per_side * j, ring_repeats, v, shown, corner_color);
+        put(position, outward, tangent, per_side * j, ring_repeats, ring.along, shown, corner_color);
     }
 }
 

@@ -7,8 +7,6 @@ namespace treerec {
 
 namespace {
 
-constexpr double kBaseRadii = 1.0;  // how far the trunk goes on below the ground, over its radius,
-constexpr double kMostBase = 0.25;  // and in metres at most
 constexpr double kUpright = 0.5;    // the least y of a standing trunk's direction
 constexpr double kMostSlant = 0.3;  // of the bark's picture at its seam: metres around per metre along
 
@@ -33,20 +31,13 @@ void limit_tilt(Ring* rings, size_t count) {
     }
 }
 
-std::optional<double> cut_level(Ring* rings, size_t count) {
-    if (count < 2) return std::nullopt;
-    Ring& cut = rings[0];
-    const Ring& next = rings[1];
+bool stands(const Ring* rings, size_t count) {
+    if (count < 2) return false;
     // Which way it stands shows a radius above the ground; right there, scans have spurs and leftovers.
     const Ring* above = rings + 1;
-    while (above + 1 < rings + count && above->along < cut.radius)
+    while (above + 1 < rings + count && above->along < rings[0].radius)
         above++;
-    if (above->normal.y < kUpright || next.centre.y <= cut.centre.y) return std::nullopt;
-    cut.normal = above->normal;
-    const double base = cut.centre.y - std::min(kBaseRadii * cut.radius, kMostBase);
-    // A leaning trunk's next ring may reach below that: the cut stays under it.
-    const double dip = next.radius * std::sqrt(std::max(0.0, 1.0 - next.normal.y * next.normal.y));
-    return std::min(base, next.centre.y - dip - 0.1 * cut.radius);
+    return above->normal.y >= kUpright && rings[1].centre.y > rings[0].centre.y;
 }
 
 void limit_slant(Ring* rings, size_t count, double height) {

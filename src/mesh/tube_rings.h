@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "geometry/vec.h"
 
@@ -23,10 +22,8 @@ struct Ring {
 // Two rings must not cross on the inner side of a bend: turns both towards their mean until they clear.
 void limit_tilt(Ring* rings, size_t count);
 
-// A standing trunk is cut level, and goes on a little below the ground, so that slopes hide the cut: turns
-// the first ring's normal to where that goes on along, and gives the cut's y. Nothing for what lies or has
-// fewer than two rings. rings: from the root.
-std::optional<double> cut_level(Ring* rings, size_t count);
+// Whether a trunk stands, rather than lies on the ground. rings: from the root.
+bool stands(const Ring* rings, size_t count);
 
 // Where the wood widens or thins within a short way, the bark's picture would wind about it if it kept its
 // scale, since more of it goes around at one end. Up to `height` metres along it stretches instead, so that

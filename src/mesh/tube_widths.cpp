@@ -44,11 +44,15 @@ void Builder::widen(size_t index) {
     if (free) run[0].radius = std::max(run[0].radius, tube.base_radius);
     // Else its start stays hidden; and a flare has its own width.
     size_t first = free || (tube.parent_radius <= 0.0 && !goes_on) ? 0 : 1;
-    while (tube.flare.amount > 0.0 && first < tube.rings && run[first].along <= tube.flare.reach)
+    while (first < tube.foot_rows)
         first++;
     double kept = 0.0, open = 0.0;
-    for (size_t i = 0; i < tube.rings; i++)
-        (i < first ? kept : open) += mean_width(tube.sides) * share_of(run, tube.rings, i);
+    size_t ground = 0;  // what lies below it covers nothing
+    while (ground < tube.foot_rows && run[ground].along < 0.0)
+        ground++;
+    for (size_t i = ground; i < tube.rings; i++)
+        (i < first ? kept : open) +=
+            mean_width(tube.sides) * share_of(run + ground, tube.rings - ground, i - ground);
     if (!(open > 0.0)) return;
     const double wider =
         std::clamp((area - kept) / open, kNarrowest, free ? kWidestFree * widened[index] : kWidest);

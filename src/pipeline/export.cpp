@@ -22,11 +22,26 @@ namespace treerec {
 
 namespace {
 
+// Metres: the radius of a trunk whose bark is young, between where the shader's blending begins and ends.
+constexpr double kYoungTrunk = 0.055;
+
+// Other programs' materials know no age: all of a tree has the bark of its trunk.
+bool has_young_bark(const Tree& tree, const ExportOptions& options) {
+    if (tree.empty() || !options.bark.empty()) return false;
+    const double dbh = measure(tree).dbh;
+    return (dbh > 0.0 ? 0.5 * dbh : tree.node(tree.root()).radius) < kYoungTrunk;
+}
+
+void refine_repeats(Mesh& bark) {
+    for (Vec2& uv : bark.uvs)
+        uv /= static_cast<float>(kYoungScale);
+}
+
 enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
 
 // Where a coarser level takes over, in heights of the tree: as in nodes/tree_levels.gd.
 constexpr double kSwitch[kMostLevels - 1] = {2.5, 6.0, 14.0, 30.0};
-constexpr double kShade = 0.7;              // of stored colours: leaf.gdshader's, deep in the crown
+constexpr double kShade = 0.7;              // of stored colours, deep in the crown
 constexpr size_t kMostFoldedCards = 20000;  // more leaves than this are flat cards
 
 Format format_of(const std::string& path) {
@@ -49,7 +64,7 @@ bool is_own_model(const std::string& path, std::string_view mark) {
     return begin.find(mark) != std::string::npos;
 }
 
-// The course over its peak, and what leaf.gdshader makes of shade.
+// The course over its peak, and shade: other programs know nothing of the light in a crown.
 LeafTint leaf_tint(const LeafColours& colours) {
     return [colours](const Vec3& place, float openness) {
         const double shade = linear_of(kShade + (1.0 - kShade) * static_cast<double>(openness));
@@ -68,7 +83,7 @@ void require_own_companions(const std::string& path, Format format) {
         return;
     std::vector<std::string> names{stem + (format == Format::kObj ? ".mtl" : ".bin")};
     for (const std::string& picture : picture_names())
-        names.push_back(stem + "_" + picture + ".png");
+        names.push_back(stem + "_" + picture + picture_ending(picture));
     // Of further kinds of leaves, however many the tree has.
     for (size_t kind = 2; kind <= kMostLeafRules + 1; kind++)
         for (const char* picture : {"_leaf_albedo_", "_leaf_normal_"})
@@ -96,7 +111,11 @@ void require_writable_format(const std::string& path) {
 }
 
 TreeExporter::TreeExporter(const Tree& tree, const ExportOptions& options, const Progress* progress)
-    : tree_(tree), options_(options), progress_(progress), kinds_(leaf_kinds(tree, options.leaves)) {
+    : tree_(tree),
+      options_(options),
+      progress_(progress),
+      kinds_(leaf_kinds(tree, options.leaves)),
+      young_(has_young_bark(tree, options)) {
     // "none" has leaf rules, but no look.
     if (options_.levels < 1 || options_.levels > kMostLevels)
         throw Error("A model has 1 to " + std::to_string(kMostLevels) + " levels of detail, not " +
@@ -111,6 +130,7 @@ const Mesh& TreeExporter::bark() {
         tubes.whole_repeats = true;
         tubes.grown = options_.grown;
         bark_ = build_branch_tubes(leafy_tree(tree_, kinds_, options_.foliage), tubes, progress_);
+        if (young_) refine_repeats(*bark_);
     }
     return *bark_;
 }
@@ -160,6 +180,7 @@ const std::vector<TreeExporter::Coarser>& TreeExporter::coarser() {
         GrownBark lighter;
         tubes.grown = bark_of_level(options_.grown, level, lighter);
         Coarser made{build_branch_tubes(leafy, tubes, progress_), {}};
+        if (young_) refine_repeats(made.bark);
         for (size_t kind = 0; kind < kinds_.size(); kind++) {
             // The finest level may have flat cards already.
             const Mesh card = build_leaf_card(kinds_[kind].rules, std::max(level, card_level(kind)));
@@ -195,7 +216,7 @@ std::string TreeExporter::look_of(size_t kind) const {
 
 std::vector<NamedPicture> TreeExporter::pictures_for(size_t kind) const {
     std::vector<NamedPicture> pictures =
-        pictures_of_leaves(make_pictures(look_of(kind)), uses_blade_picture(kinds_[kind].rules));
+        pictures_of_model(make_pictures(look_of(kind)), uses_blade_picture(kinds_[kind].rules), young_);
     // The bark is the tree's own.
     if (kind > 0)
         std::erase_if(pictures, [](const NamedPicture& picture) { return picture.name.starts_with("bark"); });

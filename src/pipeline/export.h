@@ -71,6 +71,7 @@ class TreeExporter {
     ExportOptions options_;
     const Progress* progress_;
     const std::vector<LeafKind> kinds_;
+    const bool young_;  // the bark
     std::optional<Mesh> bark_;
     std::optional<std::vector<std::vector<LeafPlacement>>> placed_;
     std::optional<std::vector<Mesh>> leaf_cards_;

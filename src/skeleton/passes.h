@@ -24,6 +24,8 @@ enum class Pass : uint8_t {
     kStraightStems,
     kStraightBases,
     kAttach,
+    kForks,
+    kTightBends,
     // cylinders/
     kSecondFit,
     kRings,
@@ -56,6 +58,7 @@ enum class Pass : uint8_t {
     kSharpTurns,
     kShortShoots,
     kFewPoints,
+    kHugging,
     // simplify/
     kGapTaper,
     kCount
@@ -81,6 +84,8 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kStraightStems, "straight stems"},
     {Pass::kStraightBases, "straight bases"},
     {Pass::kAttach, "attach moved"},
+    {Pass::kForks, "forks laid"},
+    {Pass::kTightBends, "tight bends"},
     {Pass::kSecondFit, "second fit"},
     {Pass::kRings, "rings"},
     {Pass::kArcs, "arcs"},
@@ -111,6 +116,7 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kSharpTurns, "sharp turns"},
     {Pass::kShortShoots, "short shoots"},
     {Pass::kFewPoints, "few points"},
+    {Pass::kHugging, "hugging shoots"},
     {Pass::kGapTaper, "gap taper"},
 }};
 

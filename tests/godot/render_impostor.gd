@@ -8,8 +8,8 @@ const PlainMaterials := preload("res://addons/tree_reconstruction/baking/plain_m
 const SIZE: Vector2i = Vector2i(192, 192)
 # The mean colors of the pictures that an impostor keeps, and of its tree in the sun, whichever
 # renderer it is.
-const KEPT: Color = Color(0.356, 0.412, 0.187)
-const IN_THE_SUN: Color = Color(0.356, 0.410, 0.190)
+const KEPT: Color = Color(0.388, 0.449, 0.229)
+const IN_THE_SUN: Color = Color(0.407, 0.467, 0.239)
 
 
 # From as far as impostors are seen, with a lens that fills the picture.
@@ -169,8 +169,10 @@ func test_a_busy_pool_does_not_stop_a_bake() -> void:
 	var picture: Image = Image.create_empty(64, 64, false, Image.FORMAT_RGBA8)
 	picture.compress(Image.COMPRESS_S3TC)
 	var ended: Array[bool] = [false]
+	# The compressor itself may take up one of these, and goes on when that ends.
+	var released: int = Time.get_ticks_msec() + 20_000
 	var occupy: Callable = func() -> void:
-		while not ended[0]:
+		while not ended[0] and Time.get_ticks_msec() < released:
 			OS.delay_msec(5)
 	var tasks: PackedInt64Array = []
 	for i: int in OS.get_processor_count() - 1:

@@ -37,8 +37,8 @@ func test_a_lump_that_is_dragged_is_drawn() -> void:
 	var at: Vector2 = _session.picker.project_place(_camera, Vector3(0.04, 0.8, 0.0))
 	_button(at, true)
 	var held: Image = await _picture()
-	var around: Rect2i = Rect2i(Vector2i(at) - Vector2i(25, 25), Vector2i(50, 50))
-	check(_difference(before, held, around) > 0.03, "The lump is not seen.")
+	var around: Rect2i = Rect2i(Vector2i(at) - Vector2i(15, 15), Vector2i(30, 30))
+	check(_difference(before, held, around) > 0.05, "The lump is not seen.")
 	var folder: String = OS.get_environment("PAINT_PICTURES")
 	if not folder.is_empty():
 		before.save_png(folder.path_join("before.png"))

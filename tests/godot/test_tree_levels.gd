@@ -58,6 +58,7 @@ func test_levels_take_turns_with_and_without_threads() -> void:
 		var finest: GeometryInstance3D = _part(instance, "Leaves")
 		check_equal(finest.visibility_range_begin, 0.0, "where the finest begins")
 		check(finest.visibility_range_end >= switches[0], "The finest ends too early.")
+		check_equal(finest.cast_shadow, instance.cast_shadow, "the finest level's own shadow")
 		var ends: float = finest.visibility_range_end
 		for level: int in range(1, 4):
 			var count: int = instance.get_level_triangle_count(level)
@@ -87,6 +88,10 @@ func test_levels_take_turns_with_and_without_threads() -> void:
 			GeometryInstance3D.SHADOW_CASTING_SETTING_SHADOWS_ONLY,
 			"what casts the shadow"
 		)
+		# Nearer, the finest casts its own; where it gives way, both are there.
+		check(shadow.visibility_range_begin > 0.0, "Two levels cast shadows near by.")
+		var both: float = finest.visibility_range_end - shadow.visibility_range_begin
+		check(both >= 2.0 * Levels.margin(switches[0]) - 0.01, "No shadow falls at the switch.")
 		check_equal(shadow.visibility_range_end, 0.0, "where the shadow ends")
 		instance.free()
 	TreeInstance3D.threaded = true

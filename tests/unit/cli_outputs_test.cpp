@@ -51,10 +51,10 @@ TEST_F(CliOutputs, NothingOfTheUsersIsWrittenOver) {
         {"mine.txt", "edit s/truth.txt -c 'scale node=0 factor=1.1' -o out/a.txt --log mine.txt"},
         {"out/scan.ply", "synth -o out --seed 1 --height 3 --points 500"},
         {"out/truth.txt", "synth -o out --seed 1 --height 3 --points 500"},
-        {"out/maple_bark_albedo.png", "textures -o out --preset maple --size 16"},
+        {"out/maple_bark_albedo.jpg", "textures -o out --preset maple --size 16"},
         {"out/a.bin", "reconstruct s/scan.ply -o out/a.gltf"},
         {"out/a.mtl", "reconstruct s/scan.ply -o out/a.obj"},
-        {"out/a_bark_albedo.png", "edit s/truth.txt -c 'scale node=0 factor=1.1' -o out/a.obj"},
+        {"out/a_bark_albedo.jpg", "edit s/truth.txt -c 'scale node=0 factor=1.1' -o out/a.obj"},
     };
     for (const auto& [name, command] : cases) {
         put(name, mine);

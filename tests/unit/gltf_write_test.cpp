@@ -186,7 +186,7 @@ TEST_F(GltfWrite, WhatIsReadIsWhatWasWritten) {
             const auto picture = std::find_if(model_.pictures.begin(), model_.pictures.end(),
                                               [&](const NamedPicture& p) { return p.name == image.name; });
             ASSERT_NE(picture, model_.pictures.end());
-            EXPECT_EQ(std::string(image.image.begin(), image.image.end()), picture->png)
+            EXPECT_EQ(std::string(image.image.begin(), image.image.end()), picture->bytes)
                 << name << " " << image.name;
         }
     }
@@ -212,12 +212,14 @@ TEST_F(GltfWrite, PicturesMayLieInAFolderBesideIt) {
         expect_mesh(model, model.nodes.at(1).mesh, leaves_, 1);
         ASSERT_EQ(model.images.size(), 5u);
         for (const tinygltf::Image& image : model.images) {
-            EXPECT_EQ(image.uri, "an%20oak_textures/" + image.name + ".png");
+            const std::string file_name = image.name + picture_ending(image.name);
+            EXPECT_EQ(image.uri, "an%20oak_textures/" + file_name);
             EXPECT_EQ(image.bufferView, -1);
-            std::ifstream file(folder / (image.name + ".png"), std::ios::binary);
+            std::ifstream file(folder / file_name, std::ios::binary);
             const std::string bytes{std::istreambuf_iterator<char>(file), {}};
             EXPECT_EQ(std::string(image.image.begin(), image.image.end()), bytes);
-            EXPECT_FALSE(bytes.empty());
+            EXPECT_EQ(bytes.starts_with("\xFF\xD8\xFF"), file_name.ends_with(".jpg")) << file_name;
+            EXPECT_EQ(bytes.starts_with("\x89PNG"), file_name.ends_with(".png")) << file_name;
         }
         size_t files = 0;
         for (const auto& entry : std::filesystem::directory_iterator(folder))

@@ -33,8 +33,9 @@ Tree grown(Habit habit, uint64_t seed = 1) {
     return grow_tree(options);
 }
 
-// What covers a picture: the area of all bark as seen from the side, on average, between two heights.
-double bark_area(const Mesh& mesh, double from = -1e9, double to = 1e9) {
+// What covers a picture: the area of all bark as seen from the side, on average, between two heights: from
+// the ground on, which hides the rest.
+double bark_area(const Mesh& mesh, double from = 0.0, double to = 1e9) {
     double sum = 0.0;
     for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
         const DVec3 a(mesh.positions[mesh.indices[i]]);

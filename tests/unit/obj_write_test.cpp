@@ -100,7 +100,7 @@ TEST_F(ObjWrite, WhatIsReadIsWhatWasWritten) {
     EXPECT_EQ(parts[1].material, "leaves");
     expect_same(parts[0].mesh, bark_);
     expect_same(parts[1].mesh, leaves_);
-    for (const char* beside : {"tree.mtl", "tree_bark_albedo.png", "tree_leaf_albedo.png"})
+    for (const char* beside : {"tree.mtl", "tree_bark_albedo.jpg", "tree_leaf_albedo.png"})
         EXPECT_TRUE(std::filesystem::exists(path(beside))) << beside;
 }
 
@@ -114,11 +114,16 @@ TEST_F(ObjWrite, TheMaterialsHaveTheirPictures) {
         std::istringstream words(line);
         words >> key >> value;
         keys.insert(key);
-        if (!value.ends_with(".png")) continue;
+        if (!value.ends_with(".png") && !value.ends_with(".jpg")) continue;
         std::ifstream picture(path(value.c_str()), std::ios::binary);
         std::string head(26, '\0');
         picture.read(head.data(), 26);
         ASSERT_TRUE(picture) << value;
+        EXPECT_EQ(head.starts_with("\xFF\xD8\xFF"), value.ends_with(".jpg")) << value;
+        if (value.ends_with(".jpg")) {
+            EXPECT_NE(key, "map_Pr");
+            continue;
+        }
         EXPECT_EQ(head[25] == 0, key == "map_Pr") << value;  // PNG's colour type: grey
     }
     for (const char* wanted : {"map_Kd", "map_Pr", "map_d", "norm"})

@@ -299,9 +299,9 @@ TEST(PhotoBark, IsWhatTheTreesFileCarries) {
     TreeExporter(tree, options).write(path);
     const FileBytes written = read_file(path);
     for (const Image* picture : {&bark.albedo, &bark.normal, &bark.roughness}) {
-        const std::vector<uint8_t> png = encode_png(*picture);
+        const std::vector<uint8_t> jpeg = encode_jpeg(*picture);
         EXPECT_NE(
-            written.view().find(std::string_view(reinterpret_cast<const char*>(png.data()), png.size())),
+            written.view().find(std::string_view(reinterpret_cast<const char*>(jpeg.data()), jpeg.size())),
             std::string_view::npos);
     }
     std::filesystem::remove(path_of(path));

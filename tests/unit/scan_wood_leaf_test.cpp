@@ -304,7 +304,7 @@ TEST(WoodLeafScans, LeafyTreesKeepAWayToTheirTopAndAPalmHasOneStem) {
         if (!palm) {
             EXPECT_GT(followed, top - 0.1F) << file;
         } else {
-            EXPECT_GT(followed, top - (blurred ? 2.0F : 6.0F));
+            EXPECT_GT(followed, top - (blurred ? 2.0F : 4.0F));
             EXPECT_LT(followed, top - (blurred ? 0.5F : 3.0F));
             EXPECT_GT(told.reach, blurred ? 1.2 : 2.0);
             EXPECT_LT(told.reach, blurred ? 3.0 : 5.0);

@@ -7,6 +7,7 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -22,6 +23,7 @@
 #include "exchange/ready_pictures.h"
 #include "foliage/leaves.h"
 #include "geometry/parallel.h"
+#include "textures/linear_light.h"
 
 namespace treerec {
 namespace {
@@ -36,17 +38,75 @@ double mean_step(const Image& image, int x0, int x1, bool columns) {
 }
 
 TEST(Textures, BarkIsSeamlessBothWays) {
-    for (const char* preset :
-         {"generic", "birch", "apple", "spruce", "palm", "ginkgo", "poplar", "magnolia"}) {
-        const BarkTextures bark = make_bark_textures(preset, 128, 5);
-        for (const Image* image : {&bark.albedo, &bark.normal, &bark.roughness}) {
-            for (bool columns : {true, false}) {
-                double within = 0.0;
-                for (int x = 0; x + 1 < 128; x++)
-                    within = std::max(within, mean_step(*image, x, x + 1, columns));
-                EXPECT_LE(mean_step(*image, 127, 0, columns), 1.5 * within) << preset;
+    for (const std::string& preset : leaf_preset_names()) {
+        for (const BarkAge age : {BarkAge::kYoung, BarkAge::kOld}) {
+            const BarkTextures bark = make_bark_textures(preset, 128, 5, age);
+            for (const Image* image : {&bark.albedo, &bark.normal, &bark.roughness}) {
+                for (bool columns : {true, false}) {
+                    const int last = (columns ? image->width : image->height) - 1;
+                    double within = 0.0;
+                    for (int x = 0; x < last; x++)
+                        within = std::max(within, mean_step(*image, x, x + 1, columns));
+                    EXPECT_LE(mean_step(*image, last, 0, columns), 1.5 * within) << preset;
+                }
             }
         }
+    }
+}
+
+// A photographer's limits: no bark is soot or chalk, and none is bluer than it is red.
+TEST(Textures, BarkHasTheColoursOfBark) {
+    for (const std::string& preset : leaf_preset_names()) {
+        if (!leaf_preset(preset).enabled) continue;
+        for (const BarkAge age : {BarkAge::kYoung, BarkAge::kOld}) {
+            const BarkTextures bark = make_bark_textures(preset, 128, 1, age);
+            DVec3 light(0.0);
+            const size_t pixels = bark.albedo.pixels.size() / 3;
+            for (size_t i = 0; i < pixels; i++) {
+                const uint8_t* p = bark.albedo.pixels.data() + 3 * i;
+                ASSERT_GE(std::min({p[0], p[1], p[2]}), 50) << preset;
+                ASSERT_LE(std::max({p[0], p[1], p[2]}), 240) << preset;
+                light += linear_of(p);
+            }
+            light /= static_cast<double>(pixels);
+            EXPECT_GE(luminance_of(light), 0.10) << preset;
+            EXPECT_LE(luminance_of(light), 0.60) << preset;
+            EXPECT_GT(light.x, 1.05 * light.z) << preset;
+        }
+    }
+}
+
+// Cracks are dark because little of the sky is seen from them, and they are where the relief says they are.
+TEST(Textures, OldRidgesAreDeepAndYoungBarkIsSmooth) {
+    const auto share_below = [](const Image& image, int channel, int level) {
+        size_t below = 0;
+        for (size_t i = static_cast<size_t>(channel); i < image.pixels.size(); i += 3)
+            below += image.pixels[i] < level;
+        return static_cast<double>(below) / static_cast<double>(image.pixels.size() / 3);
+    };
+    for (const char* preset : {"oak", "pine", "willow", "poplar", "ginkgo"}) {
+        const BarkTextures old = make_bark_textures(preset, 256, 1);
+        const BarkTextures young = make_bark_textures(preset, 256, 1, BarkAge::kYoung);
+        EXPECT_GT(share_below(old.roughness, 0, 128), 0.01) << preset;
+        EXPECT_LT(share_below(young.roughness, 0, 128), 0.001) << preset;
+        EXPECT_GT(share_below(old.normal, 2, 192), 5.0 * share_below(young.normal, 2, 192)) << preset;
+    }
+}
+
+// Half of the bark lies on each side of what moss and lichen start from.
+TEST(Textures, MossAndLichenHaveWhereToStart) {
+    for (const char* preset : {"oak", "birch"}) {
+        const Image packed = make_bark_textures(preset, 256, 1).roughness;
+        size_t light = 0, lichen = 0, moss = 0;
+        for (size_t i = 2; i < packed.pixels.size(); i += 3) {
+            light += packed.pixels[i] > 127;
+            lichen += packed.pixels[i] < 77;
+            moss += packed.pixels[i] > 166;
+        }
+        const double pixels = static_cast<double>(packed.pixels.size()) / 3.0;
+        EXPECT_NEAR(static_cast<double>(light) / pixels, 0.5, 0.15) << preset;
+        EXPECT_GT(static_cast<double>(lichen) / pixels, 0.02) << preset;
+        EXPECT_GT(static_cast<double>(moss) / pixels, 0.02) << preset;
     }
 }
 
@@ -89,18 +149,37 @@ TEST(Textures, SameSeedSameBytesWhateverTheThreads) {
     const std::vector<NamedPicture> three = make_pictures("maple", 64, 9);
     set_thread_count(0);
     const std::vector<NamedPicture> other = make_pictures("maple", 64, 10);
-    ASSERT_EQ(one.size(), 8u);
+    ASSERT_EQ(one.size(), 12u);
     for (size_t i = 0; i < one.size(); i++) {
-        EXPECT_EQ(one[i].png, three[i].png) << one[i].name;
-        EXPECT_NE(one[i].png, other[i].png) << one[i].name;
+        EXPECT_EQ(one[i].bytes, three[i].bytes) << one[i].name;
+        EXPECT_NE(one[i].bytes, other[i].bytes) << one[i].name;
+    }
+}
+
+// Models cannot blend: they have the bark of one age, by the same names.
+TEST(Textures, AModelHasOneBark) {
+    const std::vector<NamedPicture> all = make_pictures("oak", 64, 1);
+    const auto bytes_of = [](const std::vector<NamedPicture>& pictures, const std::string& name) {
+        for (const NamedPicture& picture : pictures)
+            if (picture.name == name) return picture.bytes;
+        return std::string_view();
+    };
+    for (const bool young : {false, true}) {
+        const std::vector<NamedPicture> kept = pictures_of_model(all, false, young);
+        EXPECT_EQ(kept.size(), 6u);
+        for (const char* name : {"albedo", "normal", "roughness", "roughness_grey"}) {
+            const std::string_view given = bytes_of(kept, std::string("bark_") + name);
+            EXPECT_FALSE(given.empty()) << name;
+            EXPECT_EQ(given, bytes_of(all, std::string(young ? "bark_young_" : "bark_") + name)) << name;
+        }
     }
 }
 
 Image pixels_of(const NamedPicture& picture) {
     Image image;
-    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(picture.png.data()),
-                                            static_cast<int>(picture.png.size()), &image.width, &image.height,
-                                            &image.channels, 0);
+    stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(picture.bytes.data()),
+                                            static_cast<int>(picture.bytes.size()), &image.width,
+                                            &image.height, &image.channels, 0);
     if (!pixels) return image;
     image.pixels.assign(pixels, pixels + static_cast<size_t>(image.width) * image.height * image.channels);
     stbi_image_free(pixels);
@@ -120,13 +199,21 @@ TEST(Textures, ReadyPicturesAreTheDrawnOnes) {
     }
     const std::vector<NamedPicture> ready = make_pictures("birch");
     const std::vector<NamedPicture> drawn = draw_pictures("birch", kTextureSize, kTextureSeed);
-    set_ready_pictures({});
     EXPECT_NE(make_pictures("pine", 64, 1)[0].drawn, nullptr);
     ASSERT_EQ(ready.size(), drawn.size());
     for (size_t i = 0; i < ready.size(); i++) {
         EXPECT_EQ(ready[i].name, drawn[i].name);
         const Image one = pixels_of(ready[i]), other = pixels_of(drawn[i]);
-        EXPECT_EQ(one.width, ready[i].name.starts_with("blade") ? kTextureSize / 2 : kTextureSize);
+        const int leaf = ready[i].name.starts_with("blade") ? kTextureSize / 2 : kTextureSize;
+        int bark = bark_size(kTextureSize);
+        if (ready[i].name.starts_with("bark_young")) bark /= 2;
+        if (ready[i].name.find("roughness") != std::string::npos) bark /= 2;
+        const bool is_bark = ready[i].name.starts_with("bark");
+        EXPECT_EQ(one.width, is_bark ? bark : leaf) << ready[i].name;
+        // As many pixels to the metre along as around.
+        if (is_bark) {
+            EXPECT_NEAR(one.height * kBarkWidth, one.width * kBarkLength, 2.0) << ready[i].name;
+        }
         EXPECT_EQ(one.channels, other.channels) << ready[i].name;
         EXPECT_TRUE(one.pixels == other.pixels) << ready[i].name;
     }
@@ -134,6 +221,7 @@ TEST(Textures, ReadyPicturesAreTheDrawnOnes) {
 
 TEST(Textures, BadArgumentsAreRefused) {
     EXPECT_THROW(make_bark_textures("generic", 0, 1), Error);
+    EXPECT_THROW(make_bark_textures("generic", 17, 1), Error);
     EXPECT_THROW(make_leaf_textures("generic", 1 << 20, 1), Error);
     EXPECT_THROW(make_leaf_textures("plastic", 64, 1), Error);
 }

@@ -17,7 +17,8 @@ const _END: String = """
 		impostor_shown = 0.5 + 0.5 * normalize(mat3(INV_VIEW_MATRIX) * NORMAL);
 	} else if (impostor_pass == 2) {
 		impostor_shown = vec3(
-				0.5 + 0.5 * (VERTEX.z + impostor_distance) / impostor_reach, impostor_leaf * AO, 0.0);
+				0.5 + 0.5 * (VERTEX.z + impostor_distance) / impostor_reach,
+				impostor_leaf * (0.5 + 0.5 * AO), 0.0);
 	}
 	if (impostor_pass > 0) {
 		impostor_shown = impostor_least + (1.0 - impostor_least) * clamp(impostor_shown, 0.0, 1.0);
@@ -38,6 +39,7 @@ const _CUT: String = """
 	ALPHA = 1.0;
 """
 const _UNIFORMS: String = """
+#define TREE_IMPOSTOR
 uniform int impostor_pass = 0;
 uniform float impostor_distance = 1.0;
 uniform float impostor_reach = 1.0;

@@ -6,7 +6,14 @@ const _ADDON: String = "res://addons/tree_reconstruction/"
 const _QUALITY: float = 0.9
 # What baked trees do without: it is the editor's.
 const _REST: String = "tree_wind_rest.gdshaderinc"
-const _PICTURES: Array[StringName] = [&"albedo_texture", &"normal_texture", &"roughness_texture"]
+const _PICTURES: Array[StringName] = [
+	&"albedo_texture",
+	&"normal_texture",
+	&"roughness_texture",
+	&"young_albedo_texture",
+	&"young_normal_texture",
+	&"young_roughness_texture",
+]
 
 
 ## Copies of those of [param material]'s pictures that are the addon's and have a source, by their
@@ -123,10 +130,16 @@ static func _image_of(texture: Texture2D) -> Image:
 # The picture that it was imported from, if that is there: what the graphics card has is less.
 static func _source_of(texture: Texture2D) -> Image:
 	var path: String = texture.resource_path
-	if not path.ends_with(".png") or not FileAccess.file_exists(path):
+	if path.get_extension() not in ["png", "jpg"] or not FileAccess.file_exists(path):
 		return null
 	var source: Image = Image.new()
-	return source if source.load_png_from_buffer(FileAccess.get_file_as_bytes(path)) == OK else null
+	var bytes: PackedByteArray = FileAccess.get_file_as_bytes(path)
+	var failure: Error = (
+		source.load_jpg_from_buffer(bytes)
+		if path.ends_with(".jpg")
+		else source.load_png_from_buffer(bytes)
+	)
+	return source if failure == OK else null
 
 
 static func _is_addons(resource: Resource) -> bool:

@@ -108,7 +108,8 @@ static var threaded: bool = true
 		level_budgets = value
 		rebuild()
 
-## The level that casts the shadow at all distances, so that it doesn't change with the others.
+## The level that casts the shadow from the first switch on, so that it doesn't change with the
+## others. Nearer, the finest level casts its own, and each leaf is shaded by those that are seen.
 @export_range(0, 4) var shadow_level: int = 1:
 	set(value):
 		shadow_level = clampi(value, 0, Levels.MOST - 1)

@@ -24,7 +24,7 @@ const _ONLY := GeometryInstance3D.SHADOW_CASTING_SETTING_SHADOWS_ONLY
 ## The finest level's leaves.
 var finest_leaves: LeafNodes
 var _tree: TreeInstance3D
-# The further levels, finest first, and what casts the shadows of all.
+# The further levels, finest first, and what casts the shadows of all but the finest.
 var _parts: Array[Part] = []
 var _shadow: Part
 # What is shown beyond the last level, if the tree has it.
@@ -152,9 +152,12 @@ func update() -> void:
 	var switches: PackedFloat32Array = Levels.distances(
 		_tree.get_tree_height(), count + (1 if _tree.impostor != null else 0), _tree.level_distances
 	)
-	_show(_tree, _shared_shadow(shown), _turn_of(0, switches) if shown else Vector4.ZERO)
+	# From near, leaves lie in the shadow of just those that are seen: those of another level, larger
+	# or elsewhere, would leave dark blotches on them.
+	var finest: Vector4 = _turn_of(0, switches) if shown else Vector4.ZERO
+	_show(_tree, _tree.cast_shadow, finest)
 	for part: GeometryInstance3D in finest_leaves.nodes:
-		_show(part, _shared_shadow(shown), _turn_of(0, switches) if shown else Vector4.ZERO)
+		_show(part, _tree.cast_shadow, finest)
 	for level: int in _parts.size():
 		_parts[level].set_visible(shown)
 		for part: GeometryInstance3D in _parts[level].get_nodes():
@@ -166,9 +169,10 @@ func update() -> void:
 		for part: GeometryInstance3D in _shadow.get_nodes():
 			_share(part)
 			part.gi_mode = GeometryInstance3D.GI_MODE_DISABLED
-			# The card casts its own.
+			# The finest level and the card cast their own.
+			var first: Vector4 = _turn_of(1, switches)
 			var last: Vector4 = _turn_of(_parts.size(), switches)
-			_show(part, _ONLY, Vector4(0.0, 0.0, last.z, last.w))
+			_show(part, _ONLY, Vector4(first.x, first.y, last.z, last.w))
 
 
 func _update_card(shown: bool, switches: PackedFloat32Array) -> void:
@@ -189,10 +193,6 @@ func _update_card(shown: bool, switches: PackedFloat32Array) -> void:
 func _share(part: GeometryInstance3D) -> void:
 	for property: String in _SHARED:
 		part.set(property, _tree.get(property))
-
-
-func _shared_shadow(shown: bool) -> GeometryInstance3D.ShadowCastingSetting:
-	return _OFF if shown and _shadow != null else _tree.cast_shadow
 
 
 # Where a level begins and ends, each with its margin; 0 where it has no such end.

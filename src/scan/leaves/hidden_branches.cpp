@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/quantile.h"
 
@@ -44,6 +45,10 @@ constexpr double kReachSlack = 1.1;      // the stem ends a little below or besi
 constexpr double kReachQuantile = 0.98;  // of the leaves: some of the stem's points are taken for leaves
 constexpr double kStemCells = 0.8;       // radius of the stem that is followed through the fronds
 constexpr double kMostLean = 0.36;       // sideways per metre up: palms grow upright
+// Fronds spring from one place, and hang from there: around the stem's line, leaves are nowhere denser.
+constexpr double kNearStem = 0.1;      // of the crown's width, from that line
+constexpr double kSpringShare = 0.06;  // of the height from the hub to the top, to either side
+constexpr size_t kLeastSpring = 12;    // cells
 
 struct Crown {
     double base = 0.0;    // height
@@ -233,22 +238,49 @@ void clear_stem(const Cells& cells, std::vector<uint8_t>& leaf, double low, cons
     }
 }
 
-// The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to the height of the
-// crown's middle, where they spring from.
+// Where the fronds spring from; the crown's middle where too few leaves are seen there.
+DVec3 spring_of(const Cells& cells, const std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub) {
+    // Fronds that the scan shows on one side only pull the crown's middle there; palms grow upright.
+    const DVec3 off = crown.middle - hub;
+    if (off.y <= 0.0) return hub;
+    const double aside = std::hypot(off.x, off.z);
+    const double share = std::min(1.0, kMostLean * off.y / std::max(aside, 1e-9));
+    const DVec3 up(share * off.x / off.y, 1.0, share * off.z / off.y);
+    std::vector<std::pair<float, uint32_t>> near;  // heights, and cells
+    for (uint32_t v = 0; v < cells.count(); v++) {
+        const DVec3 way = DVec3(cells.centres[v]) - hub;
+        const DVec3 beside = way - way.y * up;
+        if (leaf[v] && way.y > 0.0 && std::hypot(beside.x, beside.z) < kNearStem * crown.width)
+            near.emplace_back(cells.centres[v].y, v);
+    }
+    std::sort(near.begin(), near.end());
+    const auto window = static_cast<float>(2.0 * kSpringShare * (crown.top.y - hub.y));
+    size_t first = 0, count = 0;
+    for (size_t begin = 0, end = 0; begin < near.size(); begin++) {
+        while (end < near.size() && near[end].first - near[begin].first <= window)
+            end++;
+        if (end - begin <= count) continue;
+        first = begin;
+        count = end - begin;
+    }
+    if (count < kLeastSpring) return hub + off.y * up;
+    std::array<std::vector<float>, 3> places;
+    for (size_t i = first; i < first + count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            places[static_cast<size_t>(axis)].push_back(cells.centres[near[i].second][axis]);
+    return {middle_of(std::move(places[0])), middle_of(std::move(places[1])),
+            middle_of(std::move(places[2]))};
+}
+
+// The stem of a palm: all wood, and on from the hub, where fronds begin to hide it, to where they spring
+// from.
 void follow_stem(const Cells& cells, std::vector<uint8_t>& leaf, const Crown& crown, const DVec3& hub,
                  FollowedBranches& branches) {
     float low = cells.centres[0].y;
     for (const Vec3& p : cells.centres)
         low = std::min(low, p.y);
     clear_stem(cells, leaf, low, hub);
-    // Fronds that the scan shows on one side only pull the crown's middle there; palms grow upright.
-    DVec3 end = hub;
-    if (crown.middle.y > hub.y) {
-        const DVec3 off = crown.middle - hub;
-        const double most = kMostLean * off.y, aside = std::hypot(off.x, off.z);
-        const double share = aside > most ? most / aside : 1.0;
-        end += DVec3(share * off.x, off.y, share * off.z);
-    }
+    const DVec3 end = spring_of(cells, leaf, crown, hub);
     const double radius = kStemCells * cells.size;
     std::vector<float> reaches;
     for (size_t v = 0; v < cells.count(); v++) {

@@ -154,6 +154,24 @@ double required_escape(double least_escape, double radius) {
     return std::max(least_escape, kStub * kThick) + kWhisker * (radius - kThick);
 }
 
+void remove_branches(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
+                     const std::vector<uint8_t>& goes) {
+    std::vector<int32_t> now(branches.size());
+    size_t kept = 0;
+    for (size_t l = 0; l < branches.size(); l++) {
+        if (goes[l] != 0) continue;
+        now[l] = static_cast<int32_t>(kept);
+        if (branches[l].parent >= 0) branches[l].parent = now[branches[l].parent];
+        if (kept != l) {
+            branches[kept] = std::move(branches[l]);
+            axes[kept] = std::move(axes[l]);
+        }
+        kept++;
+    }
+    branches.resize(kept);
+    axes.resize(kept);
+}
+
 void drop_strips(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
                  double least_escape) {
     const Bark bark(branches, axes);
@@ -195,20 +213,7 @@ void drop_strips(std::vector<SkeletonBranch>& branches, std::vector<std::vector<
         }
         bears[branches[l].parent]--;
     }
-    std::vector<int32_t> now(branches.size());
-    size_t kept = 0;
-    for (size_t l = 0; l < branches.size(); l++) {
-        if (goes[l] != 0) continue;
-        now[l] = static_cast<int32_t>(kept);
-        if (branches[l].parent >= 0) branches[l].parent = now[branches[l].parent];
-        if (kept != l) {
-            branches[kept] = std::move(branches[l]);
-            axes[kept] = std::move(axes[l]);
-        }
-        kept++;
-    }
-    branches.resize(kept);
-    axes.resize(kept);
+    remove_branches(branches, axes, goes);
 }
 
 }  // namespace treerec

@@ -70,6 +70,10 @@ class Bark {
 // What leaves the bark must reach at least so far out of it: less is relief, or a strip of the bark itself.
 double required_escape(double least_escape, double radius);
 
+// Takes away the branches that are marked; none of them may bear one that stays.
+void remove_branches(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,
+                     const std::vector<uint8_t>& goes);
+
 // Takes away the branches that bear nothing and lie on the bark of others: strips of it that the slices
 // parted.
 void drop_strips(std::vector<SkeletonBranch>& branches, std::vector<std::vector<Station>>& axes,

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "skeleton/branches/bends.h"
+#include "skeleton/branches/forks.h"
 #include "skeleton/branches/stems.h"
 #include "skeleton/cylinders/bark.h"
 #include "skeleton/cylinders/radii.h"
@@ -8,6 +10,7 @@
 #include "skeleton/cylinders/stem_base.h"
 #include "skeleton/cylinders/tips.h"
 #include "skeleton/stages.h"
+#include "skeleton/twigs/hugging_shoots.h"
 
 namespace treerec {
 
@@ -44,6 +47,8 @@ void fit_cylinders(SkeletonWork& work) {
     if (work.does(Pass::kStraightBases)) straighten_bases(branches, axes);
     if (work.does(Pass::kLimitedBase) && !work.root.lying) limit_stem_base(axes.front());
     infer_radii(axes, branches, false, work.options.left_out);
+    if (work.does(Pass::kForks)) lay_forks(branches, axes, work.slices, work.points(), work.progress);
+    if (work.does(Pass::kTightBends)) lay_bends(branches, axes, work.slices, work.points(), work.progress);
     if (work.does(Pass::kEarlyStrips)) drop_strips(branches, axes, work.branch_options.least_escape);
     work.clock.stop("Radii", branches.size());
 }
@@ -63,6 +68,8 @@ void refine_cylinders(SkeletonWork& work) {
     if (work.does(Pass::kPalmWidth) && work.options.one_stem) keep_width(axes.front());
     // Twigs that now lie on the bark of others were none.
     if (work.does(Pass::kLateStrips)) drop_strips(branches, axes, 0.5 * work.twig_options.least_escape);
+    if (work.does(Pass::kHugging)) drop_hugging_shoots(branches, axes);
+    if (work.does(Pass::kTightBends)) smooth_bends(branches, axes);
     if (work.does(Pass::kTips)) draw_back_tips(axes, branches, work.branch_options.minimum_branch);
     work.clock.stop("Refinement", branches.size());
 }

@@ -24,6 +24,9 @@ constexpr double kShortest = 0.8;    // of the shortest branch, where that many 
 constexpr double kShootLength = 1.07;
 constexpr float kStrayFactor = 5.0f;  // reaches of the wood on the near side: nor this one,
 constexpr float kStrayWood = 0.2f;    // of the gap: with less wood beyond it
+constexpr double kBareFoot = 0.5;     // metres up a stem that has no shoots there,
+constexpr double kStoutStem = 0.05;   // where its radius is more than this:
+constexpr double kSprout = 0.5;       // grass, unless it is so long that a scan shows a basal sprout clearly
 constexpr size_t kPointsPerTask = 512;
 constexpr float kGather = 0.5f;  // point spacings: points so near to a path are one with it
 
@@ -80,6 +83,11 @@ class TwigGrower {
         return length;
     }
 
+    bool on_bare_foot(int32_t station) const {
+        const Station& at = axis(0)[station];
+        return at.radius > kStoutStem && glm::distance(at.position, axis(0)[0].position) < kBareFoot;
+    }
+
     // tip: its entry in the queue.
     void add_twig(uint64_t tip) {
         const int32_t parent = field_.branch[foot_];
@@ -112,6 +120,7 @@ class TwigGrower {
             field_.nearest[v] = -1;
         twig.attach = long_enough(axis(parent), twig.attach, line.front().position, outer);
         if (twig.attach < 0) return;
+        if (does(Pass::kFootRoots) && parent == 0 && outer < kSprout && on_bare_foot(twig.attach)) return;
         if (does(Pass::kFewPoints) && axis(parent)[twig.attach].measured && near_.size() < kLeastPoints)
             return;
 

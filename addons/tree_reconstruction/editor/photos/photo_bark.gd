@@ -16,6 +16,8 @@ const PICTURES: Dictionary[StringName, String] = {
 	&"roughness_texture": "roughness.png",
 }
 
+# Metres: the radius of what has its own young bark.
+const _TWIG: float = 0.015
 const _KNOWN_AS: StringName = &"bark_material"
 
 
@@ -27,6 +29,11 @@ static func make(folder: String, look: String) -> ShaderMaterial:
 	var material: ShaderMaterial = preset.duplicate() as ShaderMaterial
 	# The photos tell the colour.
 	material.set_shader_parameter(&"tint", Color.WHITE)
+	# And how old it is, and what grows on it: only twigs, which photos don't show, are drawn.
+	material.set_shader_parameter(&"young_radius", _TWIG)
+	material.set_shader_parameter(&"old_radius", 2.0 * _TWIG)
+	material.set_shader_parameter(&"moss", 0.0)
+	material.set_shader_parameter(&"lichen", 0.0)
 	for parameter: StringName in PICTURES:
 		var picture: Image = _read(folder.path_join(PICTURES[parameter]))
 		if picture == null:
