@@ -171,6 +171,10 @@ tinygltf::Primitive Builder::make_primitive(const Mesh& mesh, int material, cons
     return primitive;
 }
 
+const char* mime_type(std::string_view picture_name) {
+    return std::string_view(picture_ending(picture_name)) == ".jpg" ? "image/jpeg" : "image/png";
+}
+
 int Builder::add_texture(const std::vector<NamedPicture>& all, const std::string& picture_name, int wrap,
                          const std::string& suffix) {
     const auto found = std::find_if(
@@ -186,7 +190,7 @@ int Builder::add_texture(const std::vector<NamedPicture>& all, const std::string
     pictures.back().name = name;
     tinygltf::Image image;
     image.name = name;
-    image.mimeType = std::string_view(picture_ending(found->name)) == ".jpg" ? "image/jpeg" : "image/png";
+    image.mimeType = mime_type(found->name);
     image.bufferView = add_view(found->bytes, 0);
     tinygltf::Texture texture;
     texture.name = name;
@@ -381,6 +385,7 @@ void write_pictures(const std::string& path, const Builder& built, Json& json, c
         const std::string name = built.pictures[i].name + picture_ending(built.pictures[i].name);
         write_file(sibling_of(path, folder + "/" + name), built.pictures[i].bytes, progress);
         json["images"][i] = {{"name", built.pictures[i].name},
+                             {"mimeType", mime_type(built.pictures[i].name)},
                              {"uri", percent_encoded(folder) + "/" + percent_encoded(name)}};
     }
     Json& views = json["bufferViews"];
