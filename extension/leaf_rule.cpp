@@ -48,6 +48,7 @@ const LeafRule::Value LeafRule::kValues[] = {
     {"twig_length", &treerec::LeafRules::twig_length, 0.0, 100.0, "0,5,0.01,or_greater,suffix:m"},
     {"clustering", &treerec::LeafRules::clustering, 0.0, 1.0, "0,1,0.01"},
     {"maximum_radius", &treerec::LeafRules::maximum_radius, 0.0, 10.0, "0,0.2,0.001,or_greater,suffix:m"},
+    {"leaf_area_index", &treerec::LeafRules::leaf_area_index, 0.0, 100.0, "0,12,0.1,or_greater"},
     {"leaf_size", &treerec::LeafRules::leaf_size, 0.005, 20.0, "0.01,3,0.005,or_greater,suffix:m"},
     {"size_variation", &treerec::LeafRules::size_variation, 0.0, 1.0, "0,1,0.01"},
     {"blade_width", &treerec::LeafRules::blade_width, 0.01, 4.0, "0.01,2,0.01"},
@@ -85,6 +86,7 @@ treerec::LeafRules LeafRule::get_plain_rules() const {
     const std::lock_guard lock(mutex_);
     treerec::LeafRules rules = rules_;
     rules.internode /= treerec::leaves_per_node(rules);
+    rules.spray_cover = treerec::leaf_preset(to_std(look_)).spray_cover;
     return rules;
 }
 
@@ -347,6 +349,7 @@ void LeafRule::_bind_properties() {
                  "set_density_by_radius", "get_density_by_radius");
     ADD_PROPERTY(PropertyInfo(Variant::PACKED_FLOAT32_ARRAY, "density_by_order"), "set_density_by_order",
                  "get_density_by_order");
+    add_value("leaf_area_index", "leaf_area_index");
     ADD_GROUP("Leaf", "");
     ADD_PROPERTY(
         PropertyInfo(Variant::INT, "form", PROPERTY_HINT_ENUM, "Spray,Simple,Pinnate,Palmate,Needles,Sprig"),

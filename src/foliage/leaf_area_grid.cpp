@@ -24,8 +24,6 @@ constexpr double kGolden = 2.399963229728653;  // radians: directions that sprea
 constexpr double kOpenSky = 0.6;     // what a leaf at the edge of a crown sees beside that: it counts as open
 constexpr double kScattered = 0.35;  // of a leaf's light, that comes from other leaves: none is black
 constexpr double kCrownShare = 0.5;  // of a leaf's outward, that is the whole crown's
-constexpr double kBladeFill = 0.65;  // of the rectangle about a blade
-constexpr double kSprayFill = 0.3;   // of a spray's picture
 constexpr size_t kLeavesPerChunk = 1024;
 constexpr size_t kRowsPerChunk = 16;
 constexpr int kMostSamples = 16;  // along one leaf
@@ -60,26 +58,6 @@ std::array<Ray, kRays> rays_over(const int64_t (&count)[3]) {
 }
 
 }  // namespace
-
-double card_area(const LeafRules& rules) {
-    const double single = kBladeFill * rules.blade_width;
-    const double leaflets = std::max(rules.leaflets, 1);
-    switch (rules.form) {
-        case LeafForm::kSpray:
-            return kSprayFill;
-        case LeafForm::kPinnate: {
-            const double length = std::clamp(2.2 / leaflets, 0.12, 0.5);  // as leaf_card_shapes.cpp has it
-            return leaflets * single * length * length;
-        }
-        case LeafForm::kPalmate:
-        case LeafForm::kNeedles:
-            return leaflets * single * 0.6;
-        case LeafForm::kSprig:
-        case LeafForm::kSimple:
-            break;
-    }
-    return single;
-}
 
 LeafAreaGrid::LeafAreaGrid(const std::vector<LeafGroup>& groups) {
     Bounds box;

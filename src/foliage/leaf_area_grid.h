@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "foliage/leaf_rules.h"
 #include "foliage/leaves.h"
 #include "geometry/bounds.h"
 #include "geometry/vec.h"
@@ -48,9 +47,6 @@ class LeafAreaGrid {
     int64_t count_[3] = {0, 0, 0};
     std::vector<float> density_, sky_;
 };
-
-// Square metres of leaf on a card of size 1.
-double card_area(const LeafRules& rules);
 
 // Sets LeafPlacement::outward and occlusion of all by the light in a crown of all of them. outward as it was
 // decides where leaves are even all around.

@@ -63,7 +63,7 @@ LeafPlacer::LeafPlacer(const Tree& t, const LeafRules& r, uint64_t s)
 }
 
 LeafPlacement LeafPlacer::leaf_at(const LeafSpot& spot) const {
-    const auto& [at, radial, angle, tip, number, red] = spot;
+    const auto& [at, radial, angle, tip, number, red, spare] = spot;
     const uint64_t branch_key = hash_seed(seed, static_cast<uint64_t>(tip));
     Random random(hash_seed(branch_key, number));
     const DVec3 up(0.0, 1.0, 0.0);
@@ -155,14 +155,15 @@ DVec3 LeafPlacer::first_side(const DVec3& direction) const {
     return normalized_or(glm::cross(direction, DVec3(0.0, 1.0, 0.0)), any_perpendicular(direction));
 }
 
-void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>& axis,
+void LeafPlacer::bear(const Branch& branch, double share, double crowding, std::vector<AxisPoint>& axis,
                       std::vector<LeafSpot>& spots) const {
     if (share <= 0.0) return;
     sample_axis(tree, list, branch, 2e-5 * crown.coordinate, axis);
     if (axis.size() < 2) return;
     const NodeId tip = list.nodes[branch.end - 1];
     const AxisPoint end = axis.back();
-    if (density_at(branch, end) > 0.0) spots.push_back(tip_spot(branch, end));
+    spots.push_back(tip_spot(branch, end));
+    spots.back().spare = !(density_at(branch, end) > 0.0);
     uint64_t number = 1;
     // The tip bears leaves however thick a scan made it.
     const double stoutest = std::max(size.maximum_radius, 1.5 * end.radius);
@@ -174,8 +175,8 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
         rules.arrangement == LeafArrangement::kAlternate || rules.arrangement == LeafArrangement::kOpposite;
     double azimuth = random.uniform(0.0, 2.0 * kPi);
     if (ranked) azimuth = 0.0;
-    const double internode = size.internode * count;
-    double along = end.along - size.internode * random.uniform(0.5, 1.0);
+    const double internode = size.internode * count / crowding;
+    double along = end.along - size.internode / crowding * random.uniform(0.5, 1.0);
     const double lowest = std::max(end.along - size.twig_length, buried);
     size_t hint = axis.size() - 2;
     // A frame carried down from the tip; over a twig's length its twist is no matter.
@@ -189,16 +190,18 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
         const double turned = azimuth + kJitter * rules.angle_variation * random.uniform(-1.0, 1.0);
         const double down = size.twig_length > 0.0 ? (end.along - along) / size.twig_length : 0.0;
         const double angle = rules.angle * (1.0 - rules.closing * (1.0 - down));
-        double wanted = share * density_at(branch, at);
+        const double density = density_at(branch, at);
+        double wanted = share;
         if (rules.clustering > 0.0) wanted *= portable::exp(-kClusterSteepness * rules.clustering * down);
         for (int k = 0; k < count; k++) {
             const uint64_t own = number++;
-            if (number_of(branch_key ^ kThinKey, own) >= wanted) continue;
+            const double place = number_of(branch_key ^ kThinKey, own);
+            if (place >= wanted) continue;
             double around = turned, out = angle;
             if (rules.arrangement == LeafArrangement::kFascicled) {
                 // A bunch spreads like a fan, wider than deep.
-                const double place = count > 1 ? k - 0.5 * (count - 1) : 0.0;
-                around += glm::radians(kBunchSplay) * place;
+                const double aside = count > 1 ? k - 0.5 * (count - 1) : 0.0;
+                around += glm::radians(kBunchSplay) * aside;
                 out += (k % 2 ? 0.6 : -0.6) * kBunchSplay;
             } else {
                 around += 2.0 * kPi * k / count;
@@ -206,6 +209,7 @@ void LeafPlacer::bear(const Branch& branch, double share, std::vector<AxisPoint>
             const SineCosine turn = portable_sine_cosine(around);
             const DVec3 radial = side * turn.cosine + other * turn.sine;
             spots.push_back({at, radial, out, tip, own});
+            spots.back().spare = place >= wanted * density;
         }
         switch (rules.arrangement) {
             case LeafArrangement::kAlternate:

@@ -27,7 +27,8 @@ struct LeafSpot {
     NodeId tip;       // of its branch
     uint64_t number;  // counts from the tip, which has 0, so that the leaf keeps its random numbers whatever
                       // happens below it
-    double red = -1.0;  // 0..1, how little green the scan is there; below 0 where it has no colours
+    double red = -1.0;   // 0..1, how little green the scan is there; below 0 where it has no colours
+    bool spare = false;  // the rules' shares by height, radius and order leave it out
 };
 
 struct LeafPlacer {
@@ -49,8 +50,8 @@ struct LeafPlacer {
     LeafSpot tip_spot(const Branch& branch, const AxisPoint& end) const;
 
     // Adds the spots of the branch's leaves, that at its tip first. share: of them that the rules bear, the
-    // tip's always among them unless it is 0.
-    void bear(const Branch& branch, double share, std::vector<AxisPoint>& axis,
+    // tip's always among them unless it is 0. crowding: how many times as close as the internode they stand.
+    void bear(const Branch& branch, double share, double crowding, std::vector<AxisPoint>& axis,
               std::vector<LeafSpot>& spots) const;
 
   private:

@@ -25,6 +25,7 @@ constexpr Number kNumbers[] = {
     {"twig_length", &LeafRules::twig_length},
     {"clustering", &LeafRules::clustering},
     {"maximum_radius", &LeafRules::maximum_radius},
+    {"leaf_area_index", &LeafRules::leaf_area_index},
     {"leaf_size", &LeafRules::leaf_size},
     {"size_variation", &LeafRules::size_variation},
     {"blade_width", &LeafRules::blade_width},
@@ -161,7 +162,10 @@ LeafKind kind_of(const Words& words, const LeafRules& own) {
                                 [](const auto& one) { return one.first == "sprig"; }))
         throw Error("The leaf rule's sprig_dialect is of a sprig, and it has none.");
     for (const auto& [name, text] : words.changes) {
-        if (name == "look") kind.look = read_look(text);
+        if (name == "look") {
+            kind.look = read_look(text);
+            rules.spray_cover = leaf_preset(text).spray_cover;
+        }
         if (name == "arrangement")
             rules.arrangement = static_cast<LeafArrangement>(read_choice(name, text, kArrangements));
         if (name == "form") rules.form = static_cast<LeafForm>(read_choice(name, text, kForms));

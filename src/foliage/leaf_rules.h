@@ -45,6 +45,7 @@ struct LeafSprig {
 };
 
 inline constexpr double kUsualFold = 8.0;
+inline constexpr double kMostCrowding = 3.0;
 
 // Lengths in metres. On a smaller tree they shrink with the square root of its height: leaf_size (of sprays
 // alone: a single leaf has its own size) and internode below 12 m, twig_length and maximum_radius below 6 m.
@@ -57,7 +58,7 @@ struct LeafRules {
     int whorl = 3;                // leaves in a whorl or a bunch
     double divergence = 137.508;  // the golden angle: leaves above one another shade least
     // Metres of twig for each card; nodes that bear several stand so many times as far apart.
-    double internode = 0.05;
+    double internode = 0.063;
     double twig_length = 0.6;  // how far from its tip a branch bears leaves
     double clustering = 0.0;   // 0: evenly along it .. 1: nearly all just below the tip
     double maximum_radius =
@@ -68,12 +69,18 @@ struct LeafRules {
     std::vector<float>
         by_order;  // one value for each order of branches, from the trunk's; the last for all further
 
+    // Square metres of blades, one side of them, for each of the ground that the crown covers (LAI). What is
+    // more, the inner leaves are short of; where twigs are too few they bear leaves more closely, up to
+    // kMostCrowding times. The shares above are of it. 0: as many as the internodes make.
+    double leaf_area_index = 4.5;
+
     // What they are like.
     LeafForm form = LeafForm::kSpray;
     int leaflets = 7;
+    double spray_cover = 0.3;     // of a spray's card: what blades cover of it
     double blade_width = 0.5;     // of a single leaf or leaflet, over its length
     double petiole = 0.0;         // metres of stalk below the card's own
-    double leaf_size = 0.25;      // length of the card without the petiole
+    double leaf_size = 0.28;      // length of the card without the petiole
     double size_variation = 0.3;  // share
     double angle = 55.0;          // between the twig and the leaf
     double closing = 0.0;         // share of the angle by which the uppermost leaves close in on the tip
@@ -93,7 +100,7 @@ struct LeafRules {
     double follow_density = 1.0;
     double follow_color = 1.0;
 
-    int maximum_leaves = 24000;  // beyond it fewer, larger leaves cover the same area
+    int maximum_leaves = 10000;  // beyond it fewer, larger leaves cover the same area
 };
 
 // "generic", "maple", "cherry", "oak", "birch", "willow", "apple", "pine", "spruce", "palm", "ginkgo",

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "error.h"
 #include "foliage/branch_axis.h"
 #include "foliage/foliage_twigs.h"
+#include "foliage/leaf_area.h"
 #include "foliage/leaf_area_grid.h"
 #include "foliage/leaf_placer.h"
 #include "foliage/near_wood.h"
@@ -29,6 +31,9 @@ constexpr size_t kCellsPerChunk = 512;
 constexpr double kHostReach = 2.0;        // of the spacing of foliage_twigs.h: from a leaf to its wood
 constexpr double kSpraysPerVolume = 0.7;  // times internode x leaf size squared: a full crown
 constexpr double kLeastDensity = 0.4, kMostDensity = 2.5;  // of the usual one
+constexpr double kLeastInside = 0.3;                       // of the leaves: those beside the twigs' ends
+constexpr double kFull = 1.15;  // of the index: above one place, since there is less at a crown's rim
+constexpr double kUneven = kMostDensity;  // where a scan saw more
 // A whole wood that was taken for one tree would have tens of millions; few of them become leaves.
 constexpr double kMostSprays = 1e6;
 
@@ -49,37 +54,32 @@ class Bearing {
         }
     }
 
-    // Whether any of the branch does.
-    bool any(const Branch& branch) const {
+    bool bears(const LeafSpot& spot) const {
         if (all()) return true;
-        const std::span<const NodeId> nodes = list_.nodes_of(branch);
-        return std::any_of(nodes.begin(), nodes.end(), [&](NodeId id) { return is(id); });
-    }
-    // Takes out the spots from `first` on that stand on other wood; all are of the branch.
-    void keep(const Branch& branch, std::vector<LeafSpot>& spots, size_t first) const {
-        if (all()) return;
-        const auto begin = spots.begin() + static_cast<std::ptrdiff_t>(first);
-        spots.erase(std::remove_if(begin, spots.end(),
-                                   [&](const LeafSpot& spot) { return !at(branch, spot.at.way); }),
-                    spots.end());
-    }
-    // way: metres along the chords of the branch (AxisPoint::way).
-    bool at(const Branch& branch, double way) const {
-        if (all()) return true;
-        const auto first = ways_.begin(),
-                   above = std::lower_bound(first + branch.begin, first + branch.end - 1, way);
-        return is(list_.nodes[static_cast<size_t>(above - first)]);
+        return at(list_.branches[static_cast<size_t>(list_.branch_of[static_cast<size_t>(spot.tip)])],
+                  spot.at.way);
     }
 
   private:
     bool all() const { return kind_ < 0 || tree_.leaf_rules().empty(); }
     bool is(NodeId id) const { return tree_.node(id).leaf_rule == kind_; }
+    // way: metres along the chords of the branch (AxisPoint::way).
+    bool at(const Branch& branch, double way) const {
+        const auto first = ways_.begin(),
+                   above = std::lower_bound(first + branch.begin, first + branch.end - 1, way);
+        return is(list_.nodes[static_cast<size_t>(above - first)]);
+    }
 
     const Tree& tree_;
     const BranchList& list_;
     const int kind_;
     std::vector<double> ways_;  // by list.nodes: metres along its branch's chords
 };
+
+// What the rules' index is for this crown.
+double index_of(const LeafPlacer& placer) {
+    return placer.rules.leaf_area_index * light_on(placer.crown);
+}
 
 // Leaves where a scan saw them.
 class Follower {
@@ -90,13 +90,6 @@ class Follower {
           wood_(placer.tree, placer.list, kHostReach * foliage_twig_spacing(foliage),
                 placer.size.maximum_radius, 2e-5 * placer.crown.coordinate),
           usual_(usual_points(foliage)) {
-        const ScaledLeaf& size = placer.size;
-        per_cell_ = kSpraysPerVolume * foliage.edge * foliage.edge * foliage.edge /
-                    (size.internode * size.leaf_size * size.leaf_size) * placer.rules.follow_density;
-        double all = 0.0;
-        for (const FoliageCell& cell : foliage.cells)
-            all += per_cell_ * density(cell);
-        share_ = std::min(1.0, kMostSprays / all);
         if (!foliage.colored) return;
         std::vector<double> shares;
         for (const FoliageCell& cell : foliage.cells)
@@ -106,11 +99,21 @@ class Follower {
         reddest_ = shares[shares.size() - 1 - shares.size() / 20];
     }
 
+    // Parts the sprays among the cells. ends: square metres of blades at the twigs' ends, which stand
+    // besides.
+    void part(double ends) {
+        double all = 0.0;
+        for (const FoliageCell& cell : foliage_.cells)
+            all += density(cell);
+        per_cell_ = sprays(ends, all) * placer_.rules.follow_density;
+        share_ = std::min(1.0, kMostSprays / (per_cell_ * all));
+    }
+
     // Of the sprays that fill the crown: those that are placed.
     double share() const { return share_; }
 
     // The sprays in one cell.
-    void fill(const FoliageCell& cell, const Bearing& bearing, std::vector<LeafSpot>& spots) const {
+    void fill(const FoliageCell& cell, std::vector<LeafSpot>& spots) const {
         const uint64_t key = hash_seed(placer_.seed, key_of(cell));
         Random random(key, 3);
         const auto count = static_cast<uint64_t>(share_ * per_cell_ * density(cell) + random.uniform());
@@ -119,7 +122,7 @@ class Follower {
                                                                           random.uniform(-0.5, 0.5),
                                                                           random.uniform(-0.5, 0.5));
             const WoodSample* host = wood_.nearest(p);
-            if (!host || !bearing.at(placer_.list.branches[host->branch], host->at.way)) continue;
+            if (!host) continue;
             const AxisPoint& axis = host->at;
             const DVec3 off = p - axis.position;
             const DVec3 radial = normalized_or(off - axis.direction * glm::dot(off, axis.direction),
@@ -144,6 +147,19 @@ class Follower {
     }
 
   private:
+    // For each cell of the usual density; `all`: of them.
+    double sprays(double ends, double all) const {
+        const ScaledLeaf& size = placer_.size;
+        const double index = index_of(placer_);
+        if (index <= 0.0)
+            return kSpraysPerVolume * foliage_.edge * foliage_.edge * foliage_.edge /
+                   (size.internode * size.leaf_size * size.leaf_size);
+        const double variation = placer_.rules.size_variation;
+        const double own =
+            blade_area(placer_.rules) * size.leaf_size * size.leaf_size * (1.0 + variation * variation / 3.0);
+        const double wanted = index * covered_ground(CrownGround(placer_.crown), foliage_);
+        return std::max(wanted - ends, kLeastInside * wanted) / (own * all);
+    }
     static uint64_t key_of(const FoliageCell& cell) {
         return (static_cast<uint64_t>(cell.x) << 32) | (static_cast<uint64_t>(cell.y) << 16) | cell.z;
     }
@@ -204,16 +220,12 @@ struct Chosen {
 };
 
 // Fewer, larger leaves that cover the same area. Those at the twigs' ends stay as long as there is room.
-Chosen limit_count(const LeafPlacer& placer, const Spots& parts, size_t most) {
-    Chosen all;
-    size_t ends = 0;
-    for (const auto& part : parts)
-        for (const LeafSpot& spot : part) {
-            all.spots.push_back(&spot);
-            ends += spot.number == 0;
-        }
+Chosen limit_count(const LeafPlacer& placer, std::vector<const LeafSpot*> spots, size_t most) {
+    Chosen all{std::move(spots)};
     const size_t count = all.spots.size();
     if (count <= most) return all;
+    const auto ends = static_cast<size_t>(std::count_if(
+        all.spots.begin(), all.spots.end(), [](const LeafSpot* spot) { return spot->number == 0; }));
     std::vector<float> sizes(count);
     parallel_for(count, kLeavesPerChunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++)
@@ -254,6 +266,58 @@ void gather(size_t count, size_t grain, Spots& parts, const Body& body) {
     });
 }
 
+std::vector<const LeafSpot*> all_of(const Spots& parts) {
+    std::vector<const LeafSpot*> all;
+    for (const auto& part : parts)
+        for (const LeafSpot& spot : part)
+            all.push_back(&spot);
+    return all;
+}
+
+// By the rules alone.
+Spots bear_all(const LeafPlacer& placer, double share, double crowding) {
+    const std::vector<Branch>& branches = placer.list.branches;
+    const std::vector<uint8_t> snag =
+        find_snags(placer.tree, placer.list, kStoutShare * placer.size.maximum_radius);
+    Spots spots;
+    gather(branches.size(), kBranchesPerChunk, spots,
+           [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
+               if (!snag[i]) placer.bear(branches[i], share, crowding, axis, out);
+           });
+    return spots;
+}
+
+// As many as the rules' leaf area index asks for, if there is wood enough. In steps, so that what changes in
+// one part of a crown does not move all leaves.
+Spots bear_enough(const LeafPlacer& placer, double share) {
+    constexpr double kStep = 1.25;
+    constexpr double kSpare = 2.0;  // of what is wanted: where they stand too close some go again
+    Spots spots = bear_all(placer, share, 1.0);
+    const LeafBudget budget = measure_leaves(placer, all_of(spots));
+    const double wanted = kSpare * share * index_of(placer) * budget.ground;
+    double crowding = 1.0;
+    while (crowding * budget.blades < wanted && crowding * kStep < kMostCrowding)
+        crowding *= kStep;
+    return crowding > 1.0 ? bear_all(placer, share, crowding) : spots;
+}
+
+// In a scan's foliage. Returns the share of them that is placed. ends: twigs end in leaves, too.
+double follow_all(const LeafPlacer& placer, const Foliage& foliage, bool ends, Spots& spots) {
+    const std::vector<Branch>& branches = placer.list.branches;
+    Follower follower(placer, foliage);
+    if (ends)
+        gather(branches.size(), kBranchesPerChunk, spots,
+               [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
+                   follower.finish(branches[i], axis, out);
+               });
+    follower.part(ends ? measure_leaves(placer, all_of(spots)).blades : 0.0);
+    gather(foliage.cells.size(), kCellsPerChunk, spots,
+           [&](size_t i, std::vector<AxisPoint>&, std::vector<LeafSpot>& out) {
+               follower.fill(foliage.cells[i], out);
+           });
+    return follower.share();
+}
+
 // wood: the tree, or what leafy_tree() makes of it where the rules follow the foliage.
 std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, int kind, uint64_t seed,
                                       const Foliage& foliage) {
@@ -261,38 +325,18 @@ std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, 
     if (!rules.enabled || wood.size() < 2 || rules.maximum_leaves <= 0) return leaves;
     const double follow = foliage.empty() ? 0.0 : rules.follow_density;
     const LeafPlacer placer(wood, rules, seed);
-    const Bearing bearing(wood, placer.list, kind);
-    const std::vector<Branch>& branches = placer.list.branches;
-    Spots spots;
+    const double index = index_of(placer);
+    Spots parts;
     double share = 1.0;
-    if (follow < 1.0) {
-        const std::vector<uint8_t> snag =
-            find_snags(wood, placer.list, kStoutShare * placer.size.maximum_radius);
-        gather(branches.size(), kBranchesPerChunk, spots,
-               [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
-                   if (snag[i] || !bearing.any(branches[i])) return;
-                   const size_t first = out.size();
-                   placer.bear(branches[i], 1.0 - follow, axis, out);
-                   bearing.keep(branches[i], out, first);
-               });
-    }
-    if (follow > 0.0) {
-        const Follower follower(placer, foliage);
-        share = follower.share();
-        if (follow >= 1.0)
-            gather(branches.size(), kBranchesPerChunk, spots,
-                   [&](size_t i, std::vector<AxisPoint>& axis, std::vector<LeafSpot>& out) {
-                       if (!bearing.any(branches[i])) return;
-                       const size_t first = out.size();
-                       follower.finish(branches[i], axis, out);
-                       bearing.keep(branches[i], out, first);
-                   });
-        gather(foliage.cells.size(), kCellsPerChunk, spots,
-               [&](size_t i, std::vector<AxisPoint>&, std::vector<LeafSpot>& out) {
-                   follower.fill(foliage.cells[i], bearing, out);
-               });
-    }
-    Chosen chosen = limit_count(placer, spots, static_cast<size_t>(rules.maximum_leaves));
+    if (follow < 1.0)
+        parts = index > 0.0 ? bear_enough(placer, 1.0 - follow) : bear_all(placer, 1.0 - follow, 1.0);
+    if (follow > 0.0) share = follow_all(placer, foliage, follow >= 1.0, parts);
+    std::vector<const LeafSpot*> spots = all_of(parts);
+    // Among the leaves of all wood, so that those of one kind stand where they would if all were of it.
+    if (index > 0.0) thin_to_index(placer, share * index * (follow > 0.0 ? kUneven : kFull), spots);
+    const Bearing bearing(wood, placer.list, kind);
+    std::erase_if(spots, [&](const LeafSpot* spot) { return spot->spare || !bearing.bears(*spot); });
+    Chosen chosen = limit_count(placer, std::move(spots), static_cast<size_t>(rules.maximum_leaves));
     chosen.growth /= static_cast<float>(std::sqrt(share));
     leaves.resize(chosen.spots.size());
     parallel_for(leaves.size(), kLeavesPerChunk, [&](size_t begin, size_t end) {
@@ -314,7 +358,7 @@ std::vector<LeafPlacement> place_leaves(const Tree& tree, const LeafRules& rules
     std::vector<LeafPlacement> leaves =
         follows(rules, foliage) ? place_kind(leafy_tree(tree, rules, foliage), rules, -1, seed, foliage)
                                 : place_kind(tree, rules, -1, seed, foliage);
-    light_leaves({{&leaves, card_area(rules)}});
+    light_leaves({{&leaves, blade_area(rules)}});
     return leaves;
 }
 
@@ -334,7 +378,7 @@ std::vector<std::vector<LeafPlacement>> place_foliage(const Tree& tree, const st
     }
     std::vector<LeafGroup> groups;
     for (size_t kind = 0; kind < kinds.size(); kind++)
-        groups.push_back({&leaves[kind], card_area(kinds[kind].rules)});
+        groups.push_back({&leaves[kind], blade_area(kinds[kind].rules)});
     light_leaves(groups);
     return leaves;
 }

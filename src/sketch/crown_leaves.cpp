@@ -2,23 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <vector>
 
+#include "foliage/leaf_rule_text.h"
 #include "tree/branches.h"
 
 namespace treerec {
 
 namespace {
 
-// Leaves are to cover the outline so many times, with the holes that their pictures have; but no more than so
-// many times what the rules allow, since beyond that fewer and larger ones stand.
-constexpr double kCovers = 34.0, kOfMostLeaves = 2.0;
+// Twigs are to have room for leaves that cover the outline so many times, with the holes that their pictures
+// have; but for no more than so many times as many as a large crown has.
+constexpr double kCovers = 34.0, kOfMostLeaves = 2.0, kLargeCrown = 24000.0;
 // The share of a twig's wood that is near enough to a tip to bear leaves, of our species and at least.
 constexpr double kBearing = 0.6, kLeastBearing = 0.25;
 // Of a leaf's length: how far beyond its wood it covers most of what is there, since it leans.
 constexpr double kStandsOut = 0.46;
 // Of half a crown's width: in a slender one leaves would find no wood to stand on.
 constexpr double kMostMargin = 0.25;
+// So much closer than on grown trees leaves stand, and are the more.
+constexpr double kCloser = 0.66;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 // Leaves that would cover the crown's outline often enough.
@@ -43,7 +47,7 @@ double leaf_length(const LeafRules& rules, double height) {
 
 double leaf_margin(const CrownSections& crown, const LeafRules& rules, double height) {
     // Where they would be more than the rules allow, fewer and larger ones stand.
-    const double larger = std::sqrt(covering_leaves(crown, rules, height) / rules.maximum_leaves);
+    const double larger = std::sqrt(covering_leaves(crown, rules, height) / kLargeCrown);
     const double margin =
         kStandsOut * leaf_length(rules, height) * std::clamp(larger, 1.0, std::sqrt(kOfMostLeaves)) +
         rules.petiole;
@@ -69,9 +73,17 @@ double bearing_share(const SketchSpecies& species, double height) {
 
 double wanted_wood(const CrownSections& crown, const SketchSpecies& species, double height) {
     const LeafRules& rules = species.leaves;
-    const double count =
-        std::min(covering_leaves(crown, rules, height), kOfMostLeaves * rules.maximum_leaves);
+    const double count = std::min(covering_leaves(crown, rules, height), kOfMostLeaves * kLargeCrown);
     return count * rules.internode * shrunk(height) / bearing_share(species, height);
+}
+
+void fill_with_leaves(Tree& tree, const LeafRules& rules) {
+    std::ostringstream rule;
+    rule << "leaf_area_index=0 maximum_leaves=" << std::lround(kLargeCrown / kCloser)
+         << " internode=" << kCloser * rules.internode * leaves_per_node(rules);
+    const uint8_t number = tree.name_leaf_rule(plain_leaf_rule(rule.str()));
+    for (const NodeId id : tree.depth_first())
+        tree.set_leaf_rule(id, number);
 }
 
 }  // namespace treerec

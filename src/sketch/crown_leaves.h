@@ -4,6 +4,7 @@
 #include "foliage/leaf_rules.h"
 #include "sketch/crown_sections.h"
 #include "sketch/species.h"
+#include "tree/tree.h"
 
 namespace treerec {
 
@@ -21,5 +22,9 @@ double leaf_margin(const CrownSections& crown, const LeafRules& rules, double he
 double bearing_share(const SketchSpecies& species, double height);
 // Metres of the species' twigs that bear as many leaves as are to stand in the crown.
 double wanted_wood(const CrownSections& crown, const SketchSpecies& species, double height);
+
+// Has the tree's leaves fill the crown as far as its wood allows: who draws an outline sees it full, where a
+// grown crown of the species lets more sky through.
+void fill_with_leaves(Tree& tree, const LeafRules& rules);
 
 }  // namespace treerec

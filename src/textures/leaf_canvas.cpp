@@ -8,6 +8,12 @@
 
 namespace treerec::texture {
 
+namespace {
+
+const DVec3 kDry(0.42, 0.30, 0.13);  // a withered margin
+
+}  // namespace
+
 DVec2 twig_at(double f, double sway, double top) {
     return {sway * portable::sin(2.2 * f) * f, top * f};
 }
@@ -63,8 +69,10 @@ void draw_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, const 
             const DVec2 p((x + 0.5) / size - 0.5, 1.0 - (y + 0.5) / size);
             const DVec2 local = (p - leaf.base) / leaf.length;
             const double s = glm::dot(local, leaf.direction);
-            const double t = glm::dot(local, across) - leaf.bend * s * s;
-            const BladePoint blade = blade_at(spray.shape, s, t);
+            const double t = (glm::dot(local, across) - leaf.bend * s * s) / leaf.shown;
+            BladePoint blade = blade_at(spray.shape, s, t);
+            const DVec2 bite(0.62, leaf.bend > 0.0 ? 0.5 * spray.shape.width : -0.5 * spray.shape.width);
+            blade.inside = std::min(blade.inside, glm::distance(DVec2(s, t), bite) - leaf.torn);
             Sample& sample = canvas[static_cast<size_t>(y) * size + x];
             if (blade.inside <= 0.0) {
                 // A soft shadow on what lies below, so that overlapping leaves stay apart to the eye.
@@ -84,6 +92,8 @@ void draw_leaf(std::vector<Sample>& canvas, int size, const Spray& spray, const 
             colour *=
                 leaf.brightness * DVec3(1.0 + 0.10 * leaf.hue, 1.0 + 0.03 * leaf.hue, 1.0 - 0.06 * leaf.hue);
             colour = glm::mix(colour, spray.vein, 0.55 * blade.vein);
+            const double brown = leaf.dry * (1.0 - smoothstep(0.02, 0.16, blade.inside - 0.12 * mottle));
+            colour = glm::mix(colour, kDry * (0.7 + 0.6 * mottle), brown);
             colour *= 0.80 + 0.20 * smoothstep(0.0, 0.016, blade.inside);
             sample = {static_cast<float>(colour.r),
                       static_cast<float>(colour.g),

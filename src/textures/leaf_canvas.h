@@ -18,6 +18,9 @@ struct Leaf {
     double bend;  // sideways curve of the midrib, over the length
     double brightness;
     double hue;
+    double shown = 1.0;  // of its width: the rest is turned away from whoever looks
+    double dry = 0.0;    // 0 green .. 1 brown from its margin inwards
+    double torn = 0.0;   // what a caterpillar took of its margin, over the length
 };
 
 struct Sample {

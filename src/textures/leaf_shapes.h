@@ -35,6 +35,7 @@ struct Spray {
     DVec3 dark, light;   // blade colours, sRGB
     DVec3 vein, twig;
     Habit habit = Habit::kLeaves;
+    int side_shoots = 0;  // of kLeaves, with half as many leaves
 };
 
 // preset: a leaf preset's name; unknown ones get the generic leaf.

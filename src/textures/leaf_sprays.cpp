@@ -11,28 +11,71 @@ namespace treerec::texture {
 
 namespace {
 
-std::vector<Leaf> arrange(const Spray& spray, uint64_t seed, double sway, double top) {
+constexpr double kShootLength = 0.42, kShootTurn = 0.62;  // of a side shoot: over the twig's, radians
+constexpr double kDryShare = 0.07, kTornShare = 0.10;     // of the leaves
+
+// A twig beside the one in the middle.
+struct Shoot {
+    DVec2 from, ahead;
+    double length;
+    int nodes;
+
+    DVec2 at(double f) const { return from + ahead * (length * f); }
+};
+
+// To the right for positive radians.
+DVec2 turned(const DVec2& v, double turn) {
+    const double c = portable::cos(turn), s = portable::sin(turn);
+    return {v.x * c + v.y * s, v.y * c - v.x * s};
+}
+
+// A leaf at `on`: side 1 to the right of the way ahead, -1 to the left, 0 at its end.
+Leaf leaf_on(const Spray& spray, const DVec2& on, const DVec2& ahead, double f, double side, Random& random) {
+    Leaf leaf;
+    leaf.direction = turned(ahead, side * spray.spread * (1.0 - 0.38 * f) * random.uniform(0.80, 1.15));
+    leaf.length = spray.leaf_length * random.uniform(0.78, 1.08);
+    leaf.base = on + leaf.direction * (spray.shape.petiole * leaf.length);
+    leaf.bend = -side * random.uniform(0.02, 0.12) + (side == 0.0 ? random.uniform(-0.05, 0.05) : 0.0);
+    leaf.brightness = random.uniform(0.76, 1.14);
+    leaf.hue = random.uniform(-1.4, 1.4);
+    leaf.shown = random.uniform(0.66, 1.0);
+    leaf.dry = random.uniform() < kDryShare ? random.uniform(0.5, 1.0) : 0.0;
+    leaf.torn = random.uniform() < kTornShare ? spray.shape.width * random.uniform(0.18, 0.42) : 0.0;
+    return leaf;
+}
+
+void bear_on(const Spray& spray, const Shoot& shoot, Random& random, std::vector<Leaf>& leaves) {
+    for (int i = 0; i < shoot.nodes; i++) {
+        const double f = mix(0.30, 0.90, (i + 0.5) / shoot.nodes);
+        leaves.push_back(leaf_on(spray, shoot.at(f), shoot.ahead, f, i % 2 ? 1.0 : -1.0, random));
+    }
+    leaves.push_back(leaf_on(spray, shoot.at(1.0), shoot.ahead, 1.0, 0.0, random));
+}
+
+std::vector<Shoot> side_shoots(const Spray& spray, double sway, double top, Random& random) {
+    std::vector<Shoot> shoots;
+    for (int i = 0; i < spray.side_shoots; i++) {
+        const double f = mix(0.12, 0.62, (i + 0.5) / spray.side_shoots);
+        const double turn = (i % 2 ? -1.0 : 1.0) * kShootTurn * random.uniform(0.85, 1.15);
+        shoots.push_back({twig_at(f, sway, top), turned({0.0, 1.0}, turn),
+                          kShootLength * top * random.uniform(0.85, 1.1) * (1.0 - 0.4 * f), spray.pairs - 1});
+    }
+    return shoots;
+}
+
+std::vector<Leaf> arrange(const Spray& spray, const std::vector<Shoot>& shoots, double sway, double top,
+                          Random& random) {
     std::vector<Leaf> leaves;
-    Random random(seed, 77);
+    for (const Shoot& shoot : shoots)
+        bear_on(spray, shoot, random, leaves);
     const auto add = [&](double f, double side) {
-        const DVec2 on = twig_at(f, sway, top);
         const DVec2 ahead = glm::normalize(twig_at(f + 0.01, sway, top) - twig_at(f - 0.01, sway, top));
-        const double turn = side * spray.spread * (1.0 - 0.38 * f) * random.uniform(0.88, 1.1);
-        const DVec2 direction(ahead.x * portable::cos(turn) + ahead.y * portable::sin(turn),
-                              ahead.y * portable::cos(turn) - ahead.x * portable::sin(turn));
-        Leaf leaf;
-        leaf.length = spray.leaf_length * random.uniform(0.86, 1.06) * (side == 0.0 ? 1.05 : 1.0);
-        leaf.direction = direction;
-        leaf.base = on + direction * (spray.shape.petiole * leaf.length);
-        leaf.bend = -side * random.uniform(0.02, 0.10) + (side == 0.0 ? random.uniform(-0.05, 0.05) : 0.0);
-        leaf.brightness = random.uniform(0.86, 1.10);
-        leaf.hue = random.uniform(-1.0, 1.0);
-        leaves.push_back(leaf);
+        leaves.push_back(leaf_on(spray, twig_at(f, sway, top), ahead, f, side, random));
     };
     const int count = spray.opposite ? spray.pairs : 2 * spray.pairs;
     for (int i = 0; i < count; i++) {
         const double f =
-            mix(spray.opposite ? 0.34 : 0.14, 0.92, count > 1 ? static_cast<double>(i) / (count - 1) : 0.5);
+            mix(spray.opposite ? 0.20 : 0.10, 0.94, count > 1 ? static_cast<double>(i) / (count - 1) : 0.5);
         if (spray.opposite) {
             add(f, 1.0);
             add(f, -1.0);
@@ -47,14 +90,14 @@ std::vector<Leaf> arrange(const Spray& spray, uint64_t seed, double sway, double
 void draw_tuft(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway,
                double top) {
     Random random(seed, 5);
-    const int bundles = 64;
+    const int bundles = 84;
     for (int i = 0; i < bundles; i++) {
         const double f = mix(0.06, 1.0, (i + 0.5) / bundles);
         const DVec2 on = twig_at(f, sway, top);
         for (int k = 0; k < 4; k++) {
             const double side = k % 2 ? 1.0 : -1.0;
             const double turn = side * random.uniform(0.25, 1.25) * (1.0 - 0.45 * f);
-            const double length = random.uniform(0.26, 0.40) * (1.0 - 0.35 * f);
+            const double length = random.uniform(0.24, 0.34) * (1.0 - 0.30 * f);
             const DVec2 direction(portable::sin(turn), portable::cos(turn));
             const DVec2 middle = on + direction * (0.5 * length);
             const DVec2 tip = middle + glm::normalize(direction + DVec2(0.0, 0.25)) * (0.5 * length);
@@ -217,7 +260,11 @@ void draw_rosette(std::vector<Sample>& canvas, int size, const Spray& spray, uin
 
 void draw_leaves(std::vector<Sample>& canvas, int size, const Spray& spray, uint64_t seed, double sway,
                  double top) {
-    const std::vector<Leaf> leaves = arrange(spray, seed, sway, top);
+    Random random(seed, 77);
+    const std::vector<Shoot> shoots = side_shoots(spray, sway, top, random);
+    for (const Shoot& shoot : shoots)
+        draw_stalk(canvas, size, shoot.from, shoot.at(1.0), 0.0055, 0.0032, spray.twig);
+    const std::vector<Leaf> leaves = arrange(spray, shoots, sway, top, random);
     for (const Leaf& leaf : leaves) {
         const DVec2 stalk_base = leaf.base - leaf.direction * (spray.shape.petiole * leaf.length);
         draw_stalk(canvas, size, stalk_base, leaf.base + leaf.direction * (0.08 * leaf.length), 0.0042,
@@ -236,7 +283,7 @@ void draw_spray(std::vector<Sample>& canvas, int size, const Spray& spray, uint6
     if (spray.habit == Habit::kShortShoots) return draw_short_shoots(canvas, size, spray, seed, sway);
     if (spray.habit == Habit::kRosette) return draw_rosette(canvas, size, spray, seed, sway);
     const bool tuft = spray.habit == Habit::kTuft;
-    const double top = tuft ? 0.74 : 0.97 - spray.leaf_length * (1.08 + spray.shape.petiole);
+    const double top = tuft ? 0.74 : 0.97 - spray.leaf_length * (1.12 + spray.shape.petiole);
     constexpr int kTwigPieces = 16;
     draw_twig(canvas, size, spray, sway, top, 0.009, 0.004, kTwigPieces);
     if (tuft)

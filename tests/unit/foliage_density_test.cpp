@@ -177,6 +177,7 @@ TEST(Leaves, CoverAHugeCrownAlikeHoweverMany) {
     const DVec3 place = tree.node(tree.nodes_of_kind(NodeKind::kLeaf).front()).position;
     const Foliage foliage = gather_foliage(ball(place, 4.0, 60000, 5), {});
     LeafRules rules = leaf_preset("generic");
+    rules.leaf_area_index = 0.0;
     std::vector<double> areas;
     for (const double internode : {0.03, 0.003, 0.002}) {
         rules.internode = internode;

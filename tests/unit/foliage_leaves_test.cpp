@@ -87,7 +87,9 @@ TEST(Leaves, EveryTipBearsOne) {
     Tree tree = test::random_tree(4, 500);
     for (NodeId id : tree.depth_first())
         tree.set_radius(id, std::min(tree.node(id).radius, 0.02));
-    const std::vector<LeafPlacement> leaves = place_leaves(tree, leaf_preset("birch"), 1);
+    LeafRules rules = leaf_preset("birch");
+    rules.leaf_area_index = 0.0;
+    const std::vector<LeafPlacement> leaves = place_leaves(tree, rules, 1);
     for (NodeId tip : tree.nodes_of_kind(NodeKind::kLeaf))
         EXPECT_TRUE(bears_leaf_at(leaves, tree.node(tip).position));
 }
@@ -367,7 +369,7 @@ TEST(Leaves, TheSizeOfALeafIsKnownBeforeItIsMade) {
             std::vector<AxisPoint> axis;
             std::vector<LeafSpot> spots;
             for (const Branch& branch : placer.list.branches)
-                placer.bear(branch, 1.0, axis, spots);
+                placer.bear(branch, 1.0, 1.0, axis, spots);
             EXPECT_FALSE(spots.empty());
             for (const LeafSpot& spot : spots)
                 ASSERT_EQ(placer.size_of(spot), placer.leaf_at(spot).size) << name << " " << spot.number;

@@ -38,6 +38,7 @@ struct OnTwig {
 std::vector<OnTwig> on_twig(LeafRules rules, const DVec3& direction) {
     rules.angle_variation = 0.0;
     rules.twig_length = 1.5;
+    rules.leaf_area_index = 0.0;
     NodeId tip = kNoNode;
     const Tree tree = twig_along(direction, tip);
     const DVec3 end = tree.node(tip).position;
@@ -120,6 +121,7 @@ TEST(LeafRules, EveryPetioleStandsOnTheBarkAndEveryTipBearsALeaf) {
         LeafRules rules = leaf_preset(names[seed % (names.size() - 1)]);
         rules.arrangement = kArrangements[seed % 6];
         rules.by_order.clear();  // a palm's
+        rules.leaf_area_index = 0.0;
         rules.form = static_cast<LeafForm>(seed % 5);
         const std::vector<LeafPlacement> leaves = place_leaves(tree, rules, seed);
         const test::BarkSurface bark(tree);
@@ -147,6 +149,7 @@ TEST(LeafRules, TheLimitTakesTheTipsLast) {
         tree.set_radius(id, std::min(tree.node(id).radius, 0.02));
     const size_t tips = tree.nodes_of_kind(NodeKind::kLeaf).size();
     LeafRules rules;
+    rules.leaf_area_index = 0.0;
     for (const size_t most : {2 * tips, tips, tips / 2}) {
         rules.maximum_leaves = static_cast<int>(most);
         size_t ends = 0, all = 0;

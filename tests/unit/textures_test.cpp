@@ -142,6 +142,19 @@ TEST(Textures, LeavesGrowFromTheMiddleOfTheLowerEdgeAndLeaveAMargin) {
     }
 }
 
+// What the leaf area of a crown is reckoned with.
+TEST(Textures, BladesCoverAsMuchOfASprayAsItsRuleSays) {
+    for (const std::string& preset : leaf_preset_names()) {
+        if (!leaf_preset(preset).enabled) continue;
+        const LeafTextures leaf = make_leaf_textures(preset, 256, kTextureSeed);
+        double covered = 0.0;
+        for (int y = 0; y < 256; y++)
+            for (int x = 0; x < 256; x++)
+                covered += leaf.albedo.at(x, y)[3] / 255.0;
+        EXPECT_NEAR(covered / (256.0 * 256.0), leaf_preset(preset).spray_cover, 0.02) << preset;
+    }
+}
+
 TEST(Textures, SameSeedSameBytesWhateverTheThreads) {
     set_thread_count(1);
     const std::vector<NamedPicture> one = make_pictures("maple", 64, 9);

@@ -82,9 +82,18 @@ func _build() -> void:
 		"%d %%"
 	)
 	_add_slider(
+		&"leaf_area_index",
+		"Leaf area",
+		"Square meters of leaves over each of the ground: more makes the crown denser.",
+		0.0,
+		12.0,
+		0.1,
+		"%.1f"
+	)
+	_add_slider(
 		&"internode",
 		"Distance",
-		"How far leaves stand apart along a twig: less makes the crown denser.",
+		"How far leaves stand apart along a twig, where the leaf area is 0.",
 		0.005,
 		0.5,
 		0.005,

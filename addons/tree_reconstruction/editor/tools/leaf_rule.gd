@@ -84,10 +84,20 @@ func make_settings() -> Control:
 		_on_preset_chosen
 	)
 	_sliders = {
+		&"leaf_area_index":
+		strip.add_number(
+			tr("Leaf area"),
+			tr("Square meters of leaves over each of the ground: more makes the crown denser."),
+			0.0,
+			12.0,
+			0.1,
+			4.5,
+			_on_value_changed.bind(&"leaf_area_index")
+		),
 		&"internode":
 		strip.add_number(
 			tr("Distance (m)"),
-			tr("How far leaves stand apart along a twig: less makes the crown denser."),
+			tr("How far leaves stand apart along a twig, where the leaf area is 0."),
 			0.005,
 			0.5,
 			0.005,
