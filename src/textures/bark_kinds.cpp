@@ -9,7 +9,7 @@ Palette palette_of(const std::string& preset) {
     if (preset == "oak")
         return {{0.30, 0.25, 0.20}, {0.44, 0.385, 0.32}, {0.585, 0.545, 0.485}, {0.50, 0.39, 0.29}};
     if (preset == "maple")
-        return {{0.33, 0.285, 0.24}, {0.475, 0.43, 0.375}, {0.60, 0.57, 0.52}, {0.54, 0.46, 0.38}};
+        return {{0.30, 0.26, 0.215}, {0.42, 0.38, 0.33}, {0.535, 0.505, 0.46}, {0.49, 0.42, 0.34}};
     if (preset == "cherry")
         return {{0.25, 0.19, 0.165}, {0.39, 0.275, 0.23}, {0.53, 0.405, 0.35}, {0.45, 0.36, 0.33}};
     if (preset == "pine")
@@ -21,13 +21,13 @@ Palette palette_of(const std::string& preset) {
     if (preset == "spruce")
         return {{0.28, 0.215, 0.18}, {0.43, 0.345, 0.295}, {0.56, 0.49, 0.435}, {0.53, 0.38, 0.30}};
     if (preset == "ginkgo")
-        return {{0.30, 0.26, 0.22}, {0.455, 0.415, 0.365}, {0.615, 0.58, 0.53}, {0.52, 0.44, 0.36}};
+        return {{0.28, 0.24, 0.205}, {0.42, 0.38, 0.335}, {0.565, 0.53, 0.485}, {0.48, 0.405, 0.33}};
     if (preset == "poplar")
         return {{0.28, 0.25, 0.21}, {0.42, 0.40, 0.345}, {0.57, 0.555, 0.495}, {0.46, 0.42, 0.33}};
     if (preset == "palm")
         return {{0.30, 0.25, 0.20}, {0.50, 0.435, 0.355}, {0.63, 0.575, 0.50}, {0.56, 0.47, 0.37}};
     if (preset == "magnolia")
-        return {{0.36, 0.34, 0.315}, {0.50, 0.485, 0.455}, {0.635, 0.62, 0.59}, {0.57, 0.535, 0.475}};
+        return {{0.34, 0.32, 0.295}, {0.455, 0.44, 0.41}, {0.585, 0.57, 0.54}, {0.53, 0.495, 0.435}};
     return {{0.30, 0.25, 0.205}, {0.45, 0.39, 0.33}, {0.58, 0.53, 0.46}, {0.51, 0.42, 0.33}};
 }
 
@@ -71,16 +71,16 @@ BarkPoint young_bark(const std::string& preset, const Place& place) {
         return smooth(place, skin, palette, {0.60, 0.48, 0.38});
     }
     if (preset == "poplar" || preset == "willow") {
-        palette = {{0.31, 0.28, 0.22}, {0.53, 0.52, 0.44}, {0.69, 0.68, 0.61}, {0.52, 0.525, 0.41}};
+        palette = {{0.29, 0.26, 0.205}, {0.475, 0.465, 0.39}, {0.62, 0.61, 0.54}, {0.47, 0.475, 0.365}};
         if (preset == "willow") palette.side = {0.46, 0.43, 0.33}, palette.crest = {0.58, 0.55, 0.43};
         skin = {{0.003, 0.004}, {0.012, 0.013}, {0.024, 0.026}, 0.6, -0.0012, 0.35, 0.15, 0.3};
         return smooth(place, skin, palette, {0.30, 0.265, 0.215});
     }
     if (preset == "magnolia") return pimpled(place, palette);
     // A skin is greyer and lighter than the bark that bursts through it.
-    palette.side = glm::mix(palette.side, DVec3(0.49, 0.475, 0.43), 0.55);
-    palette.crest = glm::mix(palette.crest, DVec3(0.63, 0.62, 0.575), 0.5);
-    palette.accent = glm::mix(palette.accent, DVec3(0.47, 0.47, 0.385), 0.65);
+    palette.side = glm::mix(palette.side, DVec3(0.43, 0.415, 0.37), 0.55);
+    palette.crest = glm::mix(palette.crest, DVec3(0.55, 0.54, 0.495), 0.5);
+    palette.accent = glm::mix(palette.accent, DVec3(0.42, 0.42, 0.34), 0.65);
     if (preset == "maple") skin.stretch = 0.8, skin.lip = 0.0004;
     if (preset == "oak") skin.stretch = 0.6;
     if (preset == "ginkgo") skin.stretch = 1.0;
