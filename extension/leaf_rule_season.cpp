@@ -89,7 +89,7 @@ treerec::LeafRules LeafRule::in_season(treerec::LeafRules p_rules, bool p_evergr
     const std::lock_guard lock(mutex_);
     if (!p_evergreen) {
         p_rules.standing = 1.0 - smooth(kFirstFall, 1.0, season_);
-        p_rules.leaf_size *= unfolded_share(season_);
+        p_rules.unfolded = unfolded_share(season_);
     }
     return p_rules;
 }

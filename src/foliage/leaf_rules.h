@@ -95,6 +95,8 @@ struct LeafRules {
 
     // How many of them stand now: 1 in summer, 0 in winter. The same ones fall first for every value.
     double standing = 1.0;
+    // How large they are now, over full-grown ones: as many stand, at the same places, while they unfold.
+    double unfolded = 1.0;
 
     // How far the scan's own leaves (Foliage) decide: where leaves stand, and how they are coloured; 0..1.
     double follow_density = 1.0;

@@ -336,13 +336,13 @@ std::vector<LeafPlacement> place_kind(const Tree& wood, const LeafRules& rules, 
     if (index > 0.0) thin_to_index(placer, share * index * (follow > 0.0 ? kUneven : kFull), spots);
     const Bearing bearing(wood, placer.list, kind);
     std::erase_if(spots, [&](const LeafSpot* spot) { return spot->spare || !bearing.bears(*spot); });
-    Chosen chosen = limit_count(placer, std::move(spots), static_cast<size_t>(rules.maximum_leaves));
-    chosen.growth /= static_cast<float>(std::sqrt(share));
+    const Chosen chosen = limit_count(placer, std::move(spots), static_cast<size_t>(rules.maximum_leaves));
+    const auto growth = static_cast<float>(chosen.growth * rules.unfolded / std::sqrt(share));
     leaves.resize(chosen.spots.size());
     parallel_for(leaves.size(), kLeavesPerChunk, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; i++) {
             leaves[i] = placer.leaf_at(*chosen.spots[i]);
-            leaves[i].size *= chosen.growth;
+            leaves[i].size *= growth;
         }
     });
     // Last, so that the same leaves fall first whatever the limit.

@@ -188,6 +188,20 @@ TEST(LeafRules, LeavesFallOneByOneAndTheSameFirst) {
     EXPECT_TRUE(before.empty());
 }
 
+TEST(LeafRules, UnfoldingLeavesStandWhereFullOnesDo) {
+    const Tree tree = test::random_tree(7, 400);
+    LeafRules rules;
+    rules.leaf_area_index = 3.0;
+    const std::vector<LeafPlacement> full = place_leaves(tree, rules, 2);
+    rules.unfolded = 0.3;
+    const std::vector<LeafPlacement> buds = place_leaves(tree, rules, 2);
+    ASSERT_EQ(buds.size(), full.size());
+    for (size_t i = 0; i < full.size(); i++) {
+        ASSERT_EQ(buds[i].position, full[i].position);
+        ASSERT_NEAR(buds[i].size, 0.3f * full[i].size, 1e-5f);
+    }
+}
+
 TEST(LeafRules, DensityFollowsHeightRadiusAndOrder) {
     const Tree tree = test::random_tree(9, 900, 12.0);
     LeafRules rules;
@@ -319,6 +333,7 @@ TEST(LeafRules, BadOnesAreRefusedWithTheirName) {
     refused([](LeafRules& r) { r.leaflets = 100000; }, "leaflets");
     refused([](LeafRules& r) { r.angle = INFINITY; }, "angle");
     refused([](LeafRules& r) { r.standing = 1.5; }, "standing");
+    refused([](LeafRules& r) { r.unfolded = 0.0; }, "size");
     refused([](LeafRules& r) { r.follow_density = -0.1; }, "density");
     refused([](LeafRules& r) { r.sprig = std::make_shared<LeafSprig>(); }, "sprig");
 }
