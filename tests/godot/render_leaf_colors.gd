@@ -44,12 +44,17 @@ func _open_flat(made: TreeReconstruction) -> TreeInstance3D:
 	return instance
 
 
+# A card's pixels mix what lies side by side: what is bark for the most part is bark.
+static func _shows_leaf(pixel: Color) -> bool:
+	return _shows_tree(pixel) and pixel.r > 0.3
+
+
 # The mean of what a part of the picture shows of leaves, as light; from its top, 0, to its base, 1.
 func _light(picture: Image, from: float = 0.0, to: float = 1.0) -> Vector3:
 	var box: Rect2i = Rect2i(SIZE, Vector2i.ZERO)
 	for y: int in SIZE.y:
 		for x: int in SIZE.x:
-			if _shows_tree(picture.get_pixel(x, y)):
+			if _shows_leaf(picture.get_pixel(x, y)):
 				box = box.expand(Vector2i(x, y)) if box.position != SIZE else Rect2i(x, y, 0, 0)
 	var sum: Vector3 = Vector3.ZERO
 	var count: int = 0
@@ -57,7 +62,7 @@ func _light(picture: Image, from: float = 0.0, to: float = 1.0) -> Vector3:
 		box.position.y + roundi(from * box.size.y), box.position.y + roundi(to * box.size.y)
 	):
 		for x: int in SIZE.x:
-			if _shows_tree(picture.get_pixel(x, y)):
+			if _shows_leaf(picture.get_pixel(x, y)):
 				var light: Color = picture.get_pixel(x, y).srgb_to_linear()
 				sum += Vector3(light.r, light.g, light.b)
 				count += 1
