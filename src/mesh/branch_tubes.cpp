@@ -223,7 +223,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk()) stand(points, tube, out);
     tube.base_radius = points.front().radius;
     if (options.level <= kUnevenLevel && thickest >= kUnevenRadius) {
-        const double round = branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest;
+        const double round = std::max(
+            branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest, covered[index]);
         tube.section =
             uneven_section(hash_seed(foot_seed(tree), static_cast<uint64_t>(list.nodes[branch.begin])),
                            thickest, round, out.back().along);
@@ -235,6 +236,15 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
     parallel_transport(out.data() + tube.first_ring, tube.rings, tube.flare.turn);
+    if (tube.section.until > tube.section.from) show_sections(branch, tube, out.data() + tube.first_ring);
+}
+
+void Builder::show_sections(const Branch& branch, Tube& tube, const Ring* run) const {
+    if (tree.sections().empty()) return;
+    std::vector<SectionPlace> places;
+    for (const NodeId id : list.nodes_of(branch))
+        places.push_back({static_cast<double>(node_along[id]), tree.section_of(id)});
+    measure_section(tube.section, places, run, tube.rings, tube.foot_rows > 0);
 }
 
 // A standing trunk has a foot, and goes on below the ground.

@@ -247,7 +247,8 @@ size_t lay_foot_rings(const RootFlare& flare, const std::vector<AxisPoint>& poin
     return foot.size() - 1;
 }
 
-std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides) {
+std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides,
+                                   const UnevenSection& section) {
     const Columns columns = flare.count > 0 ? spread_columns(flare, sides) : Columns();
     const size_t stride = sides + 1;
     // The ring above the foot is among them for what is measured between rows.
@@ -261,7 +262,8 @@ std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, si
             const double factor = foot_factor(flare, ring.along, angle);
             const DVec3 radial = ring.x * portable::cos(angle) + y * portable::sin(angle);
             FootVertex& vertex = out[row * stride + j];
-            vertex.position = ring.centre + radial * (ring.radius * factor);
+            vertex.position =
+                ring.centre + radial * (ring.radius * factor * section.factor(ring.along, angle));
             vertex.normal = radial;
             vertex.light = factor - mean;  // how far it stands out
         }

@@ -9,6 +9,7 @@
 
 #include "foliage/branch_axis.h"
 #include "mesh/tube_rings.h"
+#include "mesh/uneven_section.h"
 
 namespace treerec {
 
@@ -62,7 +63,9 @@ struct FootVertex {
 
 // Vertices of the foot's rows, of sides + 1 columns each, which gather where roots stand out. rings: of the
 // trunk, from the cut; rows: the foot's, at least one ring follows them.
-std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides);
+// section: what was measured shows there too.
+std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides,
+                                   const UnevenSection& section);
 
 // The picture of a base's bark: as wide as its outline there, as far as limit_slant() lets it. rings: of the
 // trunk, from the cut.
