@@ -41,7 +41,7 @@ double limited(double value, double& slope) {
 }  // namespace
 
 double UnevenSection::prior(double along, double angle, Of what) const {
-    const double lead = kLeadRadii * radius;
+    const double lead = section_lead(radius);
     if (along <= from || along >= until) return 0.0;
     const double whole = eased(std::min((along - from) / lead, (until - along) / lead));
     double sum = 0.0;
@@ -155,12 +155,35 @@ RingOutline outline_by(std::span<const SectionPlace> places, double along, doubl
 
 }  // namespace
 
+double section_lead(double radius) {
+    return kLeadRadii * radius;
+}
+
+double missed_outline(std::span<const SectionPlace> places, double from, double to, double lead) {
+    const auto after = [](double at, const SectionPlace& place) { return at < place.along; };
+    auto place = std::upper_bound(places.begin(), places.end(), from, after);
+    const auto end = std::upper_bound(place, places.end(), to, after);
+    if (place == end) return 0.0;
+    const RingOutline low = outline_by(places, from, lead), high = outline_by(places, to, lead);
+    double most = 0.0;
+    for (; place != end; ++place) {
+        const RingOutline own = outline_by(places, place->along, lead);
+        const double t = (place->along - from) / std::max(to - from, 1e-30);
+        double sum = 0.0;
+        for (size_t i = 0; i < own.cosine.size(); i++)
+            sum += portable::hypot(own.cosine[i] - glm::mix(low.cosine[i], high.cosine[i], t),
+                                   own.sine[i] - glm::mix(low.sine[i], high.sine[i], t));
+        most = std::max(most, sum);
+    }
+    return most;
+}
+
 void measure_section(UnevenSection& section, std::span<const SectionPlace> places, const Ring* rings,
                      size_t count, bool on_foot) {
     if (std::none_of(places.begin(), places.end(), [](const SectionPlace& p) { return p.shape != nullptr; }))
         return;
     section.rings.reserve(count);
-    const double lead = kLeadRadii * section.radius;
+    const double lead = section_lead(section.radius);
     for (size_t i = 0; i < count; i++) {
         const Ring& ring = rings[i];
         // A foot goes on down as it stands on the ground.

@@ -55,6 +55,13 @@ struct UnevenSection {
 // seed: tells branches apart.
 UnevenSection uneven_section(uint64_t seed, double radius, double from, double until);
 
+// Metres over which what was measured fades, beside wood of such a radius in metres.
+double section_lead(double radius);
+
+// How far the outlines at the places between two others are from what is blended of those: over the radius,
+// of the largest corner about. lead: see section_lead().
+double missed_outline(std::span<const SectionPlace> places, double from, double to, double lead);
+
 // Adds what was measured. It is blended between places, and fades to the rest within a few radii of the last
 // one that has any. places: rising along the branch; rings: framed; on_foot: it goes on down a foot, else it
 // begins at section.from.

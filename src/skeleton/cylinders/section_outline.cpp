@@ -21,7 +21,8 @@ constexpr double kFarthest = 2.2;        // nor are farther ones
 constexpr double kMostOffset = 0.5;      // radii: a middle farther from the axis is another thing's
 constexpr double kMostAmplitudes = 1.5;  // of all harmonics together; more is no wood
 constexpr int kRounds = 4;               // of finding the middle
-constexpr int kReweightings = 8;
+constexpr int kReweightings = 10;
+constexpr double kOff = 1e9;      // keeps a harmonic at 0
 constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise
 constexpr double kMadToSigma = 1.4826;
 constexpr double kLeastScale = 0.005;  // radii: what bark varies by in any case
@@ -110,8 +111,11 @@ Fit fit_series(const Sectors& sectors) {
                     matrix[i][j] += weight * terms[s][i] * terms[s][j];
             }
         }
+        // From the lowest order up: all at once would follow what lies off the wood before it is told from
+        // it.
+        const size_t known = 2 * static_cast<size_t>(round + 1);
         for (size_t i = 1; i < kTerms; i++)
-            matrix[i][i] += fit.variance / (kUsual * kUsual);
+            matrix[i][i] += i > known ? kOff : fit.variance / (kUsual * kUsual);
         fit.series = solve(matrix, right);
         off.clear();
         std::array<double, kSectors> residual{};
