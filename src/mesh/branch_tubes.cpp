@@ -223,7 +223,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
     tube.sides = sides_of(thickest, options);
-    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk()) stand(points, tube, out);
+    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk())
+        stand(points, sections, tube, out);
     tube.base_radius = points.front().radius;
     if (options.level <= kUnevenLevel && thickest >= kUnevenRadius) {
         const double round = std::max(
@@ -256,11 +257,14 @@ std::vector<SectionPlace> Builder::sections_of(const Branch& branch) const {
 }
 
 // A standing trunk has a foot, and goes on below the ground.
-void Builder::stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const {
+void Builder::stand(const std::vector<AxisPoint>& points, const std::vector<SectionPlace>& sections,
+                    Tube& tube, std::vector<Ring>& out) const {
     if (!stands(out.data() + tube.first_ring, tube.rings)) return;
     // Palms and poles have no roots to show.
     const bool roots = list.branches.size() > 1;
     tube.flare = plan_flare(points, foot_depth(crown.height), foot_seed(tree), roots);
+    const double lead = section_lead(points.front().radius);
+    hold_back_roots(tube.flare, outline_relief(sections, 0.5 * tube.flare.reach, lead));
     if (options.level > 1 || options.maximum_sides < kRootedSides) tube.flare = without_roots(tube.flare);
     tube.sides = std::max(tube.sides, (kSidesPerRoot * tube.flare.count) >> options.level);
     tube.foot_rows = lay_foot_rings(tube.flare, points, options.level, out, tube.first_ring);

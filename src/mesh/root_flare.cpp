@@ -32,6 +32,10 @@ constexpr double kDepthShare = 0.1;  // of the tree's height
 constexpr double kLeastDepth = 0.6;  // metres,
 constexpr double kMostDepth = 2.0;
 constexpr double kMostOfHeight = 0.5;
+// Of an outline from narrowest to widest, over the radius: what leaves all roots to be drawn, and what is
+// roots itself. Some of each stays: harmonics blunt what is sharp.
+constexpr double kFluted = 0.4, kButtressed = 1.2;
+constexpr double kYield = 0.8;
 constexpr size_t kOutline = 96;   // corners that it is measured by,
 constexpr size_t kSamples = 360;  // and between roots on the ground
 
@@ -191,6 +195,12 @@ RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_
     flare.radius = base;
     if (roots && up <= 0.5 * length) grow_roots(flare, above, seed);
     return flare;
+}
+
+void hold_back_roots(RootFlare& flare, double relief) {
+    const double kept = 1.0 - kYield * glm::smoothstep(kFluted, kButtressed, relief);
+    for (uint32_t i = 0; i < flare.count; i++)
+        flare.roots[i].out *= kept;
 }
 
 RootFlare without_roots(RootFlare flare) {

@@ -43,6 +43,10 @@ double foot_depth(double height);
 // any.
 RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_t seed, bool roots);
 
+// Lobes that the scan saw are the trunk's own roots and buttresses: others stand back from them. relief: of
+// the outline there, from its narrowest to its widest over the radius.
+void hold_back_roots(RootFlare& flare, double relief);
+
 // As wide on average, and round: for where single roots are not seen.
 RootFlare without_roots(RootFlare flare);
 

@@ -137,7 +137,8 @@ struct Builder {
     // Coarser levels cover as much as level 0: see tube_widths.cpp.
     void widen(size_t index);
     std::vector<SectionPlace> sections_of(const Branch& branch) const;
-    void stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const;
+    void stand(const std::vector<AxisPoint>& points, const std::vector<SectionPlace>& sections, Tube& tube,
+               std::vector<Ring>& out) const;
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
                     const std::vector<SectionPlace>& sections, std::vector<Ring>& out) const;

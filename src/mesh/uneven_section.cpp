@@ -98,15 +98,6 @@ double UnevenSection::rise(double along, double angle) const {
     return (factor(along + step, angle) - factor(along - step, angle)) / (2.0 * step);
 }
 
-double UnevenSection::measured_relief(double along) const {
-    if (!is_measured()) return 0.0;
-    const RingOutline ring = outline_at(along);
-    double sum = 0.0;
-    for (size_t i = 0; i < ring.cosine.size(); i++)
-        sum += 2.0 * portable::hypot(ring.cosine[i], ring.sine[i]);
-    return sum;
-}
-
 UnevenSection uneven_section(uint64_t seed, double radius, double from, double until) {
     UnevenSection section;
     if (until <= from) return section;
@@ -136,20 +127,25 @@ RingOutline outline_by(std::span<const SectionPlace> places, double along, doubl
     const auto above =
         std::upper_bound(places.begin(), places.end(), along,
                          [](double at, const SectionPlace& place) { return at < place.along; });
-    const SectionPlace* const high = above != places.end() ? &*above : nullptr;
-    const SectionPlace* const low = above != places.begin() ? &above[-1] : nullptr;
-    const bool from_low = low && low->shape, from_high = high && high->shape;
-    if (from_low && from_high) {
+    const auto seen = [](const SectionPlace& place) { return place.shape != nullptr; };
+    const auto high = std::find_if(above, places.end(), seen);
+    auto low = above;
+    while (low != places.begin() && !seen(low[-1]))
+        --low;
+    const bool from_low = low != places.begin(), from_high = high != places.end();
+    if (from_low) --low;
+    if (from_low && from_high && high - low == 1) {
         const double t = (along - low->along) / std::max(high->along - low->along, 1e-30);
         add(*low, 1.0 - t);
         add(*high, t);
-    } else if (from_low) {
-        const double within = high ? std::min(lead, high->along - low->along) : lead;
-        add(*low, eased(1.0 - (along - low->along) / std::max(within, 1e-30)));
-    } else if (from_high) {
-        const double within = low ? std::min(lead, high->along - low->along) : lead;
-        add(*high, eased(1.0 - (high->along - along) / std::max(within, 1e-30)));
+        return ring;
     }
+    // Between them something was not seen.
+    const double by_low = from_low ? eased(1.0 - (along - low->along) / lead) : 0.0;
+    const double by_high = from_high ? eased(1.0 - (high->along - along) / lead) : 0.0;
+    const double sum = std::max(by_low + by_high, 1.0);
+    if (by_low > 0.0) add(*low, by_low / sum);
+    if (by_high > 0.0) add(*high, by_high / sum);
     return ring;
 }
 
@@ -157,6 +153,14 @@ RingOutline outline_by(std::span<const SectionPlace> places, double along, doubl
 
 double section_lead(double radius) {
     return kLeadRadii * radius;
+}
+
+double outline_relief(std::span<const SectionPlace> places, double along, double lead) {
+    const RingOutline ring = outline_by(places, along, lead);
+    double sum = 0.0;
+    for (size_t i = 0; i < ring.cosine.size(); i++)
+        sum += 2.0 * portable::hypot(ring.cosine[i], ring.sine[i]);
+    return sum;
 }
 
 double missed_outline(std::span<const SectionPlace> places, double from, double to, double lead) {

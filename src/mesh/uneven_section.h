@@ -42,8 +42,6 @@ struct UnevenSection {
     // How it changes along the wood, per metre.
     double rise(double along, double angle) const;
     bool is_measured() const { return !rings.empty(); }
-    // How far what was measured stands out there, from its narrowest to its widest at most.
-    double measured_relief(double along) const;
 
   private:
     enum class Of { kRadius, kTurn };
@@ -61,6 +59,10 @@ double section_lead(double radius);
 // How far the outlines at the places between two others are from what is blended of those: over the radius,
 // of the largest corner about. lead: see section_lead().
 double missed_outline(std::span<const SectionPlace> places, double from, double to, double lead);
+
+// How far what was measured stands out at most, from narrowest to widest, over the radius; 0 where nothing
+// was.
+double outline_relief(std::span<const SectionPlace> places, double along, double lead);
 
 // Adds what was measured. It is blended between places, and fades to the rest within a few radii of the last
 // one that has any. places: rising along the branch; rings: framed; on_foot: it goes on down a foot, else it

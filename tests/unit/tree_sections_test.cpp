@@ -12,6 +12,7 @@
 #include "edit/commands/commands.h"
 #include "edit/delta.h"
 #include "edit/graft/scion.h"
+#include "edit/move.h"
 #include "edit/prune/removed.h"
 #include "edit/smooth.h"
 #include "edit/vary/vary.h"
@@ -117,9 +118,10 @@ TEST(TreeSections, GoAlongWithScionsAndCuts) {
     Tree tree = measured_tree();
     const Tree scion = take_scion(tree, 10);
     EXPECT_EQ(scion.sections().size(), 1u) << "only its own";
-    expect_section(scion, 1, 9);
+    ASSERT_NE(scion.section_of(1), nullptr);
     const std::vector<NodeId> added = place_scion(tree, 7, scion, {});
-    expect_section(tree, added[0], 9);
+    // In the scion's own axes, the section is told by others.
+    EXPECT_EQ(*tree.section_of(added[0]), *scion.section_of(1));
     EXPECT_EQ(tree.section_of(added[1]), nullptr);
     expect_section(tree, 7, 7);
 
@@ -128,6 +130,61 @@ TEST(TreeSections, GoAlongWithScionsAndCuts) {
     expect_section(piece, 1, 9);
     EXPECT_EQ(piece.section_of(2), nullptr);
     EXPECT_EQ(piece.sections().size(), 1u);
+}
+
+double radius_of(const SectionShape& shape, double angle) {
+    double sum = 1.0;
+    for (size_t i = 0; i < SectionShape::kHarmonics; i++) {
+        const double by = static_cast<double>(i + 2) * angle;
+        sum += static_cast<double>(shape.cosine[i]) * std::cos(by) +
+               static_cast<double>(shape.sine[i]) * std::sin(by);
+    }
+    return sum;
+}
+
+// Where the outline of a node is in space, in units of its radius, seen from its axis; and the other way
+// about.
+DVec3 outline_at(const Tree& tree, NodeId id, double angle) {
+    const DVec3 way = glm::normalize(tree.node(id).position - tree.node(tree.node(id).parent).position);
+    const DVec3 zero = section_zero(way);
+    return (zero * std::cos(angle) + glm::cross(way, zero) * std::sin(angle)) *
+           radius_of(*tree.section_of(id), angle);
+}
+
+double off_outline(const Tree& tree, NodeId id, const DVec3& place) {
+    const DVec3 way = glm::normalize(tree.node(id).position - tree.node(tree.node(id).parent).position);
+    const DVec3 zero = section_zero(way);
+    const double angle = std::atan2(glm::dot(place, glm::cross(way, zero)), glm::dot(place, zero));
+    return std::abs(glm::length(place) - radius_of(*tree.section_of(id), angle));
+}
+
+// What the scan showed on one side of a branch stays on that side of its wood.
+TEST(TreeSections, TurnWithTheWood) {
+    const Tree start = measured_tree();
+    const DVec3 axis = glm::normalize(DVec3(0.3, 1.0, 0.4));
+    const DMat3 turn = turn_about(axis, 2.0);
+    const DVec3 normal = glm::normalize(DVec3(1.0, 0.2, -0.3));
+    const DMat3 mirror = DMat3(1.0) - 2.0 * glm::outerProduct(normal, normal);
+    for (const bool mirrored : {false, true}) {
+        Tree tree = start;
+        if (mirrored)
+            mirror_branch(tree, 5, normal);
+        else
+            turn_branch(tree, 5, axis, glm::degrees(2.0));
+        EXPECT_EQ(tree.check(), std::nullopt);
+        for (const NodeId id : {5, 6, 7, 8})
+            for (double angle = 0.0; angle < 6.3; angle += 0.7)
+                EXPECT_LT(off_outline(tree, id, (mirrored ? mirror : turn) * outline_at(start, id, angle)),
+                          1e-5)
+                    << mirrored << " " << id;
+        expect_section(tree, 4, 4);
+    }
+    // A scion that is put back where it was is as it was.
+    Tree tree = start;
+    const DMat3 frame = frame_about(direction_at(tree, 4));
+    const std::vector<NodeId> added = place_scion(tree, 4, take_scion(tree, 10), {frame, 1.0});
+    for (double angle = 0.0; angle < 6.3; angle += 0.7)
+        EXPECT_LT(off_outline(tree, added[0], outline_at(start, 10, angle)), 1e-5);
 }
 
 TEST(TreeSections, VariantsShowThem) {
@@ -146,20 +203,11 @@ TEST(TreeSections, EditsAreUndoneAndDoneAgain) {
     std::vector<Tree> states{tree};
     std::vector<TreeDelta> deltas;
     for (const char* const command :
-         {"scale_radius node=2 factor=1.5", "prune node=10", "graft", "subdivide nodes=all length=0.2",
-          "lstring node=8 string=F(0.3)[+(50)F(0.2)]F(0.3)"}) {
+         {"set_radius nodes=2 radius=0.3", "turn node=5 axis=0,1,0.2 angle=40", "mirror node=10 normal=1,0,0",
+          "graft from=10 node=7", "subdivide nodes=all length=0.2", "cut node=10",
+          "lstring node=8 string=F(0.3)[+(50)F(0.2)]F(0.3)", "smooth_paths nodes=all"}) {
         Tree next = tree;
-        const std::string word = command;
-        if (word.starts_with("scale"))
-            next.set_radius(2, 0.3);
-        else if (word.starts_with("prune"))
-            remove_wood(next, {10});
-        else if (word == "graft")
-            place_scion(next, 7, take_scion(start, 10), {});
-        else if (word.starts_with("subdivide"))
-            subdivide(next, next.depth_first(), 0.2, false);
-        else
-            next.remove_subtree(8), next.drop_unused_sections();
+        perform(next, command);
         EXPECT_EQ(next.check(), std::nullopt) << command;
         deltas.push_back(TreeDelta::between(tree, next));
         EXPECT_FALSE(deltas.back().empty());

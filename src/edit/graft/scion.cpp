@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "edit/turn_sections.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "tree/branches.h"
@@ -86,6 +87,7 @@ Tree take_scion(const Tree& tree, NodeId joint_child) {
         scion.set_section(moved[id], node.section);
     }
     scion.drop_unused_sections();
+    turn_sections(scion, scion.depth_first(), into);
     return scion;
 }
 
@@ -167,6 +169,7 @@ std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
         if (section_of[i] > 0) tree.set_section(moved[order[i]], sections_before + section_of[i]);
         added.push_back(moved[order[i]]);
     }
+    if (!sections.empty()) turn_sections(tree, added, placement.axes);
     return added;
 }
 

@@ -25,6 +25,7 @@ constexpr int kReweightings = 10;
 constexpr double kOff = 1e9;      // keeps a harmonic at 0
 constexpr double kTukey = 4.685;  // 95 % efficiency for normal noise
 constexpr double kMadToSigma = 1.4826;
+constexpr double kRelief = 0.06;       // radii: ribs four times as high are still wood, not ivy on it
 constexpr double kLeastScale = 0.005;  // radii: what bark varies by in any case
 // Over the mean radius: how large a harmonic is before it is seen (scanned stems: .02 to .15). It keeps a gap
 // between the points from swinging out.
@@ -124,7 +125,7 @@ Fit fit_series(const Sectors& sectors) {
             residual[s] = sectors[s].radius - value_of(fit.series, terms[s]);
             off.push_back(std::abs(residual[s]));
         }
-        const double scale = std::max(kMadToSigma * quantile(off, 0.5), kLeastScale);
+        const double scale = std::max(kMadToSigma * quantile(off, 0.5), kRelief);
         double squares = 0.0;
         fit.weights = 0.0;
         fit.seen = 0;
