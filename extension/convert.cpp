@@ -194,6 +194,19 @@ Dictionary to_dictionary(const treerec::Tree& p_tree, int p_format_version) {
         data["leaf_rules"] = rules;
         data["node_leaf_rules"] = numbers;
     }
+    std::vector<NodeId> measured;
+    std::vector<float> sections;
+    for (const NodeId id : ids) {
+        if (const treerec::SectionShape* const section = p_tree.section_of(id)) {
+            measured.push_back(id);
+            sections.insert(sections.end(), section->cosine.begin(), section->cosine.end());
+            sections.insert(sections.end(), section->sine.begin(), section->sine.end());
+        }
+    }
+    if (!measured.empty()) {
+        data["section_nodes"] = to_godot(measured);
+        data["sections"] = to_godot(sections);
+    }
     return data;
 }
 
@@ -260,6 +273,36 @@ static void set_leaf_rules(treerec::Tree& p_tree, const PackedInt32Array& p_ids,
     }
 }
 
+// What a skeleton keeps of the outlines that were measured.
+static void set_sections(treerec::Tree& p_tree, const Dictionary& p_data) {
+    const PackedInt32Array nodes = require_entry(p_data, "section_nodes", Variant::PACKED_INT32_ARRAY);
+    const PackedFloat32Array numbers = require_entry(p_data, "sections", Variant::PACKED_FLOAT32_ARRAY);
+    constexpr size_t kHarmonics = treerec::SectionShape::kHarmonics;
+    const size_t count = size_t(nodes.size());
+    bool sound = size_t(numbers.size()) == 2 * kHarmonics * count && count <= treerec::kMostSections;
+    std::vector<treerec::SectionShape> sections(sound ? count : 0);
+    const float* read = numbers.ptr();
+    for (treerec::SectionShape& section : sections) {
+        std::copy(read, read + kHarmonics, section.cosine.begin());
+        std::copy(read + kHarmonics, read + 2 * kHarmonics, section.sine.begin());
+        sound = sound && std::all_of(read, read + 2 * kHarmonics, [](float p_value) {
+                    return std::abs(p_value) <= treerec::kLargestHarmonic;
+                });
+        read += 2 * kHarmonics;
+    }
+    for (const NodeId id : nodes) {
+        sound = sound && p_tree.contains(id);
+    }
+    if (!sound) {
+        throw treerec::Error(
+            "The saved tree is damaged: its measured sections are none. Reconstruct the tree again.");
+    }
+    const size_t before = p_tree.add_sections(sections);
+    for (size_t i = 0; i < count; i++) {
+        p_tree.set_section(nodes[int64_t(i)], before + i + 1);
+    }
+}
+
 treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     const PackedInt32Array ids = require_entry(p_data, "ids", Variant::PACKED_INT32_ARRAY);
     const PackedInt32Array parents = require_entry(p_data, "parents", Variant::PACKED_INT32_ARRAY);
@@ -302,6 +345,9 @@ treerec::Tree tree_from_dictionary(const Dictionary& p_data) {
     tree.set_frame(frame);
     if (p_data.has("leaf_rules")) {
         set_leaf_rules(tree, ids, p_data);
+    }
+    if (p_data.has("sections") || p_data.has("section_nodes")) {
+        set_sections(tree, p_data);
     }
     return tree;
 }

@@ -1,5 +1,6 @@
 #include "tree_reconstruction/tree_reconstruction.h"
 
+#include <algorithm>
 #include <cmath>
 #include <godot_cpp/variant/packed_color_array.hpp>
 #include <godot_cpp/variant/packed_float64_array.hpp>
@@ -71,9 +72,15 @@ Dictionary TreeReconstruction::get_skeleton() const {
         return newer_skeleton_;
     }
     const std::shared_ptr<const Tree> tree = get_tree();
-    // What has no leaf rules is as the first version has it, which can read it.
-    return tree->empty() ? Dictionary()
-                         : to_dictionary(*tree, tree->leaf_rules().empty() ? 1 : int(FORMAT_VERSION));
+    if (tree->empty()) {
+        return Dictionary();
+    }
+    // The oldest version that reads all that there is: leaf rules came with the second, sections with the
+    // third.
+    const std::vector<NodeId> ids = tree->depth_first();
+    const bool measured =
+        std::any_of(ids.begin(), ids.end(), [&](NodeId p_id) { return tree->node(p_id).section > 0; });
+    return to_dictionary(*tree, measured ? int(FORMAT_VERSION) : tree->leaf_rules().empty() ? 1 : 2);
 }
 
 // Until version 2 of the report, "delaunay" was the name of what is "geodesic" now.

@@ -32,7 +32,7 @@ class TreeReconstruction : public godot::Resource {
   public:
     enum NodeKind { NODE_KIND_LEAF, NODE_KIND_BRANCH, NODE_KIND_COMMON, NODE_KIND_TRUNK };
     enum LeafArrangement { LEAF_ARRANGEMENT_ALTERNATE, LEAF_ARRANGEMENT_OPPOSITE };
-    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 2, FOLIAGE_VERSION = 1 };
+    enum { NO_NODE = treerec::kNoNode, FORMAT_VERSION = 3, FOLIAGE_VERSION = 1 };
 
     // For the other classes of this extension.
     void set_tree(treerec::Tree p_tree);

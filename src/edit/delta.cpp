@@ -31,6 +31,7 @@ constexpr PartPlace kParts[] = {
     {TreeDelta::kChildCount, offsetof(Node, child_count), sizeof(int32_t)},
     {TreeDelta::kFlags, offsetof(Node, flags), sizeof(uint8_t)},
     {TreeDelta::kLeafRule, offsetof(Node, leaf_rule), sizeof(uint8_t)},
+    {TreeDelta::kSection, offsetof(Node, section), sizeof(uint16_t)},
 };
 
 const char* bytes_of(const Node& node) {
@@ -41,11 +42,13 @@ char* bytes_of(Node& node) {
     return reinterpret_cast<char*>(&node);
 }
 
-// The fields lie without gaps up to the leaf rule; what pads the struct behind it is no value.
+// The fields lie without gaps.
 bool same(const Node& a, const Node& b) {
     static_assert(offsetof(Node, flags) == sizeof(DVec3) + sizeof(double) + kLinksSize + 2 * sizeof(int32_t));
     static_assert(offsetof(Node, leaf_rule) == offsetof(Node, flags) + 1);
-    return std::memcmp(&a, &b, offsetof(Node, leaf_rule) + 1) == 0;
+    static_assert(offsetof(Node, section) == offsetof(Node, leaf_rule) + 1);
+    static_assert(sizeof(Node) == offsetof(Node, section) + sizeof(uint16_t));
+    return std::memcmp(&a, &b, sizeof(Node)) == 0;
 }
 
 bool same_bits(double a, double b) {
@@ -62,11 +65,12 @@ bool TreeDelta::Whole::operator==(const Whole& other) const {
     return root == other.root && count == other.count && id_end == other.id_end &&
            frame.up == other.frame.up && same_bits(frame.metres_per_unit, other.frame.metres_per_unit) &&
            same_bits(frame.origin, other.frame.origin) && same_bits(frame.tilt, other.frame.tilt) &&
-           leaf_rules == other.leaf_rules;
+           leaf_rules == other.leaf_rules &&
+           (sections == other.sections || (sections && other.sections && *sections == *other.sections));
 }
 
 TreeDelta::Whole TreeDelta::whole_of(const Tree& tree) {
-    return {tree.root_, tree.count_, tree.id_end(), tree.frame_, tree.leaf_rules_};
+    return {tree.root_, tree.count_, tree.id_end(), tree.frame_, tree.leaf_rules_, tree.sections_};
 }
 
 void TreeDelta::record(NodeId id, const Node& before, const Node& after) {
@@ -171,6 +175,7 @@ void TreeDelta::move(Tree& tree, bool forwards) const {
     tree.count_ = to.count;
     tree.frame_ = to.frame;
     tree.leaf_rules_ = to.leaf_rules;
+    tree.sections_ = to.sections;
 }
 
 bool TreeDelta::empty() const {

@@ -44,7 +44,8 @@ class TreeDelta {
         kDepth = 8,
         kChildCount = 16,
         kFlags = 32,
-        kLeafRule = 64
+        kLeafRule = 64,
+        kSection = 128
     };
     // The kept nodes of which any of `parts` changed.
     std::vector<NodeId> changed(uint8_t parts) const;
@@ -62,6 +63,7 @@ class TreeDelta {
         NodeId id_end = 0;
         ScanFrame frame;
         std::vector<std::string> leaf_rules;
+        SectionTable sections;
 
         bool operator==(const Whole& other) const;
     };

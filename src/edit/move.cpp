@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "edit/node_sets.h"
+#include "edit/turn_sections.h"
 #include "geometry/portable_math.h"
 
 namespace treerec {
@@ -96,7 +97,12 @@ std::vector<NodeId> turn_branch(Tree& tree, NodeId id, const DVec3& axis, double
     if (!std::isfinite(degrees)) throw Error("The angle must be a finite number of degrees.");
     const DVec3 joint = joint_of(tree, id);
     const double angle = glm::radians(degrees);
-    return transform(tree, id, [&](const DVec3& p) { return joint + turned(p - joint, unit, angle); });
+    const DMat3 turn(turned({1, 0, 0}, unit, angle), turned({0, 1, 0}, unit, angle),
+                     turned({0, 0, 1}, unit, angle));
+    const std::vector<NodeId> moved =
+        transform(tree, id, [&](const DVec3& p) { return joint + turned(p - joint, unit, angle); });
+    turn_sections(tree, moved, turn);
+    return moved;
 }
 
 std::vector<NodeId> scale_branch(Tree& tree, NodeId id, double factor, double thickness) {
@@ -119,7 +125,10 @@ std::vector<NodeId> mirror_branch(Tree& tree, NodeId id, const DVec3& normal) {
     require_node(tree, id);
     const DVec3 unit = require_direction(normal, "The mirror's normal");
     const DVec3 joint = joint_of(tree, id);
-    return transform(tree, id, [&](const DVec3& p) { return p - unit * (2.0 * glm::dot(p - joint, unit)); });
+    const std::vector<NodeId> moved =
+        transform(tree, id, [&](const DVec3& p) { return p - unit * (2.0 * glm::dot(p - joint, unit)); });
+    turn_sections(tree, moved, DMat3(1.0) - 2.0 * glm::outerProduct(unit, unit));
+    return moved;
 }
 
 std::vector<NodeId> grow_node(Tree& tree, NodeId id, const GrowNodeOptions& options) {

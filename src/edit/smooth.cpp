@@ -244,6 +244,19 @@ std::vector<NodeId> subdivide(Tree& tree, const std::vector<NodeId>& nodes, doub
         added.push_back(tree.id_end() + static_cast<NodeId>(i));
     Tree finer = Tree::from_arrays(parents, positions, radii, flags, &ids);
     finer.set_frame(tree.frame());
+    for (const std::string& rule : tree.leaf_rules())
+        finer.name_leaf_rule(rule);
+    finer.set_section_table(tree.section_table());
+    for (const NodeId id : tree.depth_first()) {
+        const Node& node = tree.node(id);
+        const auto mark = [&](NodeId like) {
+            finer.set_leaf_rule(like, node.leaf_rule);
+            finer.set_section(like, node.section);
+        };
+        mark(id);
+        for (size_t i = begin[id]; i < end[id]; i++)
+            mark(tree.id_end() + static_cast<NodeId>(i));
+    }
     tree = std::move(finer);
     return added;
 }

@@ -9,6 +9,7 @@
 #include "exchange/finite.h"
 #include "exchange/lstring_file.h"
 #include "exchange/qsm_columns.h"
+#include "exchange/section_lines.h"
 #include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/skeleton_table.h"
@@ -102,8 +103,10 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 void write_treefile(const std::string& path, const Tree& tree) {
     require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
-    std::string text = "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) +
-                       "\nx,y,z,radius,parent_id,flags\n";
+    std::string text =
+        "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) + "\n";
+    append_section_lines(text, tree);
+    text += "x,y,z,radius,parent_id,flags\n";
     text.reserve(text.size() + 90 * table.positions.size());
     for (size_t i = 0; i < table.positions.size(); i++) {
         if (i > 0) text += ", ";
@@ -131,13 +134,14 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, const Skele
     FileStamp stamp{choice.up, 1.0};
     std::optional<TreefileHeader> header;
     SkeletonTable wanted;
+    std::vector<FileSection> sections;
     std::vector<size_t> sizes;  // of the trees, in nodes
     size_t line_number = 0;
     while (const std::optional<std::string_view> line = next_line(rest)) {
         line_number++;
         if (line->find_first_not_of(" \t") == std::string_view::npos) continue;
         if (line->front() == '#') {
-            read_stamp(*line, stamp, path);
+            if (!read_section_line(*line, sections, path)) read_stamp(*line, stamp, path);
             continue;
         }
         if (!header) {
@@ -157,6 +161,7 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, const Skele
     choose_tree(sizes, choice, path, report);
     Tree tree = tree_of(wanted, stamp, path);
     if (header->branch.flags < 0) mark_trunk(tree);
+    if (sizes.size() == 1) put_sections(sections, tree, path);
     return tree;
 }
 

@@ -40,7 +40,8 @@ struct SkeletonReport {
 
 // The text format of csiro-robotics/treetools and raycloudtools: comment lines, the line of field names
 // "x,y,z,radius,parent_id,flags" and a line per tree with one tuple per node, parents before children, the
-// root's parent -1. A node's radius is that of the segment to its parent.
+// root's parent -1. A node's radius is that of the segment to its parent. Measured sections stand in
+// comments, which other programs skip (section_lines.h).
 void write_treefile(const std::string& path, const Tree& tree);
 // One tree of the file. Reads per-tree attributes before the fields, more fields (skipped, but for
 // "flags"), and the second list of fields by which newer files tell branch fields from root fields.

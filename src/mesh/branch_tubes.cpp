@@ -26,6 +26,7 @@ constexpr double kFineTwigRadius = 0.004;   // these two, and run out in a point
 constexpr double kHeightSlack = 1e-3;       // how far rings may leave out any bend, over the tree's height
 constexpr double kTaperSlack = 0.06;        // how far they may leave out a change of the radius, over it,
 constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
+constexpr double kOutlineSlack = 0.03;      // and a change of the outline, over the radius, at level 0
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
 constexpr int kCollarLevel = 1;             // the coarsest that has collars, on stouter branches:
 constexpr double kLightCollars = 2.0;       // so many times as thick there
@@ -117,7 +118,7 @@ void Builder::add_collar(const Branch& branch, std::vector<AxisPoint>& points, T
 
 // As few rings as show the axis' bends and the radius' changes.
 void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
-                         std::vector<Ring>& out) const {
+                         const std::vector<SectionPlace>& sections, std::vector<Ring>& out) const {
     const int level = std::clamp(options.level, 0, 8);
     // Of the wood itself: what comes out of a parent starts thinner.
     const double stoutness = std::max(points.front().radius, tree.node(list.nodes[branch.begin]).radius);
@@ -132,6 +133,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const size_t most_left_out = kMostLeftOut << level;
     const double taper = kTaperSlack * (1 << level),
                  taper_slack = kHeightTaperSlack * crown.height * (1 << level);
+    const double lead = section_lead(stoutness), outline_slack = kOutlineSlack * (1 << level);
     const double least_slack = kHeightSlack * crown.height * (1 << level);
     const auto add = [&](const AxisPoint& point) {
         out.push_back({point.position, point.direction, std::max(point.radius, least), point.along,
@@ -151,7 +153,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             if (std::abs(thick - points[i].radius) > std::max(taper * points[i].radius, taper_slack))
                 return true;
         }
-        return false;
+        return missed_outline(sections, points[from].along, points[to].along, lead) > outline_slack;
     };
     size_t last = 0;
     add(points[0]);
@@ -207,7 +209,8 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
             return;
         add_collar(branch, points, tube);
     }
-    pick_rings(branch, points, tube, out);
+    const std::vector<SectionPlace> sections = sections_of(branch);
+    pick_rings(branch, points, tube, sections, out);
     tube.rings = static_cast<uint32_t>(out.size()) - tube.first_ring;
     limit_tilt(out.data() + tube.first_ring, tube.rings);
     if (branch.attach != kNoNode && begins && options.level <= kCollarLevel) {
@@ -220,10 +223,12 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     for (size_t i = tube.first_ring; i < out.size(); i++)
         thickest = std::max(thickest, out[i].radius);
     tube.sides = sides_of(thickest, options);
-    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk()) stand(points, tube, out);
+    if (branch.attach == kNoNode && begins && tree.node(tree.root()).is_trunk())
+        stand(points, sections, tube, out);
     tube.base_radius = points.front().radius;
     if (options.level <= kUnevenLevel && thickest >= kUnevenRadius) {
-        const double round = branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest;
+        const double round = std::max(
+            branch.attach == kNoNode ? tube.flare.reach : tube.exit + 2.5 * thickest, covered[index]);
         tube.section =
             uneven_section(hash_seed(foot_seed(tree), static_cast<uint64_t>(list.nodes[branch.begin])),
                            thickest, round, out.back().along);
@@ -235,14 +240,31 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
     if (tube.point) out.back().radius = least;
     parallel_transport(out.data() + tube.first_ring, tube.rings, tube.flare.turn);
+    if (tube.section.until > tube.section.from && !sections.empty())
+        measure_section(tube.section, sections, out.data() + tube.first_ring, tube.rings, tube.foot_rows > 0);
+}
+
+// What was measured of its outlines, where it is to be seen.
+std::vector<SectionPlace> Builder::sections_of(const Branch& branch) const {
+    std::vector<SectionPlace> places;
+    if (tree.sections().empty() || options.level > kUnevenLevel) return places;
+    const std::span<const NodeId> nodes = list.nodes_of(branch);
+    if (std::none_of(nodes.begin(), nodes.end(), [&](NodeId id) { return tree.node(id).section > 0; }))
+        return places;
+    for (const NodeId id : nodes)
+        places.push_back({static_cast<double>(node_along[id]), tree.section_of(id)});
+    return places;
 }
 
 // A standing trunk has a foot, and goes on below the ground.
-void Builder::stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const {
+void Builder::stand(const std::vector<AxisPoint>& points, const std::vector<SectionPlace>& sections,
+                    Tube& tube, std::vector<Ring>& out) const {
     if (!stands(out.data() + tube.first_ring, tube.rings)) return;
     // Palms and poles have no roots to show.
     const bool roots = list.branches.size() > 1;
     tube.flare = plan_flare(points, foot_depth(crown.height), foot_seed(tree), roots);
+    const double lead = section_lead(points.front().radius);
+    hold_back_roots(tube.flare, outline_relief(sections, 0.5 * tube.flare.reach, lead));
     if (options.level > 1 || options.maximum_sides < kRootedSides) tube.flare = without_roots(tube.flare);
     tube.sides = std::max(tube.sides, (kSidesPerRoot * tube.flare.count) >> options.level);
     tube.foot_rows = lay_foot_rings(tube.flare, points, options.level, out, tube.first_ring);

@@ -67,8 +67,15 @@ Between find_span(const TubeShape& tube, const DVec3& p, size_t span) {
     }
 }
 
-// As if the tube were round: quick, and right to a few hundredths of its radius.
-double round_height(const TubeShape& tube, const DVec3& p, size_t& hint) {
+BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint);
+
+// As if the tube were round where nothing else was measured: quick, and right to a few hundredths of its
+// radius.
+double rough_height(const TubeShape& tube, const DVec3& p, size_t& hint) {
+    if (tube.section->is_measured()) {
+        const BarkPlace place = locate(tube, p, hint);
+        return place.beyond ? HUGE_VAL : place.height;
+    }
     const Between at = find_span(tube, p, hint);
     hint = at.span;
     if (at.beyond) return HUGE_VAL;
@@ -115,8 +122,10 @@ BarkPlace locate(const TubeShape& tube, const DVec3& p, size_t& hint) {
     place.height = out - place.surface;
     const double slope = ring_slope(tube.rings, tube.count, at.span) * (1.0 - at.t) +
                          ring_slope(tube.rings, tube.count, at.span + 1) * at.t;
-    place.normal =
-        glm::normalize(place.radial - axis * slope - place.side * tube.section->turn(place.along, angle));
+    const double factor = tube.section->factor(place.along, angle);
+    const double rise = slope * factor + place.radius * tube.section->rise(place.along, angle);
+    place.normal = glm::normalize(place.radial - axis * rise -
+                                  place.side * (tube.section->turn(place.along, angle) / factor));
     return place;
 }
 
@@ -219,11 +228,11 @@ class CollarMaker {
 bool CollarMaker::find_exit(uint32_t index) {
     size_t hint = span_;
     DVec3 inside = corner(0, index);
-    double low = round_height(host_, inside, hint);
+    double low = rough_height(host_, inside, hint);
     if (!(low < 0.0)) return false;
     for (size_t ring = 1; ring < std::min(branch_.count, kMostRings); ring++) {
         const DVec3 next = corner(ring, index);
-        double high = round_height(host_, next, hint);
+        double high = rough_height(host_, next, hint);
         if (high == HUGE_VAL) return false;
         if (high <= 0.0) {
             low = high;
@@ -235,7 +244,7 @@ bool CollarMaker::find_exit(uint32_t index) {
         int kept = 0;
         for (int i = 0; i < 4; i++) {
             t = (a * high - b * low) / (high - low);
-            const double there = round_height(host_, glm::mix(inside, next, t), hint);
+            const double there = rough_height(host_, glm::mix(inside, next, t), hint);
             if (there == HUGE_VAL) return false;
             if (there > 0.0) {
                 b = t;

@@ -32,6 +32,10 @@ constexpr double kDepthShare = 0.1;  // of the tree's height
 constexpr double kLeastDepth = 0.6;  // metres,
 constexpr double kMostDepth = 2.0;
 constexpr double kMostOfHeight = 0.5;
+// Of an outline from narrowest to widest, over the radius: what leaves all roots to be drawn, and what is
+// roots itself. Some of each stays: harmonics blunt what is sharp.
+constexpr double kFluted = 0.4, kButtressed = 1.2;
+constexpr double kYield = 0.8;
 constexpr size_t kOutline = 96;   // corners that it is measured by,
 constexpr size_t kSamples = 360;  // and between roots on the ground
 
@@ -193,6 +197,12 @@ RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_
     return flare;
 }
 
+void hold_back_roots(RootFlare& flare, double relief) {
+    const double kept = 1.0 - kYield * glm::smoothstep(kFluted, kButtressed, relief);
+    for (uint32_t i = 0; i < flare.count; i++)
+        flare.roots[i].out *= kept;
+}
+
 RootFlare without_roots(RootFlare flare) {
     for (uint32_t i = 0; i < flare.count; i++) {
         const SurfaceRoot& root = flare.roots[i];
@@ -247,7 +257,8 @@ size_t lay_foot_rings(const RootFlare& flare, const std::vector<AxisPoint>& poin
     return foot.size() - 1;
 }
 
-std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides) {
+std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides,
+                                   const UnevenSection& section) {
     const Columns columns = flare.count > 0 ? spread_columns(flare, sides) : Columns();
     const size_t stride = sides + 1;
     // The ring above the foot is among them for what is measured between rows.
@@ -261,7 +272,8 @@ std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, si
             const double factor = foot_factor(flare, ring.along, angle);
             const DVec3 radial = ring.x * portable::cos(angle) + y * portable::sin(angle);
             FootVertex& vertex = out[row * stride + j];
-            vertex.position = ring.centre + radial * (ring.radius * factor);
+            vertex.position =
+                ring.centre + radial * (ring.radius * factor * section.factor(ring.along, angle));
             vertex.normal = radial;
             vertex.light = factor - mean;  // how far it stands out
         }

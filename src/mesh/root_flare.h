@@ -9,6 +9,7 @@
 
 #include "foliage/branch_axis.h"
 #include "mesh/tube_rings.h"
+#include "mesh/uneven_section.h"
 
 namespace treerec {
 
@@ -42,6 +43,10 @@ double foot_depth(double height);
 // any.
 RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_t seed, bool roots);
 
+// Lobes that the scan saw are the trunk's own roots and buttresses: others stand back from them. relief: of
+// the outline there, from its narrowest to its widest over the radius.
+void hold_back_roots(RootFlare& flare, double relief);
+
 // As wide on average, and round: for where single roots are not seen.
 RootFlare without_roots(RootFlare flare);
 
@@ -62,7 +67,9 @@ struct FootVertex {
 
 // Vertices of the foot's rows, of sides + 1 columns each, which gather where roots stand out. rings: of the
 // trunk, from the cut; rows: the foot's, at least one ring follows them.
-std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides);
+// section: what was measured shows there too.
+std::vector<FootVertex> shape_foot(const RootFlare& flare, const Ring* rings, size_t rows, uint32_t sides,
+                                   const UnevenSection& section);
 
 // The picture of a base's bark: as wide as its outline there, as far as limit_slant() lets it. rings: of the
 // trunk, from the cut.

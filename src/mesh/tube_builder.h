@@ -136,10 +136,12 @@ struct Builder {
     void join(size_t index);
     // Coarser levels cover as much as level 0: see tube_widths.cpp.
     void widen(size_t index);
-    void stand(const std::vector<AxisPoint>& points, Tube& tube, std::vector<Ring>& out) const;
+    std::vector<SectionPlace> sections_of(const Branch& branch) const;
+    void stand(const std::vector<AxisPoint>& points, const std::vector<SectionPlace>& sections, Tube& tube,
+               std::vector<Ring>& out) const;
     void add_collar(const Branch& branch, std::vector<AxisPoint>& points, Tube& tube) const;
     void pick_rings(const Branch& branch, const std::vector<AxisPoint>& points, const Tube& tube,
-                    std::vector<Ring>& out) const;
+                    const std::vector<SectionPlace>& sections, std::vector<Ring>& out) const;
     double light_at(const Tube& tube, double start_radius, const DVec3& centre, double along,
                     double shade) const;
     float phase_of(size_t index) const {

@@ -137,7 +137,8 @@ void Emitter::put_rings() {
 
 void Emitter::put_foot() {
     if (tube_.foot_rows == 0) return;
-    const std::vector<FootVertex> foot = shape_foot(tube_.flare, run_, tube_.foot_rows, sides_);
+    const std::vector<FootVertex> foot =
+        shape_foot(tube_.flare, run_, tube_.foot_rows, sides_, tube_.section);
     const double per_side = 1.0 / sides_;
     for (size_t i = 0; i < tube_.foot_rows; i++) {
         const Ring& ring = run_[i];
@@ -160,7 +161,6 @@ void Emitter::put_ring(size_t i) {
     const Ring& ring = run_[i];
     const DVec3 y = ring.y();
     const double slope = ring_slope(run_, tube_.rings, i);
-    const double scale = 1.0 / std::sqrt(1.0 + slope * slope);
     const Vec4 color = color_at(ring.centre, ring.along, light_at(ring.centre, ring.along), phase_);
     const double shown = ring.radius * ring.stretch;
     const double ring_repeats = b_.repeats_of(index_, shown);
@@ -171,11 +171,13 @@ void Emitter::put_ring(size_t i) {
     for (uint32_t j = 0; j < stride_; j++) {
         const DVec3 radial = ring.x * circle_[j].x + y * circle_[j].y;
         DVec3 tangent = (y * circle_[j].x - ring.x * circle_[j].y);
-        DVec3 outward = (radial - ring.normal * slope) * scale;
-        const DVec3 around = tangent;
         const double angle = 2.0 * kPi * (j % sides_) / sides_;
-        const DVec3 position = ring.centre + radial * (ring.radius * tube_.section.factor(ring.along, angle));
-        outward = normalized_or(outward - around * (tube_.section.turn(ring.along, angle) * scale), outward);
+        const double factor = tube_.section.factor(ring.along, angle);
+        const DVec3 position = ring.centre + radial * (ring.radius * factor);
+        const double rise = slope * factor + ring.radius * tube_.section.rise(ring.along, angle);
+        DVec3 outward =
+            radial - ring.normal * rise - tangent * (tube_.section.turn(ring.along, angle) / factor);
+        outward = normalized_or(outward, radial);
         tangent = normalized_or(tangent - outward * glm::dot(outward, tangent), tangent);
         Vec4 corner_color = color;
         if (blend > 0.0) {

@@ -25,7 +25,8 @@ void Tree::require(NodeId id) const {
     if (!contains(id)) throw Error("There is no node " + std::to_string(id) + " in this tree.");
 }
 
-NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule) {
+NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule,
+                      uint16_t section) {
     require_finite(position);
     require_radius(radius);
     Node node;
@@ -33,6 +34,7 @@ NodeId Tree::new_node(const DVec3& position, double radius, uint8_t flags, uint8
     node.radius = radius;
     node.flags = flags;
     node.leaf_rule = leaf_rule;
+    node.section = section;
     node.depth = 1;
     nodes_.push_back(node);
     count_++;
@@ -218,7 +220,7 @@ void Tree::splice_out(NodeId id) {
 NodeId Tree::insert_before(NodeId id, const DVec3& position, double radius, uint8_t flags) {
     require(id);
     if (id == root_) throw Error("Nothing can be inserted below the root.");
-    const NodeId middle = new_node(position, radius, flags, nodes_[id].leaf_rule);
+    const NodeId middle = new_node(position, radius, flags, nodes_[id].leaf_rule, nodes_[id].section);
     const Node lower = nodes_[id];
     Node& inserted = nodes_[middle];
     inserted.parent = lower.parent;
@@ -269,6 +271,7 @@ Tree Tree::compacted() const {
     Tree result;
     result.frame_ = frame_;
     result.leaf_rules_ = leaf_rules_;
+    result.sections_ = sections_;
     result.nodes_.reserve(size());
     std::vector<NodeId> moved(nodes_.size(), kNoNode);
     for (NodeId id : depth_first()) {
@@ -277,6 +280,7 @@ Tree Tree::compacted() const {
                         ? result.add_root(node.position, node.radius, node.flags)
                         : result.add_child(moved[node.parent], node.position, node.radius, node.flags);
         result.nodes_[moved[id]].leaf_rule = node.leaf_rule;
+        result.nodes_[moved[id]].section = node.section;
     }
     return result;
 }
@@ -356,6 +360,7 @@ std::optional<std::string> Tree::check() const {
         if (!(node.radius > 0.0) || !std::isfinite(node.radius))
             return wrong(id, "its radius is not positive");
         if (node.leaf_rule > leaf_rules_.size()) return wrong(id, "its leaf rule does not exist");
+        if (node.section > sections().size()) return wrong(id, "its section does not exist");
         if (node.parent == kNoNode) {
             if (id != root_) return wrong(id, "it has no parent and is not the root");
             if (node.depth != 1) return wrong(id, "the root's depth is not 1");

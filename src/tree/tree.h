@@ -9,6 +9,7 @@
 #include "geometry/bounds.h"
 #include "geometry/scan_frame.h"
 #include "geometry/vec.h"
+#include "tree/section_shape.h"
 
 namespace treerec {
 
@@ -42,6 +43,7 @@ struct Node {
     int32_t child_count = 0;
     uint8_t flags = 0;
     uint8_t leaf_rule = 0;  // place in Tree::leaf_rules(), from 1; 0: the tree's own
+    uint16_t section = 0;   // place in Tree::sections(), from 1; 0: not measured
 
     bool is_trunk() const { return (flags & kTrunkFlag) != 0; }
     bool is_measured() const { return (flags & kMeasuredRadiusFlag) != 0; }
@@ -115,6 +117,26 @@ class Tree {
     // Forgets the rules that no node names; the others move up.
     void drop_unused_leaf_rules();
 
+    // Cross-sections that were measured; nodes name them by their place, from 1. They are of the wood at the
+    // node, relative to its radius and direction, so what moves, bends, scales or thickens wood leaves them,
+    // and new wood has none but for what is put between two nodes.
+    const std::vector<SectionShape>& sections() const;
+    const SectionTable& section_table() const { return sections_; }
+    // Of a tree whose nodes are copies of another's. Throws Error where a node names none of these.
+    void set_section_table(SectionTable table);
+    // Adds them all and returns the number before that of the first. Throws Error for more than kMostSections
+    // that nodes name.
+    size_t add_sections(const std::vector<SectionShape>& more);
+    // Throws Error for an unknown id, or a number that names no section.
+    void set_section(NodeId id, size_t number);
+    // Null where none was measured. Precondition: contains(id).
+    const SectionShape* section_of(NodeId id) const {
+        const uint16_t number = nodes_[id].section;
+        return number > 0 ? &(*sections_)[number - 1u] : nullptr;
+    }
+    // Forgets the sections that no node names; the others move up.
+    void drop_unused_sections();
+
     // Removes the node and all below it and returns their ids, parents first. Removing the root empties the
     // tree.
     std::vector<NodeId> remove_subtree(NodeId id);
@@ -149,7 +171,8 @@ class Tree {
     Bounds bounds() const;
 
     // What is wrong with the structure, or nothing: one root, links that agree, no cycle, no orphan, right
-    // depths and counts, finite positions, positive finite radii, rules of leaves that there are.
+    // depths and counts, finite positions, positive finite radii, rules of leaves and sections that there
+    // are.
     std::optional<std::string> check() const;
 
     // Builds a tree from parallel arrays: parents[i] is an index into the arrays or -1, for exactly one i.
@@ -163,7 +186,8 @@ class Tree {
   private:
     friend class TreeDelta;  // edit/delta.h: puts back a tree's exact state
 
-    NodeId new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule);
+    NodeId new_node(const DVec3& position, double radius, uint8_t flags, uint8_t leaf_rule,
+                    uint16_t section = 0);
     void require(NodeId id) const;
     void link_last(NodeId id, NodeId parent);
     void splice_out(NodeId id);
@@ -175,6 +199,7 @@ class Tree {
     int32_t count_ = 0;
     ScanFrame frame_;
     std::vector<std::string> leaf_rules_;
+    SectionTable sections_;
 };
 
 }  // namespace treerec

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "mesh/branch_tubes.h"
@@ -47,6 +49,26 @@ std::vector<std::vector<double>> sections_of(const Mesh& mesh, double above, dou
         EXPECT_NEAR(mean / mesh.radii[row * stride], 1.0, 1e-3);
         for (double& radius : section)
             radius /= mean;
+    }
+    return sections;
+}
+
+// By row of the trunk from half a metre up, its foot included: likewise.
+std::vector<std::vector<double>> sections_about(const Mesh& mesh) {
+    const test::TubeRange trunk = test::tubes_of(mesh)[0];
+    uint32_t stride = 0;
+    while (mesh.colors[stride].g == 0.0f)
+        stride++;
+    std::vector<std::vector<double>> sections;
+    for (uint32_t row = 0; (row + 1) * stride <= trunk.end_vertex; row++) {
+        DVec3 middle(0.0);
+        for (uint32_t j = 0; j + 1 < stride; j++)
+            middle += DVec3(mesh.positions[row * stride + j]) / static_cast<double>(stride - 1);
+        if (middle.y < 0.3 || middle.y > 4.0) continue;
+        std::vector<double>& section = sections.emplace_back();
+        for (uint32_t j = 0; j + 1 < stride; j++)
+            section.push_back(glm::distance(DVec3(mesh.positions[row * stride + j]), middle) /
+                              static_cast<double>(mesh.radii[row * stride]));
     }
     return sections;
 }
@@ -105,6 +127,155 @@ TEST(UnevenSections, AreSmoothAndRoundAtBothEnds) {
     EXPECT_NEAR(mean, 1.0, 1e-9);
     const UnevenSection none = uneven_section(5, 0.2, 2.0, 1.0);
     EXPECT_EQ(none.factor(1.5, 1.0), 1.0);
+}
+
+// --- what was measured ------------------------------------------------------------------------------------
+
+// The trunk with lobes from `first` to the node before `end`, and how far they stand out there.
+Tree measured_trunk(double radius, NodeId first, NodeId end, float lobes = 0.12f) {
+    Tree tree = bent_trunk(radius, 1.0);
+    SectionShape shape;
+    shape.cosine = {lobes, 0.0f, -0.5f * lobes, 0.0f};
+    shape.sine = {0.0f, 0.75f * lobes, 0.0f, 0.25f * lobes};
+    const size_t before = tree.add_sections({shape});
+    for (NodeId id = first; id < end; id++)
+        tree.set_section(id, before + 1);
+    return tree;
+}
+
+double shown_by(const SectionShape& shape, double angle) {
+    double sum = 1.0;
+    for (size_t i = 0; i < SectionShape::kHarmonics; i++) {
+        const double by = static_cast<double>(i + 2) * angle;
+        sum += static_cast<double>(shape.cosine[i]) * std::cos(by) +
+               static_cast<double>(shape.sine[i]) * std::sin(by);
+    }
+    return sum;
+}
+
+TEST(MeasuredSections, AreDrawnWhereTheScanSawThem) {
+    const Tree tree = measured_trunk(0.3, 0, 31);
+    for (int level = 0; level < 2; level++) {
+        SCOPED_TRACE(level);
+        const Mesh mesh = build_branch_tubes(tree, {.level = level});
+        const test::TubeRange trunk = test::tubes_of(mesh)[0];
+        size_t looked = 0;
+        for (uint32_t v = trunk.first_vertex; v < trunk.end_vertex; v++) {
+            const DVec3 p(mesh.positions[v]);
+            if (p.y < 2.0 || p.y > 4.5) continue;
+            // The axis as nodes have it; the mesh's smooth one is within a hundredth of the radius of it.
+            NodeId upper = 1;
+            while (tree.node(upper).position.y < p.y)
+                upper++;
+            const DVec3 low = tree.node(upper - 1).position, way = tree.node(upper).position - low;
+            const DVec3 direction = glm::normalize(way), zero = section_zero(direction);
+            const double t = glm::dot(p - low, direction) / glm::length(way);
+            const DVec3 out = p - (low + way * t);
+            const double angle = std::atan2(glm::dot(out, glm::cross(direction, zero)), glm::dot(out, zero));
+            const double radius = glm::mix(tree.node(upper - 1).radius, tree.node(upper).radius, t);
+            EXPECT_NEAR(glm::length(out) / radius, shown_by(*tree.section_of(5), angle), 0.04);
+            looked++;
+        }
+        EXPECT_GT(looked, level == 0 ? 200u : 50u);
+    }
+    for (const std::vector<double>& section : sections_of(build_branch_tubes(tree, {.level = 2}), 1.0, 4.5))
+        EXPECT_LT(spread(section), 0.002) << "from afar nobody sees it";
+}
+
+TEST(MeasuredSections, FadeToTheRestWhereNothingWasSeen) {
+    const auto sections = sections_of(build_branch_tubes(measured_trunk(0.15, 0, 12)), 0.5, 4.8);
+    ASSERT_GE(sections.size(), 6u);
+    EXPECT_GT(spread(sections.front()), 0.2);
+    EXPECT_LT(spread(sections[sections.size() - 2]), 0.08);
+    // Nor does it end at once: within a hundredth of a metre it changes by no more than a fade does.
+    const Tree tree = measured_trunk(0.15, 0, 12);
+    UnevenSection section = uneven_section(5, 0.15, 0.0, 6.0);
+    std::vector<SectionPlace> places;
+    std::vector<Ring> rings;
+    for (int i = 0; i < 60; i++) {
+        if (i % 2 == 0) places.push_back({0.1 * i, tree.section_of(i / 2)});
+        rings.push_back({DVec3(0, 0.1 * i, 0), DVec3(0, 1, 0), 0.15, 0.1 * i, DVec3(1, 0, 0)});
+    }
+    measure_section(section, places, rings.data(), rings.size(), true);
+    for (int i = 0; i < 72; i++)
+        for (double along = 0.0; along < 5.9; along += 0.01) {
+            const double angle = 2.0 * kPi * i / 72.0;
+            EXPECT_NEAR(section.factor(along, angle), section.factor(along + 0.01, angle), 0.015);
+            if (along > 3.0) {
+                EXPECT_NEAR(section.factor(along, angle), 1.0, 0.04);
+            }
+        }
+}
+
+TEST(MeasuredSections, NormalsAreTrue) {
+    for (int level = 0; level < 2; level++) {
+        const Mesh mesh = build_branch_tubes(measured_trunk(0.3, 0, 20, 0.2f), {.level = level});
+        const test::TubeRange trunk = test::tubes_of(mesh)[0];
+        // At the seam two columns share their places, and each has faces on one side alone.
+        std::map<std::array<float, 3>, DVec3> faces;
+        const auto place_of = [&](uint32_t v) {
+            const Vec3& p = mesh.positions[v];
+            return std::array<float, 3>{p.x, p.y, p.z};
+        };
+        for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+            const uint32_t* const corner = &mesh.indices[t];
+            if (corner[0] >= trunk.end_vertex) continue;
+            const DVec3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),
+                c(mesh.positions[corner[2]]);
+            for (int k = 0; k < 3; k++)
+                faces[place_of(corner[k])] += glm::cross(b - a, c - a);
+        }
+        double worst = 1.0, sum = 0.0;
+        size_t looked = 0;
+        for (uint32_t v = trunk.first_vertex; v < trunk.end_vertex; v++) {
+            if (mesh.positions[v].y < 1.0f || mesh.positions[v].y > 4.5f) continue;
+            const double cosine = std::abs(
+                glm::dot(glm::normalize(faces[place_of(v)]), glm::normalize(DVec3(mesh.normals[v]))));
+            worst = std::min(worst, cosine);
+            sum += cosine;
+            looked++;
+        }
+        ASSERT_GT(looked, 40u);
+        EXPECT_GT(worst, level == 0 ? 0.93 : 0.85) << level;
+        EXPECT_GT(sum / static_cast<double>(looked), level == 0 ? 0.985 : 0.95) << level;
+    }
+}
+
+TEST(MeasuredSections, ButtressesStayWithinWood) {
+    const Tree tree = measured_trunk(0.5, 0, 31, 0.9f);
+    for (const std::vector<double>& section : sections_about(build_branch_tubes(tree))) {
+        const auto [least, most] = std::minmax_element(section.begin(), section.end());
+        EXPECT_GT(*least, 0.2);
+        EXPECT_LT(*most, 2.4);
+        EXPECT_GT(*most - *least, 1.0);
+    }
+    UnevenSection section = uneven_section(5, 0.2, 0.0, 6.0);
+    const SectionPlace places[] = {{1.0, tree.section_of(3)}, {5.0, tree.section_of(3)}};
+    std::vector<Ring> rings(2);
+    for (size_t i = 0; i < 2; i++) {
+        rings[i] = {DVec3(0, i * 6.0, 0), DVec3(0, 1, 0), 0.2, i * 6.0, DVec3(1, 0, 0)};
+    }
+    rings[1].along = 3.0;
+    measure_section(section, places, rings.data(), rings.size(), true);
+    ASSERT_TRUE(section.is_measured());
+    const double step = 1e-6;
+    for (int i = 0; i < 360; i++) {
+        const double angle = 2.0 * kPi * i / 360.0;
+        EXPECT_GE(section.factor(3.0, angle), 0.4);
+        EXPECT_LE(section.factor(3.0, angle), 2.2);
+        EXPECT_NEAR(section.turn(2.5, angle),
+                    (section.factor(2.5, angle + step) - section.factor(2.5, angle - step)) / (2.0 * step),
+                    1e-5);
+    }
+}
+
+// A foot goes over into the trunk above it: the outline of one row is that of the next.
+TEST(MeasuredSections, TheFootMeetsThem) {
+    const auto sections = sections_about(build_branch_tubes(measured_trunk(0.2, 0, 31)));
+    ASSERT_GE(sections.size(), 10u);
+    for (size_t i = 1; i < sections.size(); i++)
+        for (size_t j = 0; j < sections[i].size(); j++)
+            EXPECT_NEAR(sections[i][j], sections[i - 1][j], 0.12) << i << " " << j;
 }
 
 }  // namespace

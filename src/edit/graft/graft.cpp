@@ -6,6 +6,7 @@
 #include <string>
 
 #include "edit/graft/scion.h"
+#include "edit/turn_sections.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
@@ -165,6 +166,7 @@ Attempt attempt(const Joint& joint, const StandingWood& standing, uint64_t seed,
         made.wood.set_position(id, axes * (joint.scale * (node.position - base)));
         made.wood.set_radius(id, std::max(radius, std::min(node.radius, kLeastRadius)));
     }
+    turn_sections(made.wood, made.wood.depth_first(), axes);
     const Node& host = joint.tree.node(joint.host);
     if (joint.options.thinning > 0.0)
         smooth_by_depth(made.wood, host.radius, joint.options.thinning);

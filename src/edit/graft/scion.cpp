@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "edit/turn_sections.h"
 #include "error.h"
 #include "geometry/portable_math.h"
 #include "tree/branches.h"
@@ -75,13 +76,18 @@ Tree take_scion(const Tree& tree, NodeId joint_child) {
         scion.add_root(DVec3(0.0), on ? whole : std::min(first, whole), tree.node(joint_child).flags);
     }
     scion.set_leaf_rule(scion.root(), tree.node(joint_child).leaf_rule);
+    scion.set_section_table(tree.section_table());
+    if (joint == kNoNode) scion.set_section(scion.root(), tree.node(joint_child).section);
     for (NodeId id : tree.depth_first(joint_child)) {
         if (moved[id] != kNoNode) continue;
         const Node& node = tree.node(id);
         const NodeId parent = id == joint_child ? scion.root() : moved[node.parent];
         moved[id] = scion.add_child(parent, into * (node.position - origin), node.radius, node.flags);
         scion.set_leaf_rule(moved[id], node.leaf_rule);
+        scion.set_section(moved[id], node.section);
     }
+    scion.drop_unused_sections();
+    turn_sections(scion, scion.depth_first(), into);
     return scion;
 }
 
@@ -136,24 +142,34 @@ std::vector<NodeId> place_scion(Tree& tree, NodeId joint, const Tree& scion,
     // A scion may be the very tree that it is put on.
     std::vector<NodeId> parents(order.size(), kNoNode);
     std::vector<uint8_t> flags(order.size()), rules(order.size());
+    std::vector<SectionShape> sections;
+    std::vector<size_t> section_of(order.size(), 0);  // from 1 among `sections`
     const bool keeps_rules = !scion.leaf_rules().empty();
     for (size_t i = 0; i < order.size(); i++) {
         parents[i] = scion.node(order[i]).parent;
         flags[i] = static_cast<uint8_t>(scion.node(order[i]).flags & kGuessFlag);
         rules[i] = scion.node(order[i]).leaf_rule;
+        if (i == 0) continue;  // the joint stands for it
+        if (const SectionShape* const section = scion.section_of(order[i])) {
+            sections.push_back(*section);
+            section_of[i] = sections.size();
+        }
     }
     std::vector<NodeId> moved(static_cast<size_t>(scion.id_end()), kNoNode);
     moved[order[0]] = joint;
     const std::vector<std::string> names = scion.leaf_rules();
     for (uint8_t& rule : rules)
         if (rule > 0) rule = tree.name_leaf_rule(names[rule - 1u]);
+    const size_t sections_before = tree.add_sections(sections);
     std::vector<NodeId> added;
     added.reserve(order.size() - 1);
     for (size_t i = 1; i < order.size(); i++) {
         moved[order[i]] = tree.add_child(moved[parents[i]], positions[i], radii[i], flags[i]);
         if (keeps_rules) tree.set_leaf_rule(moved[order[i]], rules[i]);
+        if (section_of[i] > 0) tree.set_section(moved[order[i]], sections_before + section_of[i]);
         added.push_back(moved[order[i]]);
     }
+    if (!sections.empty()) turn_sections(tree, added, placement.axes);
     return added;
 }
 

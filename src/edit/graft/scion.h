@@ -3,7 +3,7 @@
 // A scion is a plain Tree: its root stands at (0,0,0), the wood that it grew from pointed along +Y there (so
 // that its first segment leans off +Y by its own branching angle), and +Z is the side that was up. The root's
 // radius is that of its wood at the joint. Metres. A scion with leaf rules (Tree::leaf_rules()) keeps them
-// for its wood; one without bears the leaves of its host.
+// for its wood; one without bears the leaves of its host. Measured sections (Tree::sections()) go along.
 #pragma once
 
 #include <vector>

@@ -14,7 +14,7 @@ std::vector<NodeId> Removed::ids() const {
 
 void Removed::add_piece(const Tree& tree, size_t begin, const DVec3& joint) {
     if (leaf_rules.empty() || leaf_rules.back() != tree.leaf_rules()) leaf_rules.push_back(tree.leaf_rules());
-    pieces.push_back({begin, nodes.size(), joint, leaf_rules.size() - 1});
+    pieces.push_back({begin, nodes.size(), joint, leaf_rules.size() - 1, tree.section_table()});
 }
 
 Tree Removed::piece(size_t index, const ScanFrame& frame) const {
@@ -27,6 +27,7 @@ Tree Removed::piece(size_t index, const ScanFrame& frame) const {
                                   : uint8_t{0};
     };
     tree.set_leaf_rule(tree.root(), rule_of(nodes[piece.begin].node));
+    tree.set_section_table(piece.sections);
     // Depth-first: the parent of a node is the last one before it that lies one less deep.
     std::vector<NodeId> path{tree.root()};
     for (size_t i = piece.begin; i < piece.end; i++) {
@@ -34,7 +35,9 @@ Tree Removed::piece(size_t index, const ScanFrame& frame) const {
         path.resize(static_cast<size_t>(node.depth - nodes[piece.begin].node.depth) + 1);
         path.push_back(tree.add_child(path.back(), node.position, node.radius, node.flags));
         tree.set_leaf_rule(path.back(), rule_of(node));
+        tree.set_section(path.back(), node.section);
     }
+    tree.drop_unused_sections();
     return tree;
 }
 

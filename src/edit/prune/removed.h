@@ -17,8 +17,9 @@ struct Removed {
     struct Piece {
         size_t begin = 0;  // of its nodes in `nodes`
         size_t end = 0;
-        DVec3 joint{0.0};  // where its first segment began
-        size_t rules = 0;  // of its tree then, in `leaf_rules`
+        DVec3 joint{0.0};       // where its first segment began
+        size_t rules = 0;       // of its tree then, in `leaf_rules`
+        SectionTable sections;  // of its tree then
     };
     std::vector<Wood> nodes;
     std::vector<Piece> pieces;

@@ -124,6 +124,7 @@ void VariantMaker::look_at_branches() {
             radii_.push_back(node.radius);
             flags_.push_back(node.flags & kTrunkFlag);
             leaf_rules_.push_back(node.leaf_rule);
+            sections_.push_back(node.section);
             branch.stem = branch.stem || node.is_trunk();
             if (place[id] == 0) branch.least_rule = branch.most_rule = node.leaf_rule;
             branch.least_rule = std::min(branch.least_rule, node.leaf_rule);
@@ -213,6 +214,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     work.parents.reserve(expected);
     work.flags.reserve(expected);
     work.leaf_rules.reserve(expected);
+    work.sections.reserve(expected);
     work.slots.reserve(branches_.size() + branches_.size() / 4);
     Random random(seed, 7);
     work.twist_start = kPi * amount * random.uniform(-1.0, 1.0);
@@ -232,6 +234,7 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     work.parents.push_back(kNoNode);
     work.flags.push_back(root.flags & kTrunkFlag);
     work.leaf_rules.push_back(root.leaf_rule);
+    work.sections.push_back(root.section);
     work.slots.push_back(trunk);
     for (size_t i = 0; i < work.slots.size(); i++) {
         const Slot slot = work.slots[i];
@@ -242,8 +245,11 @@ TreeVariant VariantMaker::make(uint64_t seed, double amount, double age) const {
     variant.tree.set_frame(tree_.frame());
     for (const std::string& rule : tree_.leaf_rules())
         variant.tree.name_leaf_rule(rule);
-    for (NodeId id = 0; id < variant.tree.id_end(); id++)
+    variant.tree.set_section_table(tree_.section_table());
+    for (NodeId id = 0; id < variant.tree.id_end(); id++) {
         variant.tree.set_leaf_rule(id, work.leaf_rules[id]);
+        variant.tree.set_section(id, work.sections[id]);
+    }
     if (!foliage_.empty()) variant.foliage = settle(work.cells, work.places);
     return variant;
 }
@@ -284,6 +290,7 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
         work.parents.push_back(parent);
         work.flags.push_back(flags_[n]);
         work.leaf_rules.push_back(leaf_rules_[n]);
+        work.sections.push_back(sections_[n]);
     }
     for (int32_t child = branch.first_child; child < branch.last_child; child++) {
         const uint64_t key = hash_seed(slot.key, 2 * static_cast<uint64_t>(child - branch.first_child) + 2);

@@ -117,6 +117,7 @@ class VariantMaker {
     std::vector<DVec3> steps_;
     std::vector<double> lengths_, along_, radii_;
     std::vector<uint8_t> flags_, leaf_rules_;
+    std::vector<uint16_t> sections_;
     std::vector<Carried> carried_;   // by branch
     std::vector<uint8_t> in_crowd_;  // by cell: others touch it
     std::vector<int32_t> carried_begin_;

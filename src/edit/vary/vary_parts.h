@@ -31,6 +31,7 @@ struct VariantMaker::Work {
     std::vector<double> radii;
     std::vector<NodeId> parents;
     std::vector<uint8_t> flags, leaf_rules;
+    std::vector<uint16_t> sections;
     // How many nodes, and how much wood, more than the tree itself has.
     double more_nodes = 0.0, more_wood = 0.0;
     // The way along the trunk, 0..1, turns what it bears: a start, an even twist, and a swing.

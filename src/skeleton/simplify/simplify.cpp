@@ -4,6 +4,7 @@
 #include <string>
 
 #include "scan/stems/lone_trunk.h"
+#include "skeleton/cylinders/sections.h"
 #include "skeleton/simplify/assemble.h"
 #include "skeleton/stages.h"
 #include "tree/trunk.h"
@@ -74,6 +75,7 @@ void simplify(SkeletonWork& work) {
 DVec3 finish(SkeletonWork& work) {
     SkeletonResult& result = work.result;
     mark_trunk(result.tree);
+    measure_sections(result.tree, work.thinned.measured(), work.progress);
     const DVec3 base = result.tree.node(result.tree.root()).position;
     for (Tree* tree : {&result.tree, &result.raw}) {
         if (tree->size() == 0) continue;
