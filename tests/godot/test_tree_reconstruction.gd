@@ -119,6 +119,36 @@ func test_refuses_damaged_skeletons() -> void:
 		check(made.build_mesh().get_surface_count() == 0, "An empty tree got a mesh.")
 
 
+# Outlines that were measured: the second to the fifth harmonic, their cosines and then their sines.
+func test_keeps_measured_sections_and_refuses_damaged_ones() -> void:
+	var measured: Dictionary = skeleton([[-1, 0, 0, 0, 0.2, 1], [0, 0, 1, 0, 0.2, 1]])
+	measured["section_nodes"] = PackedInt32Array([1])
+	measured["sections"] = PackedFloat32Array([0.1, 0.0, 0.05, 0.0, 0.0, -0.1, 0.0, 0.02])
+	measured["format_version"] = 3
+	var made: TreeReconstruction = TreeReconstruction.new()
+	made.skeleton = measured
+	check_equal(made.skeleton, measured, "what saving writes")
+	var round_one: TreeReconstruction = TreeReconstruction.new()
+	round_one.skeleton = skeleton([[-1, 0, 0, 0, 0.2, 1], [0, 0, 1, 0, 0.2, 1]])
+	check(
+		made.build_mesh_arrays(0) != round_one.build_mesh_arrays(0),
+		"Its bark is as round as without."
+	)
+	for numbers: PackedFloat32Array in [
+		PackedFloat32Array([0.1]),
+		PackedFloat32Array([NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+		PackedFloat32Array([1e9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+	]:
+		expect_error("measured sections")
+		var bad: Dictionary = measured.duplicate()
+		bad["sections"] = numbers
+		TreeReconstruction.new().skeleton = bad
+	expect_error("measured sections")
+	var nowhere: Dictionary = measured.duplicate()
+	nowhere["section_nodes"] = PackedInt32Array([7])
+	TreeReconstruction.new().skeleton = nowhere
+
+
 func test_knows_kinds_depths_and_the_trunk() -> void:
 	var made: TreeReconstruction = TreeReconstruction.new()
 	made.skeleton = skeleton(
