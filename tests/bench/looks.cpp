@@ -235,8 +235,9 @@ std::pair<double, double> texels_of(const Mesh& bark, const Section& section) {
         const DVec2 u = bark.uvs[b] - bark.uvs[a], v = bark.uvs[c] - bark.uvs[a];
         const double turn = u.x * v.y - u.y * v.x;
         if (std::abs(turn) < 1e-9) continue;
-        round.push_back(kTextureSize / glm::length((p * v.y - q * u.y) / turn));
-        along.push_back(kTextureSize / glm::length((q * u.x - p * v.x) / turn));
+        round.push_back(bark_size(kTextureSize) / glm::length((p * v.y - q * u.y) / turn));
+        along.push_back(bark_rows(bark_size(kTextureSize)) / kBarkLength /
+                        glm::length((q * u.x - p * v.x) / turn));
     }
     if (along.empty()) return {0.0, 0.0};
     return {quantile(along, 0.5), quantile(round, 0.5)};

@@ -39,8 +39,11 @@ func run() -> void:
 	await picture("two-selected")
 
 	await step("a double click takes all that grows from it")
-	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
-	await until(func() -> bool: return _selection().size() > 2, "a branch is selected")
+	await double_click(
+		node_on_screen(_node, branch),
+		func() -> bool: return _selection().size() > 2,
+		"a branch is selected"
+	)
 	check_equal(
 		_selection().size(),
 		_of.select_nodes("below:%d" % session().call(&"get_active")).size(),

@@ -55,8 +55,11 @@ func _look_at_it() -> void:
 func _work_on_it() -> void:
 	await step("a branch is selected and deleted")
 	var branch: int = clear_nodes(_node, _branches_of(30))[0]
-	await user.click(node_on_screen(_node, branch), User.LEFT, "", 2)
-	await until(func() -> bool: return session().selection.size() > 5, "a branch is selected")
+	await double_click(
+		node_on_screen(_node, branch),
+		func() -> bool: return session().selection.size() > 5,
+		"a branch is selected"
+	)
 	await fine_picture("tour-branch")
 	await user.key("Delete")
 	if not await until(func() -> bool: return _node.reconstruction != _of, "it is cut"):
