@@ -23,7 +23,7 @@ constexpr uint64_t kThinKey = 0x7468696eULL;  // "thin"
 ScaledLeaf scaled(const LeafRules& rules, double height) {
     const double twig = std::min(1.0, std::sqrt(height / kFullTreeHeight));
     const double spray = std::min(1.0, std::sqrt(height / kFullSprayHeight));
-    return {std::max(rules.internode * spray, 1e-4 * height), rules.twig_length * twig,
+    return {std::max(rules.internode / rules.crowding * spray, 1e-4 * height), rules.twig_length * twig,
             rules.maximum_radius * twig, rules.leaf_size * (rules.form == LeafForm::kSpray ? spray : 1.0)};
 }
 

@@ -204,6 +204,7 @@ void check_leaf_rules(const LeafRules& rules) {
     require(rules.phototropism, 0.0, 1.0, "phototropism");
     require(rules.curl, -180.0, 180.0, "curl");
     require(rules.fold, -80.0, 80.0, "fold");
+    require(rules.crowding, 0.01, 100.0, "crowding");
     require(rules.standing, 0.0, 1.0, "share of standing leaves");
     require(rules.unfolded, 0.01, 1.0, "share of leaves' size");
     require(rules.follow_density, 0.0, 1.0, "share of the scan's density");

@@ -22,6 +22,7 @@ struct Number {
 constexpr Number kNumbers[] = {
     {"divergence", &LeafRules::divergence},
     {"internode", &LeafRules::internode},
+    {"crowding", &LeafRules::crowding},
     {"twig_length", &LeafRules::twig_length},
     {"clustering", &LeafRules::clustering},
     {"maximum_radius", &LeafRules::maximum_radius},

@@ -59,6 +59,7 @@ struct LeafRules {
     double divergence = 137.508;  // the golden angle: leaves above one another shade least
     // Metres of twig for each card; nodes that bear several stand so many times as far apart.
     double internode = 0.063;
+    double crowding = 1.0;     // how many times as close as that they stand
     double twig_length = 0.6;  // how far from its tip a branch bears leaves
     double clustering = 0.0;   // 0: evenly along it .. 1: nearly all just below the tip
     double maximum_radius =

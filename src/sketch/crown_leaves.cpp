@@ -21,8 +21,8 @@ constexpr double kBearing = 0.6, kLeastBearing = 0.25;
 constexpr double kStandsOut = 0.46;
 // Of half a crown's width: in a slender one leaves would find no wood to stand on.
 constexpr double kMostMargin = 0.25;
-// So much closer than on grown trees leaves stand, and are the more.
-constexpr double kCloser = 0.66;
+// So many times as close as on grown trees leaves stand, and are the more.
+constexpr double kCrowding = 1.5;
 constexpr double kLeastGrowth = 0.3, kMostGrowth = 1.5;
 
 // Leaves that would cover the crown's outline often enough.
@@ -77,10 +77,10 @@ double wanted_wood(const CrownSections& crown, const SketchSpecies& species, dou
     return count * rules.internode * shrunk(height) / bearing_share(species, height);
 }
 
-void fill_with_leaves(Tree& tree, const LeafRules& rules) {
+void fill_with_leaves(Tree& tree) {
     std::ostringstream rule;
-    rule << "leaf_area_index=0 maximum_leaves=" << std::lround(kLargeCrown / kCloser)
-         << " internode=" << kCloser * rules.internode * leaves_per_node(rules);
+    rule << "leaf_area_index=0 crowding=" << kCrowding
+         << " maximum_leaves=" << std::lround(kLargeCrown * kCrowding);
     const uint8_t number = tree.name_leaf_rule(plain_leaf_rule(rule.str()));
     for (const NodeId id : tree.depth_first())
         tree.set_leaf_rule(id, number);

@@ -25,6 +25,6 @@ double wanted_wood(const CrownSections& crown, const SketchSpecies& species, dou
 
 // Has the tree's leaves fill the crown as far as its wood allows: who draws an outline sees it full, where a
 // grown crown of the species lets more sky through.
-void fill_with_leaves(Tree& tree, const LeafRules& rules);
+void fill_with_leaves(Tree& tree);
 
 }  // namespace treerec

@@ -91,7 +91,7 @@ SketchedTree sketch_tree(const Sketch& given, const SketchOptions& options, cons
     AssembledTree assembled = assemble_tree(filling, species, crown, margin, progress);
     out.tree = std::move(assembled.tree);
     out.stroke_of_node = std::move(assembled.stroke_of_node);
-    if (!printed) fill_with_leaves(out.tree, species.leaves);
+    if (!printed) fill_with_leaves(out.tree);
     return out;
 }
 

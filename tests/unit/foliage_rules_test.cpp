@@ -7,6 +7,7 @@
 #include "bark_surface.h"
 #include "error.h"
 #include "foliage/branch_axis.h"
+#include "foliage/leaf_rule_text.h"
 #include "foliage/leaves.h"
 #include "random_tree.h"
 
@@ -188,6 +189,22 @@ TEST(LeafRules, LeavesFallOneByOneAndTheSameFirst) {
     EXPECT_TRUE(before.empty());
 }
 
+// Wood that is to be fuller than the tree's own leaves make it, whatever these are.
+TEST(LeafRules, CrowdedLeavesStandCloserThanTheKindsInternodeSays) {
+    const Tree tree = test::random_tree(7, 400);
+    for (const char* preset : {"maple", "oak", "spruce"}) {
+        LeafRules own = leaf_preset(preset);
+        own.leaf_area_index = 0.0;
+        const LeafKind crowded = make_leaf_kind("crowding=1.5", own);
+        EXPECT_EQ(crowded.rules.internode, own.internode);
+        const auto few = static_cast<double>(place_leaves(tree, own, 2).size());
+        const auto more = static_cast<double>(place_leaves(tree, crowded.rules, 2).size());
+        own.internode /= 1.5;
+        EXPECT_EQ(more, static_cast<double>(place_leaves(tree, own, 2).size())) << preset;
+        EXPECT_GT(more, 1.2 * few) << preset;
+    }
+}
+
 TEST(LeafRules, UnfoldingLeavesStandWhereFullOnesDo) {
     const Tree tree = test::random_tree(7, 400);
     LeafRules rules;
@@ -334,6 +351,7 @@ TEST(LeafRules, BadOnesAreRefusedWithTheirName) {
     refused([](LeafRules& r) { r.angle = INFINITY; }, "angle");
     refused([](LeafRules& r) { r.standing = 1.5; }, "standing");
     refused([](LeafRules& r) { r.unfolded = 0.0; }, "size");
+    refused([](LeafRules& r) { r.crowding = 0.0; }, "crowding");
     refused([](LeafRules& r) { r.follow_density = -0.1; }, "density");
     refused([](LeafRules& r) { r.sprig = std::make_shared<LeafSprig>(); }, "sprig");
 }

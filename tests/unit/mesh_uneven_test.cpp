@@ -9,6 +9,7 @@
 #include "mesh/branch_tubes.h"
 #include "mesh/uneven_section.h"
 #include "mesh_tubes.h"
+#include "section_outlines.h"
 
 namespace treerec {
 namespace {
@@ -27,48 +28,53 @@ Tree bent_trunk(double radius, double place) {
     return tree;
 }
 
-// By row of the trunk above its foot: how far its corners are from their middle, over their mean distance.
-std::vector<std::vector<double>> sections_of(const Mesh& mesh, double above, double below) {
+struct TrunkRow {
+    std::vector<double> distances;  // of its corners from their middle
+    double radius;                  // that it is said to have
+};
+
+// The rows of the trunk whose middles lie between two heights.
+std::vector<TrunkRow> trunk_rows(const Mesh& mesh, double above, double below) {
     const test::TubeRange trunk = test::tubes_of(mesh)[0];
     uint32_t stride = 0;
     while (mesh.colors[stride].g == 0.0f)
         stride++;
-    std::vector<std::vector<double>> sections;
+    std::vector<TrunkRow> rows;
     for (uint32_t row = 0; (row + 1) * stride <= trunk.end_vertex; row++) {
         DVec3 middle(0.0);
         for (uint32_t j = 0; j + 1 < stride; j++)
             middle += DVec3(mesh.positions[row * stride + j]) / static_cast<double>(stride - 1);
         if (middle.y < above || middle.y > below) continue;
-        std::vector<double>& section = sections.emplace_back();
+        rows.push_back({{}, mesh.radii[row * stride]});
+        for (uint32_t j = 0; j + 1 < stride; j++)
+            rows.back().distances.push_back(glm::distance(DVec3(mesh.positions[row * stride + j]), middle));
+    }
+    return rows;
+}
+
+// By row of the trunk above its foot: how far its corners are from their middle, over their mean distance.
+std::vector<std::vector<double>> sections_of(const Mesh& mesh, double above, double below) {
+    std::vector<std::vector<double>> sections;
+    for (TrunkRow& row : trunk_rows(mesh, above, below)) {
         double mean = 0.0;
-        for (uint32_t j = 0; j + 1 < stride; j++) {
-            section.push_back(glm::distance(DVec3(mesh.positions[row * stride + j]), middle));
-            mean += section.back() / (stride - 1);
-        }
+        for (const double distance : row.distances)
+            mean += distance / static_cast<double>(row.distances.size());
         // The wood is as thick as it was measured.
-        EXPECT_NEAR(mean / mesh.radii[row * stride], 1.0, 1e-3);
-        for (double& radius : section)
-            radius /= mean;
+        EXPECT_NEAR(mean / row.radius, 1.0, 1e-3);
+        for (double& distance : row.distances)
+            distance /= mean;
+        sections.push_back(std::move(row.distances));
     }
     return sections;
 }
 
-// By row of the trunk from half a metre up, its foot included: likewise.
+// By row of the trunk from 0.3 m up, its foot included: over the radius that it is said to have.
 std::vector<std::vector<double>> sections_about(const Mesh& mesh) {
-    const test::TubeRange trunk = test::tubes_of(mesh)[0];
-    uint32_t stride = 0;
-    while (mesh.colors[stride].g == 0.0f)
-        stride++;
     std::vector<std::vector<double>> sections;
-    for (uint32_t row = 0; (row + 1) * stride <= trunk.end_vertex; row++) {
-        DVec3 middle(0.0);
-        for (uint32_t j = 0; j + 1 < stride; j++)
-            middle += DVec3(mesh.positions[row * stride + j]) / static_cast<double>(stride - 1);
-        if (middle.y < 0.3 || middle.y > 4.0) continue;
-        std::vector<double>& section = sections.emplace_back();
-        for (uint32_t j = 0; j + 1 < stride; j++)
-            section.push_back(glm::distance(DVec3(mesh.positions[row * stride + j]), middle) /
-                              static_cast<double>(mesh.radii[row * stride]));
+    for (TrunkRow& row : trunk_rows(mesh, 0.3, 4.0)) {
+        for (double& distance : row.distances)
+            distance /= row.radius;
+        sections.push_back(std::move(row.distances));
     }
     return sections;
 }
@@ -143,16 +149,6 @@ Tree measured_trunk(double radius, NodeId first, NodeId end, float lobes = 0.12f
     return tree;
 }
 
-double shown_by(const SectionShape& shape, double angle) {
-    double sum = 1.0;
-    for (size_t i = 0; i < SectionShape::kHarmonics; i++) {
-        const double by = static_cast<double>(i + 2) * angle;
-        sum += static_cast<double>(shape.cosine[i]) * std::cos(by) +
-               static_cast<double>(shape.sine[i]) * std::sin(by);
-    }
-    return sum;
-}
-
 TEST(MeasuredSections, AreDrawnWhereTheScanSawThem) {
     const Tree tree = measured_trunk(0.3, 0, 31);
     for (int level = 0; level < 2; level++) {
@@ -173,7 +169,7 @@ TEST(MeasuredSections, AreDrawnWhereTheScanSawThem) {
             const DVec3 out = p - (low + way * t);
             const double angle = std::atan2(glm::dot(out, glm::cross(direction, zero)), glm::dot(out, zero));
             const double radius = glm::mix(tree.node(upper - 1).radius, tree.node(upper).radius, t);
-            EXPECT_NEAR(glm::length(out) / radius, shown_by(*tree.section_of(5), angle), 0.04);
+            EXPECT_NEAR(glm::length(out) / radius, test::outline_radius(*tree.section_of(5), angle), 0.04);
             looked++;
         }
         EXPECT_GT(looked, level == 0 ? 200u : 50u);

@@ -18,6 +18,7 @@
 #include "edit/vary/vary.h"
 #include "error.h"
 #include "exchange/tree_files.h"
+#include "section_outlines.h"
 #include "tree/tree.h"
 
 namespace treerec {
@@ -132,30 +133,20 @@ TEST(TreeSections, GoAlongWithScionsAndCuts) {
     EXPECT_EQ(piece.sections().size(), 1u);
 }
 
-double radius_of(const SectionShape& shape, double angle) {
-    double sum = 1.0;
-    for (size_t i = 0; i < SectionShape::kHarmonics; i++) {
-        const double by = static_cast<double>(i + 2) * angle;
-        sum += static_cast<double>(shape.cosine[i]) * std::cos(by) +
-               static_cast<double>(shape.sine[i]) * std::sin(by);
-    }
-    return sum;
-}
-
 // Where the outline of a node is in space, in units of its radius, seen from its axis; and the other way
 // about.
 DVec3 outline_at(const Tree& tree, NodeId id, double angle) {
     const DVec3 way = glm::normalize(tree.node(id).position - tree.node(tree.node(id).parent).position);
     const DVec3 zero = section_zero(way);
     return (zero * std::cos(angle) + glm::cross(way, zero) * std::sin(angle)) *
-           radius_of(*tree.section_of(id), angle);
+           test::outline_radius(*tree.section_of(id), angle);
 }
 
 double off_outline(const Tree& tree, NodeId id, const DVec3& place) {
     const DVec3 way = glm::normalize(tree.node(id).position - tree.node(tree.node(id).parent).position);
     const DVec3 zero = section_zero(way);
     const double angle = std::atan2(glm::dot(place, glm::cross(way, zero)), glm::dot(place, zero));
-    return std::abs(glm::length(place) - radius_of(*tree.section_of(id), angle));
+    return std::abs(glm::length(place) - test::outline_radius(*tree.section_of(id), angle));
 }
 
 // What the scan showed on one side of a branch stays on that side of its wood.
