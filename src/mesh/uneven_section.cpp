@@ -20,11 +20,6 @@ constexpr double kLeadRadii = 2.5;  // over which it begins and ends
 constexpr double kLeast = 0.4, kMost = 2.2;
 constexpr double kSoft = 0.3;
 
-double eased(double share) {
-    const double t = std::clamp(share, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
 // Within kLeast .. kMost, and smooth; slope: what a change of the value becomes.
 double limited(double value, double& slope) {
     const bool over = value > 1.0;
@@ -43,7 +38,7 @@ double limited(double value, double& slope) {
 double UnevenSection::prior(double along, double angle, Of what) const {
     const double lead = section_lead(radius);
     if (along <= from || along >= until) return 0.0;
-    const double whole = eased(std::min((along - from) / lead, (until - along) / lead));
+    const double whole = glm::smoothstep(0.0, lead, std::min(along - from, until - along));
     double sum = 0.0;
     for (size_t i = 0; i < kAmplitudes.size(); i++) {
         const double order = static_cast<double>(i + 2);
@@ -141,8 +136,8 @@ RingOutline outline_by(std::span<const SectionPlace> places, double along, doubl
         return ring;
     }
     // Between them something was not seen.
-    const double by_low = from_low ? eased(1.0 - (along - low->along) / lead) : 0.0;
-    const double by_high = from_high ? eased(1.0 - (high->along - along) / lead) : 0.0;
+    const double by_low = from_low ? glm::smoothstep(0.0, 1.0, 1.0 - (along - low->along) / lead) : 0.0;
+    const double by_high = from_high ? glm::smoothstep(0.0, 1.0, 1.0 - (high->along - along) / lead) : 0.0;
     const double sum = std::max(by_low + by_high, 1.0);
     if (by_low > 0.0) add(*low, by_low / sum);
     if (by_high > 0.0) add(*high, by_high / sum);
@@ -193,8 +188,9 @@ void measure_section(UnevenSection& section, std::span<const SectionPlace> place
         // A foot goes on down as it stands on the ground.
         RingOutline outline = outline_by(places, std::max(ring.along, 0.0), lead);
         outline.along = ring.along;
-        double whole = section_steadiness(ring.normal) * eased((section.until - ring.along) / lead);
-        if (!on_foot) whole *= eased((ring.along - section.from) / lead);
+        double whole =
+            section_steadiness(ring.normal) * glm::smoothstep(0.0, lead, section.until - ring.along);
+        if (!on_foot) whole *= glm::smoothstep(0.0, lead, ring.along - section.from);
         const DVec3 zero = section_zero(ring.normal);
         const double turned = portable::atan2(glm::dot(zero, ring.y()), glm::dot(zero, ring.x));
         outline.share *= whole;

@@ -21,12 +21,6 @@ using texture::wrap;
 constexpr double kDarkest = 54.0 / 255.0, kLightest = 238.0 / 255.0;
 constexpr size_t kRows = 16;
 
-// To multiples of `step`: a graphics card's compression keeps five or six bits, and files are a third
-// smaller.
-uint8_t stepped(double value, int step) {
-    return static_cast<uint8_t>(std::min((to_byte(value) + step / 2) / step * step, 255));
-}
-
 struct Heights {
     int width, height;
     std::vector<float> metres;
@@ -97,8 +91,7 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
                 heights.metres[static_cast<size_t>(y) * static_cast<size_t>(size) + static_cast<size_t>(x)] =
                     static_cast<float>(point.height);
                 for (int c = 0; c < 3; c++)
-                    textures.albedo.at(x, y)[c] =
-                        stepped(std::clamp(point.colour[c], kDarkest, kLightest), 4);
+                    textures.albedo.at(x, y)[c] = to_byte(std::clamp(point.colour[c], kDarkest, kLightest));
                 packed.at(x, y)[1] = to_byte(point.roughness);
                 packed.at(x, y)[2] = to_byte(point.cover);
             }
@@ -112,10 +105,9 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
                 const double dy = (heights.at(x, y - 1) - heights.at(x, y + 1)) / (2.0 * along);  // upwards
                 const DVec3 normal = glm::normalize(DVec3(-dx, -dy, 1.0));
                 uint8_t* const pixel = textures.normal.at(x, y);
-                pixel[0] = stepped(0.5 + 0.5 * normal.x, 2);
-                pixel[1] = stepped(0.5 + 0.5 * normal.y, 2);
-                const DVec2 kept = DVec2(pixel[0], pixel[1]) / 127.5 - 1.0;
-                pixel[2] = to_byte(0.5 + 0.5 * std::sqrt(std::max(1.0 - glm::dot(kept, kept), 0.0)));
+                pixel[0] = to_byte(0.5 + 0.5 * normal.x);
+                pixel[1] = to_byte(0.5 + 0.5 * normal.y);
+                pixel[2] = to_byte(0.5 + 0.5 * normal.z);
                 packed.at(x, y)[0] = to_byte(occlusion_at(heights, x, y, across));
             }
         }

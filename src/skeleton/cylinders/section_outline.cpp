@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/linear_system.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 
@@ -70,23 +71,6 @@ double value_of(const Terms& series, const Terms& at) {
     return sum;
 }
 
-// Of a symmetric, positive definite matrix, by Gaussian elimination.
-Terms solve(std::array<Terms, kTerms> matrix, Terms right) {
-    for (size_t i = 0; i < kTerms; i++)
-        for (size_t row = i + 1; row < kTerms; row++) {
-            const double share = matrix[row][i] / matrix[i][i];
-            for (size_t column = i; column < kTerms; column++)
-                matrix[row][column] -= share * matrix[i][column];
-            right[row] -= share * right[i];
-        }
-    for (size_t i = kTerms; i-- > 0;) {
-        for (size_t column = i + 1; column < kTerms; column++)
-            right[i] -= matrix[i][column] * right[column];
-        right[i] /= matrix[i][i];
-    }
-    return right;
-}
-
 struct Fit {
     Terms series{};
     double variance = 0.0;  // of a sector's median about it
@@ -117,7 +101,7 @@ Fit fit_series(const Sectors& sectors) {
         const size_t known = 2 * static_cast<size_t>(round + 1);
         for (size_t i = 1; i < kTerms; i++)
             matrix[i][i] += i > known ? kOff : fit.variance / (kUsual * kUsual);
-        fit.series = solve(matrix, right);
+        if (!solve_linear(matrix, right, fit.series)) fit.series = {};
         off.clear();
         std::array<double, kSectors> residual{};
         for (size_t s = 0; s < kSectors; s++) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/circle_fit.h"
+#include "geometry/linear_system.h"
 #include "geometry/portable_math.h"
 #include "geometry/quantile.h"
 #include "geometry/symmetric_eigen.h"
@@ -48,31 +49,6 @@ double median_off(const Cylinder& c, const std::vector<DVec3>& points) {
     return off[off.size() / 2];
 }
 
-// Gauss's elimination with pivots; false where the matrix is singular.
-bool solve(std::array<Row, kUnknowns> a, Row b, Row& x) {
-    for (size_t k = 0; k < kUnknowns; k++) {
-        size_t pivot = k;
-        for (size_t i = k + 1; i < kUnknowns; i++)
-            if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
-        if (!(std::abs(a[pivot][k]) > 0.0)) return false;
-        std::swap(a[k], a[pivot]);
-        std::swap(b[k], b[pivot]);
-        for (size_t i = k + 1; i < kUnknowns; i++) {
-            const double factor = a[i][k] / a[k][k];
-            for (size_t j = k; j < kUnknowns; j++)
-                a[i][j] -= factor * a[k][j];
-            b[i] -= factor * b[k];
-        }
-    }
-    for (size_t k = kUnknowns; k-- > 0;) {
-        x[k] = b[k];
-        for (size_t j = k + 1; j < kUnknowns; j++)
-            x[k] -= a[k][j] * x[j];
-        x[k] /= a[k][k];
-    }
-    return true;
-}
-
 // The unknowns: the axis's place and slope in the plane across it (u, v), and the radius.
 Cylinder moved(const Cylinder& c, const DVec3& u, const DVec3& v, const Row& step) {
     return {c.middle + step[0] * u + step[1] * v, glm::normalize(c.axis + step[2] * u + step[3] * v),
@@ -100,7 +76,7 @@ Row marquardt_step(const Cylinder& c, const std::vector<DVec3>& points, const st
     for (size_t k = 0; k < kUnknowns; k++)
         normal[k][k] += damping * normal[k][k] + 1e-12;
     Row step{};
-    if (!solve(normal, right, step)) step = {};
+    if (!solve_linear(normal, right, step)) step = {};
     return step;
 }
 
