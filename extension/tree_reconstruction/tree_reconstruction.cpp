@@ -264,9 +264,10 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) con
     return guarded(Array(), [&] {
         const std::shared_ptr<const Tree> tree = get_tree();
         const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         return to_surface_arrays(
-            treerec::build_level_bark(treerec::leafy_tree(*tree, make_leaf_kinds(*tree), *get_leaf_density()),
-                                      p_lod, p_whole_repeats, nullptr, bark.get()));
+            treerec::build_level_bark(treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod,
+                                      treerec::hide_twigs(kinds), p_whole_repeats, nullptr, bark.get()));
     });
 }
 

@@ -8,6 +8,7 @@
 #include "foliage/leaf_rule_text.h"
 #include "mesh/joined_leaves.h"
 #include "mesh/leaf_cards.h"
+#include "mesh/level_leaves.h"
 #include "tree_reconstruction/tree_reconstruction.h"
 
 using namespace godot;
@@ -142,11 +143,12 @@ TypedArray<Dictionary> TreeReconstruction::_build_foliage(int p_lod, AddLeaves p
     return guarded(none, [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
-        const auto placed = _place_foliage(*tree, kinds, p_lod);
+        const auto placed = _place_foliage(*tree, kinds, 0);
         TypedArray<Dictionary> parts;
         for (size_t i = 0; i < kinds.size(); i++) {
             Dictionary part = _describe_kind(kinds[i], 0.0);
-            p_add(part, placed[i], treerec::build_leaf_card(kinds[i].rules, p_lod));
+            const treerec::LevelLeaves made = treerec::leaves_of_level(placed[i], kinds[i].rules, p_lod);
+            p_add(part, made.leaves, made.card);
             parts.push_back(part);
         }
         return parts;

@@ -22,17 +22,6 @@ constexpr double kKept = 0.42;             // of the leaves of one level, by the
 constexpr double kFewest = 64.0;           // leaves: fewer are not thinned,
 constexpr double kLastWhole = 4.0;         // up to this level
 
-double leaf_share(double level) {
-    return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
-}
-
-// A crown of few large leaves, as a palm's, is drawn by each of them: it would lose its outline, and a
-// handful of fronds several times as long as the others would stand for it.
-double kept_share(double level, size_t count) {
-    const double few = std::min(1.0, kFewest / static_cast<double>(std::max(count, size_t{1})));
-    return std::max(leaf_share(level), few * leaf_share(level - kLastWhole));
-}
-
 // As leaf.gdshader has it: the crown is shaded as one round volume, from whichever side a leaf is seen.
 Vec3 crown_normal(const Vec3& flat, const Vec3& outward) {
     const Vec3 lit = outward * kRoundness + Vec3(0.0f, kSky, 0.0f);
@@ -140,6 +129,17 @@ std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves,
         leaf.size *= growth;
     }
     return kept;
+}
+
+double leaf_share(double level) {
+    return portable::pow(kKept, std::clamp(level, 0.0, 16.0));
+}
+
+// A crown of few large leaves, as a palm's, is drawn by each of them: it would lose its outline, and a
+// handful of fronds several times as long as the others would stand for it.
+double kept_share(double level, size_t count) {
+    const double few = std::min(1.0, kFewest / static_cast<double>(std::max(count, size_t{1})));
+    return std::max(leaf_share(level), few * leaf_share(level - kLastWhole));
 }
 
 float leaf_growth(double level) {

@@ -40,7 +40,9 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level = 0, const 
 // about the same middles, so that the crown keeps its outline. Levels may lie between the whole ones; what
 // one keeps, all finer ones do. Where there are no more than 64, all stay as they are up to level 4.
 std::vector<LeafPlacement> thin_leaves(const std::vector<LeafPlacement>& leaves, double level);
-float leaf_growth(double level);  // how much larger
+float leaf_growth(double level);                // how much larger
+double leaf_share(double level);                // how many of the leaves a level keeps, were they many
+double kept_share(double level, size_t count);  // and of `count`
 // Adds all that the cards of leaves may take, however they turn, each grown by `growth`.
 void add_leaves(Bounds& bounds, const std::vector<LeafPlacement>& leaves, float growth = 1.0f);
 

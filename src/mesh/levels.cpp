@@ -19,6 +19,8 @@ namespace {
 constexpr double kWidth = 0.0004;    // over the tree's height, at level 0
 constexpr double kCoarsest = 16.0;   // a trunk of a few triangles
 constexpr double kStep = 1.0 / 64;   // between two levels that a budget tells apart
+constexpr double kHiding = 0.5;      // of full foliage: so much hides most of the wood,
+constexpr double kFewer = 1.75;      // levels: and so many farther ones are its twigs, from level 2 on
 constexpr double kWidestBark = 1.5;  // of a node's radius
 constexpr double kBase = 4.0;        // likewise, where the trunk stands on its roots
 
@@ -32,11 +34,17 @@ double level_width(double height, double level) {
     return kWidth * height * portable::pow(2.0, level);
 }
 
-Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats, const Progress* progress,
-                      const GrownBark* grown) {
+bool hide_twigs(const std::vector<LeafKind>& kinds) {
+    if (kinds.empty()) return false;
+    const LeafRules& own = kinds.front().rules;
+    return own.enabled && own.maximum_leaves > 0 && own.standing * own.unfolded > kHiding;
+}
+
+Mesh build_level_bark(const Tree& wood, double level, bool hidden, bool whole_repeats,
+                      const Progress* progress, const GrownBark* grown) {
     TubeOptions options;
     options.level = whole(level);
-    options.twig_level = level;
+    options.twig_level = level + (hidden ? kFewer * std::clamp(level - 1.0, 0.0, 1.0) : 0.0);
     options.whole_repeats = whole_repeats;
     GrownBark lighter;
     options.grown = bark_of_level(grown, level, lighter);
@@ -69,20 +77,17 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
     if (grown_)
         for (const GrownBark::Vertex& vertex : grown_->vertices)
             box_.add(DVec3(vertex.position), grown_->parents.empty() ? 0.0 : kMostSwell * vertex.radius);
-    for (const std::vector<LeafPlacement>& leaves : leaves_)
-        add_leaves(box_, leaves, leaf_growth(kMostLevels - 1));
+    for (size_t kind = 0; kind < kinds_.size(); kind++)
+        for (int level = 0; level < kMostLevels; level++)
+            add_leaves(box_, leaves_of_level(leaves_[kind], kinds_[kind].rules, level).leaves);
 }
 
 TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
-    made.bark = build_level_bark(wood_, level, false, progress, grown_);
-    for (size_t kind = 0; kind < kinds_.size(); kind++) {
-        LevelLeaves& part = made.foliage.emplace_back();
-        part.leaves = thin_leaves(leaves_[kind], level);
-        if (!part.leaves.empty())
-            part.card = build_leaf_card(kinds_[kind].rules, std::min(whole(level), kMostLevels - 1));
-    }
+    made.bark = build_level_bark(wood_, level, hide_twigs(kinds_), false, progress, grown_);
+    for (size_t kind = 0; kind < kinds_.size(); kind++)
+        made.foliage.push_back(leaves_of_level(leaves_[kind], kinds_[kind].rules, level));
     return made;
 }
 

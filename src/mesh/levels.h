@@ -5,10 +5,12 @@
 //   - has half the sides of level k - 1, and rings only where the axis bends by more than twice as much;
 //   - draws an even share of the twigs that are thinner than level_width(), or short, and with a twig that is
 //     not drawn goes what it bears; what stays is as much wider, so that the bark covers as much of a
-//     picture as at level 0 (twig_shares.h, tube_widths.cpp);
+//     picture as at level 0 (twig_shares.h, tube_widths.cpp). From level 2 on a tree in leaf has the twigs of
+//     the next level;
 //   - draws grown bark with a quarter of the vertices of level k - 1 (grown_bark.h: lighter_bark());
-//   - leaves stay where level 0 puts them, 0.42 of those of level k - 1, as much larger about their middles
-//     (leaf_cards.h), and their cards have fewer triangles.
+//   - has 0.42 of the leaves of level k - 1 where level 0 puts them, as much larger about their middles
+//     (leaf_cards.h), with cards of fewer triangles; from where that would make them twice as large, sprays
+//     are gathered into boughs instead (level_leaves.h).
 // Wind channels and colours are functions of the place and the wood at level 0, so they are the same in all.
 #pragma once
 
@@ -21,6 +23,7 @@
 #include "foliage/leaves.h"
 #include "geometry/bounds.h"
 #include "mesh/grown_bark.h"
+#include "mesh/level_leaves.h"
 #include "mesh/mesh.h"
 #include "progress.h"
 #include "tree/tree.h"
@@ -33,11 +36,6 @@ inline constexpr int kMostLevels = 5;
 // where levels are first seen (2.5, 6, 14 and 30 heights) a pixel of a picture of 1080 lines and 75 degrees
 // is about five times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
-
-struct LevelLeaves {
-    std::vector<LeafPlacement> leaves;
-    Mesh card;  // of the leaves; empty without any
-};
 
 struct TreeLevel {
     Mesh bark;
@@ -82,9 +80,13 @@ class LevelBuilder {
     Bounds box_;
 };
 
-// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree. whole_repeats: see
-// TubeOptions. grown: see LevelBuilder.
-Mesh build_level_bark(const Tree& wood, double level, bool whole_repeats = false,
+// Whether most of a tree's wood is hidden by leaves of the first of these kinds, its own: such wood needs
+// fewer twigs from afar.
+bool hide_twigs(const std::vector<LeafKind>& kinds);
+
+// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree. hidden: see
+// hide_twigs(). whole_repeats: see TubeOptions. grown: see LevelBuilder.
+Mesh build_level_bark(const Tree& wood, double level, bool hidden = false, bool whole_repeats = false,
                       const Progress* progress = nullptr, const GrownBark* grown = nullptr);
 
 }  // namespace treerec

@@ -16,6 +16,12 @@ const SEEN: float = 0.1
 # Pixels that the same level is moved by, to see how much of a change is that of thin things alone.
 const ASIDE: float = 0.5
 
+# Sides that a tree is looked at from.
+const FROM: int = 8
+const SUMS: Array[StringName] = [
+	&"covered", &"after", &"outline", &"own_outline", &"light_before", &"light", &"changed"
+]
+
 var _viewport: SubViewport
 var _camera: Camera3D
 var _instance: TreeInstance3D
@@ -101,14 +107,15 @@ func _measure_tree(path: String, look: String, row: int) -> void:
 		var away: float = switches[level - 1]
 		# As large as the tree is there, with room for the wind.
 		var side: int = ceili(1.2 * maxf(box.size.y, maxf(box.size.x, box.size.z)) / _pixel(away))
-		var now: Image = await _picture(box, away, side)
 		await _show_level(level - 1)
 		var before: Image = await _picture(box, away, side)
-		await _show_level(0)
-		var finest: Image = await _picture(box, away, side)
-		var moved: Image = await _picture(box, away, side, ASIDE * _pixel(away))
 		await _show_level(level)
-		_blit_pair(before, now, level, row)
+		var now: Array[Image] = await _pictures(box, away, side)
+		await _show_level(0)
+		var finest: Array[Image] = await _pictures(box, away, side)
+		var moved: Array[Image] = await _pictures(box, away, side, ASIDE * _pixel(away))
+		await _show_level(level)
+		_blit_pair(before, now[0], level, row)
 		print(
 			(
 				line
@@ -131,12 +138,20 @@ func _pixel(away: float) -> float:
 	return 2.0 * away * tan(deg_to_rad(0.5 * FIELD)) / LINES
 
 
-func _picture(box: AABB, away: float, side: int, aside: float = 0.0) -> Image:
+# From all sides.
+func _pictures(box: AABB, away: float, side: int, aside: float = 0.0) -> Array[Image]:
+	var pictures: Array[Image] = []
+	for from: int in FROM:
+		pictures.append(await _picture(box, away, side, aside, from))
+	return pictures
+
+
+func _picture(box: AABB, away: float, side: int, aside: float = 0.0, from: int = 0) -> Image:
 	_viewport.size = Vector2i(side, side)
 	_camera.fov = rad_to_deg(2.0 * atan(0.5 * side * _pixel(away) / away))
 	if away < 2.0 * box.size.y:
 		_camera.fov = 55.0
-	var way: Vector3 = Vector3(0.5, 0.12, 1.0).normalized()
+	var way: Vector3 = Vector3(0.5, 0.12, 1.0).normalized().rotated(Vector3.UP, TAU * from / FROM)
 	_camera.position = box.get_center() + way * away
 	_camera.look_at(box.get_center())
 	_camera.h_offset = aside
@@ -148,40 +163,68 @@ func _picture(box: AABB, away: float, side: int, aside: float = 0.0) -> Image:
 	return _viewport.get_texture().get_image()
 
 
-func _compare(before: Image, after: Image, moved: Image) -> PackedStringArray:
-	var changed: int = 0
-	var covered: float = 0.0
-	var covered_after: float = 0.0
-	var outline: float = 0.0
-	var own_outline: float = 0.0
-	var light: float = 0.0
-	var light_before: float = 0.0
+# Means over all sides, and of cover and lightness the side that differs most.
+func _compare(before: Array[Image], after: Array[Image], moved: Array[Image]) -> PackedStringArray:
+	var sums: Dictionary[StringName, float] = {}
+	var covers: PackedFloat32Array = []
+	var lights: PackedFloat32Array = []
+	for from: int in FROM:
+		var found: Dictionary[StringName, float] = _compare_side(
+			before[from], after[from], moved[from]
+		)
+		for name: StringName in found:
+			sums[name] = sums.get(name, 0.0) + found[name]
+		covers.append(_more(found.after, found.covered))
+		lights.append(_more(found.light, found.light_before))
+	var covered: float = maxf(sums.covered, 1.0)
+	return PackedStringArray(
+		[
+			"%.3f %%" % (100.0 * sums.changed / FROM / SCREEN),
+			"%.0f %%" % (100.0 * sums.changed / covered),
+			"%.0f %%" % (100.0 * sums.outline / covered),
+			"%.0f %%" % (100.0 * sums.own_outline / covered),
+			"%+.1f %% (%+.1f)" % [_more(sums.after, sums.covered), _farthest(covers)],
+			"%+.1f %% (%+.1f)" % [_more(sums.light, sums.light_before), _farthest(lights)],
+		]
+	)
+
+
+func _compare_side(before: Image, after: Image, moved: Image) -> Dictionary[StringName, float]:
+	var sum: Dictionary[StringName, float] = {}
+	for name: StringName in SUMS:
+		sum[name] = 0.0
 	for y: int in before.get_height():
 		for x: int in before.get_width():
 			var a: Color = before.get_pixel(x, y)
 			var b: Color = after.get_pixel(x, y)
-			covered += a.a
-			covered_after += b.a
-			outline += absf(a.a - b.a)
-			own_outline += absf(a.a - moved.get_pixel(x, y).a)
+			var c: Color = moved.get_pixel(x, y)
+			if a.a + b.a + c.a == 0.0:
+				continue
+			sum.covered += a.a
+			sum.after += b.a
+			sum.outline += absf(a.a - b.a)
+			sum.own_outline += absf(a.a - c.a)
 			var over: Color = _over_sky(a)
 			var now: Color = _over_sky(b)
-			light_before += over.get_luminance() - SKY.get_luminance()
-			light += now.get_luminance() - SKY.get_luminance()
+			sum.light_before += over.get_luminance() - SKY.get_luminance()
+			sum.light += now.get_luminance() - SKY.get_luminance()
 			var most: float = maxf(
 				absf(over.r - now.r), maxf(absf(over.g - now.g), absf(over.b - now.b))
 			)
-			changed += 1 if most > SEEN else 0
-	return PackedStringArray(
-		[
-			"%.3f %%" % (100.0 * changed / SCREEN),
-			"%.0f %%" % (100.0 * changed / maxf(covered, 1.0)),
-			"%.0f %%" % (100.0 * outline / maxf(covered, 1.0)),
-			"%.0f %%" % (100.0 * own_outline / maxf(covered, 1.0)),
-			"%+.1f %%" % (100.0 * (covered_after / maxf(covered, 1.0) - 1.0)),
-			"%+.1f %%" % (100.0 * (light / light_before - 1.0)),
-		]
-	)
+			sum.changed += 1.0 if most > SEEN else 0.0
+	return sum
+
+
+# Percent.
+func _more(now: float, before: float) -> float:
+	return 100.0 * (now / before - 1.0) if absf(before) > 1e-6 else 0.0
+
+
+func _farthest(values: PackedFloat32Array) -> float:
+	var found: float = 0.0
+	for value: float in values:
+		found = value if absf(value) > absf(found) else found
+	return found
 
 
 # The renderer has multiplied the color by its alpha.

@@ -107,7 +107,7 @@ func test_a_pinned_level_stands_alone() -> void:
 	check_equal(_part(instance, "Leaves").visibility_range_end, 0.0, "where it ends")
 	check_equal(
 		instance.get_leaf_count(),
-		instance.reconstruction.build_leaves(2).instance_count,
+		_count(instance.reconstruction.build_foliage(2)[0].leaves),
 		"the leaves of the pinned level"
 	)
 	instance.lod = -1
@@ -178,9 +178,21 @@ func test_levels_of_a_resource() -> void:
 	var made: TreeReconstruction = grown_tree(2, 1500)
 	var levels: Array[Dictionary] = made.build_levels([0, 1, 2])
 	check_equal(levels[0].bark, made.build_mesh_arrays(0), "the finest bark")
-	check_equal(levels[2].leaves, made.build_leaf_buffer(2), "the leaves of level 2")
+	check_equal(levels[1].leaves, made.build_leaf_buffer(1), "the leaves of level 1")
+	check_equal(levels[2].leaves, made.build_foliage(2)[0].leaves, "the leaves of level 2")
+	# A bough's card shows many sprays: its material tells it by the rows of its picture.
+	check(
+		_count(levels[2].leaves) < _count(made.build_leaf_buffer(2)) / 2, "It has too many cards."
+	)
+	var uvs: PackedVector2Array = levels[2].card[Mesh.ARRAY_TEX_UV]
+	check(uvs[0].y > 16.0 and uvs.size() == 4, "Its card shows one spray.")
 	check_equal(levels[0].box, levels[2].box, "the boxes")
 	check_equal(levels[1].level, 1.0, "the level")
 	check_equal(made.build_levels([1], [500])[0].triangles <= 500, true, "the budget")
 	expect_error("no level of detail -1")
 	check_equal(made.build_levels([-1]).size(), 0, "a negative level")
+
+
+func _count(buffer: PackedFloat32Array) -> int:
+	@warning_ignore("integer_division")
+	return buffer.size() / 20

@@ -17,6 +17,7 @@
 #include "mesh/branch_tubes.h"
 #include "mesh/capsules.h"
 #include "mesh/leaf_cards.h"
+#include "mesh/level_leaves.h"
 #include "synth/grow.h"
 
 namespace treerec {
@@ -79,6 +80,7 @@ void print_meshes(const std::string& what, const Tree& tree, const LeafRules& ru
         const Mesh card = build_leaf_card(rules, level);
         digest.add_all(card.positions);
         digest.add_all(card.normals);
+        digest.add_all(leaf_buffer(leaves_of_level(leaves, rules, level).leaves));
         digest.print(what + " leaves " + std::to_string(level));
     }
     Digest digest;
