@@ -50,6 +50,11 @@ Vec4 tangent_at(const Vec3& normal, const Vec3& across, const Vec3& along) {
 
 }  // namespace
 
+bool shows_mirrored(const LeafPlacement& leaf) {
+    const float turn = leaf.phase * 43.19f;
+    return turn - std::floor(turn) < 0.5f;
+}
+
 Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, int level, const Progress* progress) {
     return bake_leaves(leaves, build_leaf_card(level), progress);
 }
@@ -73,6 +78,7 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
         for (size_t i = begin; i < end; i++) {
             const LeafPlacement& leaf = leaves[i];
             const glm::mat3 turn(leaf.x, leaf.y, leaf.z);
+            const bool mirrored = shows_mirrored(leaf);
             for (size_t k = 0; k < corners; k++) {
                 const size_t upper = 2 * i * corners + k, lower = upper + corners;
                 const Vec3 flat = turn * card.normals[k];
@@ -80,7 +86,8 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
                 const Vec3 apart = flat * (kHalfThickness * leaf.size);
                 mesh.positions[upper] = place + apart;
                 mesh.positions[lower] = place - apart;
-                mesh.uvs[upper] = mesh.uvs[lower] = card.uvs[k];
+                const Vec2 uv = card.uvs[k];
+                mesh.uvs[upper] = mesh.uvs[lower] = mirrored ? Vec2(1.0f - uv.x, uv.y) : uv;
                 mesh.colors[upper] =
                     mesh.colors[lower] = {leaf.sway, card.colors[k].y, leaf.phase, leaf.occlusion};
                 if (turned_alike[k]) {
@@ -91,8 +98,9 @@ Mesh bake_leaves(const std::vector<LeafPlacement>& leaves, const Mesh& card, con
                     continue;
                 }
                 const Vec3 crown = crown_normal(flat, leaf.outward);
-                const Vec3 across = turn * Vec3(card.tangents[k]);
-                const Vec3 along = glm::cross(flat, across) * card.tangents[k].w;
+                const Vec3 rightwards = turn * Vec3(card.tangents[k]);
+                const Vec3 along = glm::cross(flat, rightwards) * card.tangents[k].w;
+                const Vec3 across = mirrored ? -rightwards : rightwards;
                 mesh.normals[upper] = face_normal(flat, crown);
                 mesh.normals[lower] = face_normal(-flat, crown);
                 for (const size_t v : {upper, lower})

@@ -26,6 +26,10 @@ inline constexpr size_t kMostSprigParts = 4096;
 // Whether the rules' card shows the picture of one blade rather than that of a spray.
 bool uses_blade_picture(const LeafRules& rules);
 
+// Whether its picture is shown from right to left, as it is on every other leaf: from near two sprays beside
+// each other that are the same catch the eye. leaf.gdshader does the same.
+bool shows_mirrored(const LeafPlacement& leaf);
+
 // Every leaf as geometry for programs that have no shader of ours: its upper face, and its lower one a hair
 // below with vertices of its own, so that neither needs a material of two sides, whose normals such programs
 // turn to whoever looks. Both have normals outward of the crown, as far as a face can that looks inward. Wind

@@ -2,7 +2,8 @@ extends SceneTree
 ## What a switch of levels of detail costs the eye, as ./dev bench --levels prints it: for each tree
 ## the triangles of its levels, and how much a picture changes where the next one takes over, drawn
 ## as a screen of 1080 lines and Godot's field of view would show it. Arguments after '--': where
-## to write a picture of all, then pairs of a skeleton file and a leaf preset.
+## to write a picture of all, then pairs of a skeleton file or a scan, and a leaf preset ("" for the
+## tree's own).
 
 const Levels := preload("res://addons/tree_reconstruction/nodes/tree_levels.gd")
 const LINES: float = 1080.0
@@ -84,9 +85,12 @@ func _measure_tree(path: String, look: String, row: int) -> void:
 	var reconstructor: TreeReconstructor = TreeReconstructor.new()
 	var made: TreeReconstruction = reconstructor.import_skeleton(path)
 	if made == null:
+		made = reconstructor.reconstruct_file(path, {})
+	if made == null:
 		push_error("%s: %s" % [path, reconstructor.get_error_message()])
 		return
-	made.leaf_preset = look
+	if not look.is_empty():
+		made.leaf_preset = look
 	_instance.lod = 0
 	_instance.reconstruction = made
 	await process_frame

@@ -37,7 +37,9 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
     const size_t corners = card.positions.size();
     ASSERT_EQ(mesh.positions.size(), leaves.size() * corners * 2);  // the upper faces and the lower ones
     ASSERT_EQ(mesh.indices.size(), leaves.size() * card.indices.size() * 2);
+    size_t mirrored = 0;
     for (size_t i = 0; i < leaves.size(); i++) {
+        mirrored += shows_mirrored(leaves[i]);
         const float* row = buffer.data() + i * 20;
         for (size_t k = 0; k < 2 * corners; k++) {
             const float apart = k < corners ? 0.0005f : -0.0005f;  // half of a leaf's thickness
@@ -48,6 +50,8 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
                             row[4 * axis] * p.x + row[4 * axis + 1] * p.y + row[4 * axis + 2] * p.z +
                                 row[4 * axis + 3],
                             1e-4f);
+            const Vec2 uv = card.uvs[k % corners];
+            ASSERT_EQ(mesh.uvs[v], shows_mirrored(leaves[i]) ? Vec2(1.0f - uv.x, uv.y) : uv);
             ASSERT_NEAR(glm::length(mesh.normals[v]), 1.0f, 1e-4f);
             ASSERT_NEAR(glm::length(Vec3(mesh.tangents[v])), 1.0f, 1e-4f);
             ASSERT_NEAR(glm::dot(Vec3(mesh.tangents[v]), mesh.normals[v]), 0.0f, 1e-3f);
@@ -57,6 +61,7 @@ TEST(LeafCards, BakedLeavesLieWhereTheBufferPutsThem) {
         ASSERT_NEAR(glm::distance(world, leaves[i].outward), 0.0f, 1e-4f);
         ASSERT_EQ(Vec2(row[17], row[19]), leaves[i].wind);
     }
+    EXPECT_NEAR(static_cast<double>(mirrored) / static_cast<double>(leaves.size()), 0.5, 0.15);
 }
 
 // Programs without our shader light a face by its vertices' normals, seen from its front, and turn them for a
