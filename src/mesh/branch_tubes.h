@@ -9,6 +9,10 @@
 
 namespace treerec {
 
+// What tells a cut face from bark: its UV is metres across it from its middle, and v so much less. No bark
+// begins so far below its branch's start.
+inline constexpr double kCutMark = 64.0;
+
 struct TubeOptions {
     int level = 0;  // level of detail: 0 the finest; each level halves sides, drops rings and thins out twigs
     double twig_level = -1.0;   // of the twigs, where it is another one: between the levels, too

@@ -37,7 +37,7 @@ struct Mesh {
     MeshArray<Vec3> positions;
     MeshArray<Vec3> normals;   // unit
     MeshArray<Vec4> tangents;  // xyz unit, along +u; w = +1 or -1: the bitangent's sign as glTF defines it
-    MeshArray<Vec2> uvs;       // v downwards in the picture (glTF and Godot)
+    MeshArray<Vec2> uvs;       // v downwards in the picture (glTF and Godot); across cuts: see kCutMark
     MeshArray<Vec4> colors;    // wind channels (design.md): sway, along, phase, ambient occlusion; 0..1
     MeshArray<Vec4> custom0;   // pivot of the branch xyz, branch level w
     MeshArray<float> radii;    // of the wood, metres; below 0 where two branches' pictures meet on a collar

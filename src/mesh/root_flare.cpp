@@ -13,23 +13,32 @@ namespace {
 
 // A trunk's foot is a prior, as tree forms are described (Mattheck 1998, "Design in Nature": root flare and
 // buttresses): it begins half a diameter to one diameter up, and four to seven roots run out and under.
-constexpr double kWider = 1.32;       // the base's radius over that of the trunk above it, as trunks stand
+constexpr double kWider = 1.26;       // the base's radius over that of the trunk above it, as trunks stand,
+constexpr double kYoungWider = 1.2;   // and as young stems do
 constexpr double kReach = 2.6;        // radii up the trunk, but
 constexpr double kMostReach = 1.4;    // metres at most
 constexpr double kMostOfTrunk = 0.3;  // of its length
 constexpr double kLookUp = 3.0;       // radii: where the trunk above is measured
-constexpr double kThinStem = 0.015;   // metres of radius: thinner stems show no roots,
-constexpr double kStoutStem = 0.08;   // and from here on all of them
-constexpr double kSteady =
-    0.4;                        // of a root's back: what leaves the trunk steadily, and does not run out flat
-constexpr double kUnder = 0.9;  // how much further a root goes out below the ground, over its out
-constexpr double kSlender = 0.4;     // how much less of the angle a root takes that stands out by a radius
-constexpr double kBare = 1.2;        // radii below the ground that a slope may lay bare
-constexpr double kDrawnIn = 0.5;     // of its width, at the cut
-constexpr double kBaseHeight = 3.0;  // radii: how far up a trunk widens into its roots
-constexpr double kHollow = 0.45;     // of the light: what is lost between two roots
-constexpr double kDepthShare = 0.1;  // of the tree's height
-constexpr double kLeastDepth = 0.6;  // metres,
+constexpr double kThinStem = 0.015;   // metres of radius: thinner stems are round,
+constexpr double kYoungStem = 0.06;   // up to here they bulge softly,
+constexpr double kStoutStem = 0.16;   // and from here on they have all of their roots
+// How far a bulge or a root stands out on the ground, over the radius, from the least to the most.
+constexpr double kLeastBulge = 0.04, kMostBulge = 0.16;
+constexpr double kLeastRoot = 0.3, kMostRoot = 1.1;
+constexpr double kLeastWidth = 0.21, kMostWidth = 0.28;  // of the angle between two roots
+constexpr double kUnder = 0.5;  // how much further a root goes out below the ground, over its out
+constexpr double kSpread = 0.25,
+                 kSpreadDepth = 0.7;  // and at least, in radii: young stems' roots begin there
+constexpr double kSlender = 0.1;      // how much less of the angle a root takes that stands out by a radius
+constexpr double kBare = 0.3;         // radii below the ground, to where it is as wide as on it,
+constexpr double kSlim = 1.3;         // and how much deeper it is half as wide: slopes lay that bare
+constexpr double kMostBare = 0.35;    // such a radius is at most this of the depth
+constexpr double kLeastEnd = 1.8, kMostEnd = 4.5;  // radii below the ground, where a root is cut off
+constexpr double kCut = 0.48;                      // of its width: what is left where it is cut
+constexpr double kBaseHeight = 3.0;                // radii: how far up a trunk widens into its roots
+constexpr double kHollow = 0.45;                   // of the light: what is lost between two roots
+constexpr double kDepthShare = 0.1;                // of the tree's height
+constexpr double kLeastDepth = 0.6;                // metres,
 constexpr double kMostDepth = 2.0;
 constexpr double kMostOfHeight = 0.5;
 // Of an outline from narrowest to widest, over the radius: what leaves all roots to be drawn, and what is
@@ -41,7 +50,7 @@ constexpr size_t kSamples = 360;  // and between roots on the ground
 
 // Heights of rings over the reach, from the top, and depths below the ground over the radius.
 constexpr double kFineHeights[] = {0.8, 0.6, 0.44, 0.3, 0.18, 0.08, 0.0};
-constexpr double kFineDepths[] = {0.1, 0.35, 1.2};
+constexpr double kFineDepths[] = {0.12, 0.35, 0.8, 1.5, 2.5, 4.0};
 constexpr double kCoarseHeights[] = {0.55, 0.25, 0.0};
 constexpr double kCoarseDepths[] = {0.25, 1.2};
 
@@ -55,11 +64,10 @@ double descent(double reach, double along) {
 }
 
 // How far a root stands out of the trunk there, over what it does on the ground: its back leaves the trunk
-// slowly and lies nearly flat where it goes under.
+// smoothly, and dives the steeper the deeper it is.
 double root_out(double down) {
-    if (down <= 1.0) return down * down * (kSteady + (1.0 - kSteady) * down * down * down);
-    const double slope = 2.0 * kSteady + 5.0 * (1.0 - kSteady);
-    return 1.0 + kUnder * (1.0 - portable::exp(-slope / kUnder * (down - 1.0)));
+    if (down <= 1.0) return down * down;
+    return 1.0 + kUnder * (1.0 - portable::exp(-2.0 / kUnder * (down - 1.0)));
 }
 
 double bent_angle(const SurfaceRoot& root, double along) {
@@ -72,40 +80,66 @@ double widened(const RootFlare& flare, double along) {
     return 1.0 + flare.amount * down * down;
 }
 
+// What of a trunk's width is left so deep below the ground, and of a root there: what hangs under a tree that
+// stands nowhere looks like a taproot and roots that were cut off.
+double taproot(const RootFlare& flare, double depth) {
+    const double unit = std::min(flare.radius, kMostBare * flare.depth);
+    const double past = depth - kBare * unit;
+    if (past <= 0.0) return 1.0;
+    const double left = std::max(1.0 - past / (flare.depth - kBare * unit), 0.0);
+    const double slimmer = past / (kSlim * unit);
+    return kCut + (1.0 - kCut) * left / (1.0 + slimmer * std::sqrt(slimmer));
+}
+
+double root_left(const RootFlare& flare, const SurfaceRoot& root, double depth) {
+    const double end = std::min(root.end, 0.9 * flare.depth);
+    return 1.0 - glm::smoothstep(0.15 * end, end, depth);
+}
+
 // The foot's radius at an angle, over the ring's.
 double foot_factor(const RootFlare& flare, double along, double angle) {
-    double factor = widened(flare, along);
+    double factor = widened(flare, along) * taproot(flare, -along);
     for (uint32_t i = 0; i < flare.count; i++) {
         const SurfaceRoot& root = flare.roots[i];
         const double down = descent(root.reach, along);
         if (down <= 0.0) continue;
-        const double out = root.out * root_out(down);
+        const double left = root_left(flare, root, -along);
+        if (left <= 0.0) continue;
+        const double under = kSpread * glm::smoothstep(0.0, kSpreadDepth * flare.radius, -along);
+        const double out = (root.out * root_out(down) + under) * left;
         // A root is about as wide far out as near: it takes less of the angle there.
         const double width = root.width * (1.0 + 1.2 * std::max(1.0 - down, 0.0)) / (1.0 + kSlender * out);
         const double off = wrapped(angle - bent_angle(root, along)) / width;
         factor += out * portable::exp(-0.5 * off * off);
     }
-    // Deeper than slopes lay bare it draws in, so that as little as can be looks out of a steeper one.
-    const double bare = std::min(kBare * flare.radius, 0.5 * flare.depth);
-    const double deep = glm::smoothstep(bare, flare.depth, -along);
-    return factor * (1.0 - kDrawnIn * deep);
+    return factor;
+}
+
+// From young stems to those that have all of their roots: 0 .. 1. radius: metres.
+double stoutness(double radius) {
+    return glm::smoothstep(kYoungStem, kStoutStem, radius);
 }
 
 void grow_roots(RootFlare& flare, double radius, uint64_t seed) {
-    const double stout = glm::smoothstep(kThinStem, kStoutStem, radius);
+    if (radius <= kThinStem) return;
+    const double stout = stoutness(radius);
+    const double least = glm::mix(kLeastBulge, kLeastRoot, stout),
+                 most = glm::mix(kMostBulge, kMostRoot, stout);
     Random random(seed, 31);
-    if (stout <= 0.0) return;
     const uint32_t count = 4 + random.below(kMostRoots - 3);
     flare.count = count;
     flare.turn = random.uniform(0.0, 2.0 * kPi);
     const double spacing = 2.0 * kPi / count;
     for (uint32_t i = 0; i < count; i++) {
         SurfaceRoot& root = flare.roots[i];
-        root.angle = i > 0 ? spacing * (i + random.uniform(-0.28, 0.28)) : 0.0;
+        root.angle = i > 0 ? spacing * (i + random.uniform(-0.22, 0.22)) : 0.0;
         root.bend = random.uniform(-0.22, 0.22);
-        root.out = stout * random.uniform(0.4, 1.25);
-        root.width = spacing * random.uniform(0.17, 0.25);
+        // Of roots, the longest are the stoutest.
+        const double share = random.uniform(0.0, 1.0);
+        root.out = glm::mix(least, most, share);
+        root.width = spacing * glm::mix(kLeastWidth, kMostWidth, share);
         root.reach = flare.reach * random.uniform(0.6, 1.0);
+        root.end = radius * random.uniform(kLeastEnd, kMostEnd);
     }
 }
 
@@ -189,7 +223,8 @@ RootFlare plan_flare(const std::vector<AxisPoint>& points, double depth, uint64_
     const double length = points.back().along;
     const double above = axis_at(points, std::min(up, 0.5 * length), hint).radius;
     // What it is at the base already, and must stay.
-    flare.amount = std::clamp(kWider * above / base - 1.0, 0.0, kWider - 1.0);
+    const double wider = glm::mix(kYoungWider, kWider, stoutness(above));
+    flare.amount = std::clamp(wider * above / base - 1.0, 0.0, wider - 1.0);
     flare.reach = std::min({kReach * above, kMostReach, kMostOfTrunk * length});
     flare.depth = depth;
     flare.radius = base;

@@ -20,7 +20,8 @@ struct SurfaceRoot {
     double bend;   // radians, how far it has turned aside where it goes under
     double out;    // how far its back stands out of the trunk on the ground, over the trunk's radius
     double width;  // radians: the standard deviation of its section
-    double reach;  // metres up the trunk, where it begins
+    double reach;  // metres up the trunk, where it begins,
+    double end;    // and metres below the ground, where it is cut off
 };
 
 // Nothing of the trunk above `reach` changes.

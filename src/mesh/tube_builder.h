@@ -55,8 +55,8 @@ struct Tube {
     size_t rows() const {
         return collar.rows + rings - collar.next_ring + (round_tip ? 1u : 0u) - (point ? 1u : 0u);
     }
-    // A collar has two rows at one place, and no faces between them.
-    size_t spans() const { return rows() - (collar.rows ? 2u : 1u); }
+    // A collar and the rim of a cut have two rows at one place, and no faces between them.
+    size_t spans() const { return rows() - (collar.rows ? 2u : 1u) - (cut ? 1u : 0u); }
     size_t caps() const { return base ? sides + 2 : 0; }
     size_t vertices() const { return rings ? rows() * (sides + 1) + sides + caps() : 0; }
     size_t indices() const {

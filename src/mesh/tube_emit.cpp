@@ -54,6 +54,15 @@ class Emitter {
         vertex_++;
     }
 
+    // A corner of the face across a ring, or its middle: share 0 or 1.
+    void put_cut(const Ring& ring, const DVec3& normal, const DVec2& corner, double share,
+                 const Vec4& color) {
+        const double wood = ring.radius / b_.widened[index_];
+        const DVec3 radial = ring.x * corner.x + ring.y() * corner.y;
+        put(ring.centre + radial * (share * ring.radius), normal, ring.x, 0.0, 0.0, 0.0, ring.radius, color);
+        mesh_.uvs[vertex_ - 1] = Vec2(corner * (share * wood) - DVec2(0.0, kCutMark));
+    }
+
     Vec4 color_at(const DVec3& centre, double along, double light, float of_phase) const {
         return Vec4(static_cast<float>(b_.crown.sway(centre)),
                     static_cast<float>(std::min(along / length(), 1.0)), of_phase, static_cast<float>(light));
@@ -205,16 +214,14 @@ void Emitter::put_tip() {
     const double per_side = 1.0 / sides_;
     const Vec4 color = color_at(last_.centre, length(), light_at(last_.centre, length()), phase_);
     for (uint32_t j = 0; j < stride_; j++) {
+        if (tube_.cut) {
+            put_cut(last_, normal, circle_[j], 1.0, color);
+            continue;
+        }
         const DVec3 radial = x * circle_[j].x + y * circle_[j].y;
         const DVec3 around = y * circle_[j].x - x * circle_[j].y;
-        if (tube_.cut) {
-            put(last_.centre + (radial * 0.97 + normal * 0.015) * last_.radius, normal, around, per_side * j,
-                b_.repeats_of(index_, kHeartwood), length(), kHeartwood, color);
-        } else {
-            put(last_.centre + (radial * 0.76 + normal * 0.62) * last_.radius,
-                radial * 0.7746 + normal * 0.6325, around, per_side * j, repeats,
-                length() + 0.66 * last_.radius, last_.radius, color);
-        }
+        put(last_.centre + (radial * 0.76 + normal * 0.62) * last_.radius, radial * 0.7746 + normal * 0.6325,
+            around, per_side * j, repeats, length() + 0.66 * last_.radius, last_.radius, color);
     }
 }
 
@@ -222,30 +229,29 @@ void Emitter::put_base() {
     if (!tube_.base) return;
     const Ring& first = run_[0];
     const DVec3 down = -first.normal;
-    const double per_side = 1.0 / sides_;
     const Vec4 dim = color_at(first.centre, 0.0, light_at(first.centre, 0.0), phase_);
-    for (uint32_t j = 0; j < stride_; j++) {
-        const DVec3 radial = first.x * circle_[j].x + first.y() * circle_[j].y;
-        put(first.centre + radial * first.radius, down, first.x, per_side * j,
-            b_.repeats_of(index_, kHeartwood), 0.0, kHeartwood, dim);
-    }
-    put(first.centre, down, first.x, 0.5, b_.repeats_of(index_, kHeartwood), -first.radius, kHeartwood, dim);
+    for (uint32_t j = 0; j < stride_; j++)
+        put_cut(first, down, circle_[j], 1.0, dim);
+    put_cut(first, down, circle_[0], 0.0, dim);
 }
 
-// The end of the tip, once for each side: as high as the tip is wide, or nearly level where it is cut.
+// The end of the tip, once for each side: as high as the tip is wide, or level where it is cut.
 void Emitter::put_apexes() {
     const DVec3 normal = last_.normal, x = last_.x, y = last_.y();
     const double per_side = 1.0 / sides_;
     const Vec4 color = color_at(last_.centre, length(), light_at(last_.centre, length()), phase_);
-    const DVec3 apex = last_.centre + normal * ((tube_.cut ? 0.02 : 0.98) * last_.radius);
-    const double shown = tube_.cut ? kHeartwood : last_.radius;
+    const DVec3 apex = last_.centre + normal * (0.98 * last_.radius);
     for (uint32_t j = 0; j < sides_; j++) {
+        if (tube_.cut) {
+            put_cut(last_, normal, circle_[j], 0.0, color);
+            continue;
+        }
         const DVec2 between = 0.5 * (circle_[j] + circle_[j + 1]);
         const DVec3 tangent = glm::normalize(y * between.x - x * between.y);
         // A drawn-out point is lit like the wood below it.
         const DVec3 outward = tube_.point ? glm::normalize(x * between.x + y * between.y) : normal;
-        put(apex, outward, tangent, per_side * (j + 0.5), b_.repeats_of(index_, shown),
-            length() + (tube_.cut ? 1.0 : 1.2) * last_.radius, shown, color);
+        put(apex, outward, tangent, per_side * (j + 0.5), b_.repeats_of(index_, last_.radius),
+            length() + 1.2 * last_.radius, last_.radius, color);
     }
 }
 
@@ -266,7 +272,8 @@ void Emitter::join() const {
         join_rows(0, 2);
         join_rows(1, 3);
     }
-    for (uint32_t row = first_row ? 3 : 0; row + 1 < rows; row++)
+    const uint32_t bark_rows = rows - (tube_.cut ? 1 : 0);
+    for (uint32_t row = first_row ? 3 : 0; row + 1 < bark_rows; row++)
         join_rows(row, row + 1);
     for (uint32_t j = 0; j < sides_; j++) {
         const uint32_t a = base + (rows - 1) * stride_ + j;

@@ -16,13 +16,13 @@ namespace {
 using test::TubeRange;
 using test::tubes_of;
 
-// The outline of a trunk's foot at its ring so high: by corner, the distance from the axis.
-std::vector<double> outline_at(const Mesh& mesh, double height) {
+// The corners of a trunk's foot at its ring so high.
+std::vector<DVec2> corners_at(const Mesh& mesh, double height) {
     const TubeRange trunk = tubes_of(mesh)[0];
     uint32_t stride = 0;
     while (mesh.colors[stride].g == 0.0f)
         stride++;
-    std::vector<double> best;
+    std::vector<DVec2> best;
     double nearest = 1e9;
     for (uint32_t row = 0; (row + 1) * stride <= trunk.end_vertex; row++) {
         const double off = std::abs(mesh.positions[row * stride].y - height);
@@ -30,10 +30,58 @@ std::vector<double> outline_at(const Mesh& mesh, double height) {
         nearest = off;
         best.clear();
         for (uint32_t j = 0; j + 1 < stride; j++)
-            best.push_back(
-                std::hypot(mesh.positions[row * stride + j].x, mesh.positions[row * stride + j].z));
+            best.emplace_back(mesh.positions[row * stride + j].x, mesh.positions[row * stride + j].z);
     }
     return best;
+}
+
+// By corner, the distance from the axis.
+std::vector<double> outline_at(const Mesh& mesh, double height) {
+    std::vector<double> outline;
+    for (const DVec2& corner : corners_at(mesh, height))
+        outline.push_back(glm::length(corner));
+    return outline;
+}
+
+double widest_of(const std::vector<double>& outline) {
+    return *std::max_element(outline.begin(), outline.end());
+}
+
+double narrowest_of(const std::vector<double>& outline) {
+    return *std::min_element(outline.begin(), outline.end());
+}
+
+// Radians: the most that an outline turns within a third of the trunk's radius.
+double sharpest_turn(const std::vector<DVec2>& corners, double radius) {
+    const size_t count = corners.size();
+    const auto side = [&](size_t j) { return corners[(j + 1) % count] - corners[j % count]; };
+    const auto turn_at = [&](size_t j) {
+        const DVec2 a = side(j + count - 1), b = side(j);
+        return std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+    };
+    double most = 0.0;
+    for (size_t j = 0; j < count; j++) {
+        double turned = 0.0, way = 0.0;
+        for (size_t k = j; k < j + count && way < radius / 3.0; k++) {
+            turned += turn_at(k);
+            way += glm::length(side(k));
+            most = std::max(most, std::abs(turned));
+        }
+    }
+    return most;
+}
+
+// A trunk with a branch, which stands at such a place.
+Tree standing(double radius, int place) {
+    Tree tree;
+    NodeId at = tree.add_root({0, 0, 0}, radius, kTrunkFlag);
+    for (int i = 1; i <= 20; i++)
+        at = tree.add_child(at, {0, 2.5 * radius * i, 0}, radius * (1.0 - 0.04 * i), kTrunkFlag);
+    ScanFrame frame;
+    frame.origin = {1.0 * place, 2.0, 0.0};
+    tree.set_frame(frame);
+    tree.add_child(tree.node(at).parent, {5.0 * radius, 52.5 * radius, 0}, 0.1 * radius);
+    return tree;
 }
 
 // As many corners stand further out than their neighbours.
@@ -96,6 +144,52 @@ TEST(Feet, ATrunkRunsOutIntoRootsOfItsOwn) {
     }
     EXPECT_GE(counts.size(), 3u);
     EXPECT_EQ(widest.size(), 20u);
+}
+
+TEST(Feet, AYoungStemEndsInASoftFlare) {
+    for (const double radius : {0.02, 0.035, 0.05, 0.075}) {
+        for (int place = 0; place < 20; place++) {
+            SCOPED_TRACE(radius);
+            SCOPED_TRACE(place);
+            const std::vector<double> ground = outline_at(build_branch_tubes(standing(radius, place)), 0.0);
+            EXPECT_GE(narrowest_of(ground), 1.1 * radius);
+            EXPECT_GE(widest_of(ground), 1.15 * radius);
+            EXPECT_LE(widest_of(ground), 1.4 * radius);
+            EXPECT_LE(widest_of(ground), 1.25 * narrowest_of(ground));
+        }
+    }
+}
+
+TEST(Feet, NoRootEndsAsAPoint) {
+    for (const double radius : {0.05, 0.1, 0.2, 0.5}) {
+        double sharpest = 0.0, unlike = 0.0;
+        for (int place = 0; place < 20; place++) {
+            const Mesh mesh = build_branch_tubes(standing(radius, place));
+            sharpest = std::max(sharpest, sharpest_turn(corners_at(mesh, 0.0), radius));
+            const std::vector<double> ground = outline_at(mesh, 0.0);
+            unlike = std::max(unlike, widest_of(ground) / narrowest_of(ground));
+        }
+        SCOPED_TRACE(radius);
+        EXPECT_LT(sharpest, 1.9);
+        EXPECT_GT(unlike, radius < 0.08 ? 1.03 : 1.2);
+    }
+}
+
+TEST(Feet, UnderTheGroundATrunkThins) {
+    for (const double radius : {0.03, 0.1, 0.4}) {
+        for (int place = 0; place < 10; place++) {
+            SCOPED_TRACE(radius);
+            SCOPED_TRACE(place);
+            const Mesh mesh = build_branch_tubes(standing(radius, place));
+            const double depth = foot_depth(52.5 * radius);
+            const double ground = widest_of(outline_at(mesh, 0.0));
+            // A slope lays bare wood as stout as the trunk.
+            EXPECT_GT(narrowest_of(outline_at(mesh, -0.8 * radius)), 0.85 * radius);
+            EXPECT_LT(widest_of(outline_at(mesh, -0.8 * radius)), 1.5 * ground);
+            EXPECT_LT(widest_of(outline_at(mesh, -4.0 * radius)), 0.7 * ground);
+            EXPECT_LT(widest_of(outline_at(mesh, -depth)), 0.5 * ground);
+        }
+    }
 }
 
 TEST(Feet, ASpurAtTheBaseDoesNotTurnTheTrunkOver) {

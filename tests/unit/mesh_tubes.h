@@ -28,7 +28,8 @@ inline std::vector<TubeRange> tubes_of(const Mesh& mesh) {
         while (end < mesh.indices.size()) {
             const uint32_t least =
                 std::min({mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
-            if (end > index && least > top) break;
+            // A cut face shares no corner with its bark, but is of the same branch.
+            if (end > index && least > top && mesh.uvs[least].y > -0.5 * kCutMark) break;
             top = std::max({top, mesh.indices[end], mesh.indices[end + 1], mesh.indices[end + 2]});
             end += 3;
         }
