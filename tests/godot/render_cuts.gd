@@ -1,6 +1,6 @@
 extends "./picture_suite.gd"
-## Where wood is cut through, its face shows rings, heartwood and bark, in the renderer that this run
-## uses.
+## Where wood is cut through, its face shows rings, heartwood and bark, in the renderer that this
+## run uses.
 
 const SIZE: Vector2i = Vector2i(400, 400)
 const RADIUS: float = 0.06
@@ -47,6 +47,7 @@ static func _alternations(line: PackedFloat32Array) -> int:
 			rising = not rising
 			last = value
 			count += 1
+	@warning_ignore("integer_division")
 	return count / 2
 
 
