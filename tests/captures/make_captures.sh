@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each; sketch: docs/sketch.webp; bark_post: docs/bark_post.webp; bark_presets: docs/bark_presets.webp, a picture. (The forest is too much for
+# Films scenes of the demo project for README: docs/captures/NAME.webp, some seconds each; sketch: docs/sketch.webp; bark_post: docs/bark_post.webp; bark_presets: docs/bark_presets.webp, a picture; gust: docs/wind/gust.webp. (The forest is too much for
 # a software rasterizer; docs/game/forest.jpg is one picture of it.) Run './dev demo' before,
 # on a machine that does nothing else; then, with GODOT naming the engine and img2webp (Debian's package webp) at hand,
 #
@@ -26,6 +26,13 @@ for name in "${@:-one_tree scan_and_tree felling}"; do
             own_cache xvfb-run -a "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
                 --resolution 160x120 --script "$PWD/tests/captures/bark_film.gd" -- "$PINE" "$frames" oak
             ffmpeg -loglevel error -y -framerate 14 -i "$frames/%04d.png" -loop 0 -quality 70 docs/bark_post.webp
+            continue
+        fi
+        if [ "$scene" = gust ]; then
+            : "${SCAN:?SCAN must name a scan of a tree}"
+            own_cache xvfb-run -a "$GODOT" --path project --rendering-driver opengl3 --audio-driver Dummy \
+                --resolution 160x120 --script "$PWD/tests/captures/wind_film.gd" -- "$SCAN" oak "$frames"
+            ffmpeg -loglevel error -y -framerate 12 -i "$frames/%04d.png" -loop 0 -quality 60 docs/wind/gust.webp
             continue
         fi
         if [ "$scene" = bark_presets ]; then

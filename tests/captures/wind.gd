@@ -98,8 +98,9 @@ func _find_gust(height: float) -> float:
 	var hardest: float = 0.0
 	for i: int in 4000:
 		var clock: float = 0.05 * i
-		var gust: float = 0.6 * sin(0.47 * clock) + 0.4 * sin(1.13 * clock + 1.7)
-		var bend: float = (0.58 + 0.36 * gust) * (0.65 + 0.35 * sin(6.0 / sqrt(height) * clock))
+		var front: float = 0.62 * clock
+		var gust: float = 0.6 * sin(front + 0.6 * sin(front)) + 0.4 * sin(1.29 * clock + 1.7)
+		var bend: float = (0.58 + 0.36 * gust) * (0.58 + 0.42 * sin(6.0 / sqrt(height) * clock))
 		if bend > hardest:
 			hardest = bend
 			best = clock

@@ -1,6 +1,6 @@
 extends "./picture_suite.gd"
-## Where wood is cut through, its face shows rings, heartwood and bark, in the renderer that this run
-## uses.
+## Where wood is cut through, its face shows rings, heartwood and bark, in the renderer that this
+## run uses.
 
 const SIZE: Vector2i = Vector2i(400, 400)
 const RADIUS: float = 0.06
@@ -47,6 +47,7 @@ static func _alternations(line: PackedFloat32Array) -> int:
 			rising = not rising
 			last = value
 			count += 1
+	@warning_ignore("integer_division")
 	return count / 2
 
 
@@ -60,12 +61,7 @@ static func _mean(lines: Array[PackedFloat32Array], from: float, to: float) -> f
 	return sum / count
 
 
-func test_a_cut_shows_rings_heartwood_and_bark() -> void:
-	_open_stage(SIZE)
-	var instance: TreeInstance3D = await _show_tree(_log(), false)
-	instance.leaves = false
-	while instance.is_rebuilding():
-		await tree.process_frame
+func _check_cuts() -> void:
 	_camera.fov = 20.0
 	var away: float = RADIUS / REACH / tan(deg_to_rad(0.5 * _camera.fov))
 	for side: float in [1.0, -1.0]:
@@ -81,4 +77,25 @@ func test_a_cut_shows_rings_heartwood_and_bark() -> void:
 		check(heart < 0.9 * sap, "The heartwood is %.3f, what is around it %.3f." % [heart, sap])
 		var rind: float = _mean(lines, 0.96, 0.99)
 		check(rind < 0.8 * sap, "The bark is %.3f, the wood within it %.3f." % [rind, sap])
+
+
+func test_a_cut_shows_rings_heartwood_and_bark() -> void:
+	_open_stage(SIZE)
+	var instance: TreeInstance3D = await _show_tree(_log(), false)
+	instance.leaves = false
+	while instance.is_rebuilding():
+		await tree.process_frame
+	await _check_cuts()
+	_viewport.free()
+
+
+func test_so_does_that_of_a_baked_tree() -> void:
+	_open_stage(SIZE)
+	var made: TreeReconstruction = _log()
+	made.leaf_preset = "none"
+	var baker: TreeBaker = TreeBaker.new()
+	baker.levels = 1
+	baker.wind = false
+	_viewport.add_child(baker.bake(made).instantiate())
+	await _check_cuts()
 	_viewport.free()
