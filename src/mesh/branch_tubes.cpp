@@ -21,10 +21,12 @@ constexpr double kForkShare = 0.7;          // of its parent's radius: as wide a
 constexpr double kForkTaper = 0.3;          // of its own radius: how much thinner a forking branch starts
 constexpr double kRoundTipRadius = 0.006;   // metres; thinner tips are pointed
 constexpr double kCutRadius = 0.025;        // metres; no branch ends by itself so thick: those are cut flat
-constexpr double kTwigRadius = 0.008;       // metres; thinner tubes have a side less,
-constexpr double kFineTwigRadius = 0.004;   // these two, and run out in a point
+constexpr double kTwigRadius = 0.012;       // metres; thinner tubes have a side less,
+constexpr double kFineTwigRadius = 0.006;   // these two,
+constexpr double kPointRadius = 0.004;      // and these run out in a point
 constexpr double kHeightSlack = 1e-3;       // how far rings may leave out any bend, over the tree's height
 constexpr double kTaperSlack = 0.06;        // how far they may leave out a change of the radius, over it,
+constexpr double kTwigTaperSlack = 0.3;     // of a twig's likewise,
 constexpr double kHeightTaperSlack = 2e-4;  // and over the tree's height
 constexpr double kOutlineSlack = 0.03;      // and a change of the outline, over the radius, at level 0
 constexpr size_t kMostLeftOut = 12;         // points of the axis between two rings, at level 0
@@ -44,7 +46,7 @@ struct BendLimit {
     double slack;  // how far they may leave out a bend, over the radius
 };
 constexpr BendLimit kBendLimits[] = {
-    {0.08, 0.13, 0.1}, {0.04, 0.2, 0.2}, {0.02, 0.35, 0.3}, {0.01, 0.7, 0.3}, {0.0, 1.2, 0.3}};
+    {0.08, 0.13, 0.1}, {0.04, 0.2, 0.2}, {0.02, 0.35, 0.3}, {0.01, 0.6, 0.3}, {0.0, 0.44, 0.3}};
 
 // Times kCollarRadius and kWebRadius.
 double collar_share(int level) {
@@ -131,7 +133,8 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const double closeness = 0.35 * (1 + level);
     const double slack = limits.slack * (1 << level);
     const size_t most_left_out = kMostLeftOut << level;
-    const double taper = kTaperSlack * (1 << level),
+    const bool twig = stoutness < kCollarRadius;  // no light shows how evenly it thins
+    const double taper = (twig ? kTwigTaperSlack : kTaperSlack) * (1 << level),
                  taper_slack = kHeightTaperSlack * crown.height * (1 << level);
     const double lead = section_lead(stoutness), outline_slack = kOutlineSlack * (1 << level);
     const double least_slack = kHeightSlack * crown.height * (1 << level);
@@ -167,7 +170,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
             const bool near = points[best].along - from.along < gap;
             const bool far = to.along - from.along > spacing_limit || next - last > most_left_out;
             const bool bent = glm::dot(from.direction, to.direction) < bend_limit;
-            const bool changed = std::abs(to.radius - from.radius) > change_limit * from.radius;
+            const bool changed = !twig && std::abs(to.radius - from.radius) > change_limit * from.radius;
             if (!near && (far || bent || changed || misses(last, next))) break;
             best = next;
             const bool collar = collar_begins && to.radius >= kCollarRadius * collar_share(options.level) &&
@@ -237,7 +240,7 @@ void Builder::plan(size_t index, std::vector<AxisPoint>& points) {
     tube.cut = out.back().radius >= kCutRadius * (1 << std::clamp(options.level, 0, 8));
     tube.round_tip = tube.cut || (options.level == 0 && out.back().radius >= kRoundTipRadius);
     tube.base = branch.attach == kNoNode && tube.foot_rows == 0 && begins;
-    tube.point = tube.rings > 1 && out.back().radius < kFineTwigRadius;
+    tube.point = tube.rings > 1 && out.back().radius < kPointRadius;
     if (tube.point) out.back().radius = least;
     parallel_transport(out.data() + tube.first_ring, tube.rings, tube.flare.turn);
     if (tube.section.until > tube.section.from && !sections.empty())

@@ -17,7 +17,7 @@ struct TubeOptions {
     int level = 0;  // level of detail: 0 the finest; each level halves sides, drops rings and thins out twigs
     double twig_level = -1.0;   // of the twigs, where it is another one: between the levels, too
     double side_length = 0.02;  // metres of circumference per side aimed at, at level 0
-    int minimum_sides = 5;      // one less on branches under 16 mm of diameter, two less under 8 mm
+    int minimum_sides = 5;      // one less on branches under 24 mm of diameter, two less under 12 mm
     int maximum_sides = 24;
     double bark_width = 0.6;  // metres of circumference per texture repeat
     // For materials that know nothing of the bark's seam: each branch takes a whole number of repeats,

@@ -20,9 +20,9 @@ constexpr double kWidest = 1.5;      // over level_width(): as wide on average a
 constexpr double kStubbiest = 0.15;  // and over its own length
 constexpr double kHidden = 0.5;      // of what bears it: how wide a twig starts
 constexpr double kPointed = 0.004;   // metres: thinner twigs run out in a point
-constexpr double kThin = 0.004,
+constexpr double kThin = 0.006,
                  kThinSides = 0.87;  // metres; how wide a tube of so few sides looks, beside one
-constexpr double kSlim = 0.008, kSlimSides = 0.94;  // of many
+constexpr double kSlim = 0.012, kSlimSides = 0.94;  // of many
 constexpr double kEnds = 1.4, kLeastEnds = 0.4;     // nodes of a branch whose width its two ends lose
 constexpr int kRounds = 8;                          // of handing on what is too much for one
 constexpr uint64_t kSeed = 0x7e1f;

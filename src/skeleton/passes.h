@@ -49,6 +49,7 @@ enum class Pass : uint8_t {
     kMeasuredEnds,
     kPalmWidth,
     kLateStrips,
+    kSmoothAxes,
     kTips,
     // twigs/
     kStumpEnds,
@@ -108,6 +109,7 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kMeasuredEnds, "measured ends"},
     {Pass::kPalmWidth, "palm width"},
     {Pass::kLateStrips, "late strips"},
+    {Pass::kSmoothAxes, "smooth axes"},
     {Pass::kTips, "tips drawn back"},
     {Pass::kStumpEnds, "stump ends"},
     {Pass::kBlur, "blur"},

@@ -16,7 +16,8 @@ constexpr double kThicker = 3.0;   // and so many times as thick as what hugs it
 constexpr double kUnion = 1.3;     // radii
 constexpr size_t kMostWood = 4;    // branches that meet in one place
 constexpr double kNear = 2.0;      // radii: so near to an axis,
-constexpr double kStandOff = 0.7;  // a shoot reaches so much of its length out of the bark
+constexpr double kStandOff = 0.7;  // a shoot reaches so much of its length out of the bark,
+constexpr double kHair = 3.0;      // radii: and farther than so near
 
 class HuggingShoots {
   public:
@@ -36,7 +37,7 @@ class HuggingShoots {
         uint32_t hint = 0;
         bool along = false;
         for (; count < kMostWood; count++) {
-            const BarkPlace place = bark_.nearest(tip, kNear * bark_.thickest(), hint, &except);
+            const BarkPlace place = bark_.nearest(tip, kHair * bark_.thickest(), hint, &except);
             if (place.branch < 0) break;
             met[count] = place.branch;
             except[static_cast<size_t>(place.branch)] = 1;
@@ -44,8 +45,9 @@ class HuggingShoots {
             // Blinn's blobs (1982), as powers: one branch alone ends at its own surface.
             const double near = kUnion * place.radius / std::max(place.distance, 1e-9);
             field += near * near;
-            along = along || (place.distance < kNear * place.radius + kMargin &&
-                              place.outside() < kStandOff * length_outside(l));
+            along = along || place.distance < kHair * place.radius ||
+                    (place.distance < kNear * place.radius + kMargin &&
+                     place.outside() < kStandOff * length_outside(l));
         }
         for (size_t i = 0; i < count; i++)
             except[static_cast<size_t>(met[i])] = 0;
