@@ -64,6 +64,47 @@ TEST(BranchTubes, ABranchThatStartsThinBendsAsSmoothlyAsItIsThick) {
     }
 }
 
+// A trunk with a twig whose nodes lie on an arc of `bend` radians.
+Mesh twig_mesh(double bend, double tip) {
+    Tree tree;
+    const NodeId fork =
+        tree.add_child(tree.add_root({0, 0, 0}, 0.05, kTrunkFlag), {0, 2, 0}, 0.05, kTrunkFlag);
+    tree.add_child(fork, {0, 4, 0}, 0.02, kTrunkFlag);
+    NodeId at = fork;
+    DVec3 place = tree.node(fork).position;
+    for (int i = 1; i <= 10; i++) {
+        place += 0.03 * DVec3(std::cos(bend * i / 10.0), std::sin(bend * i / 10.0), 0.0);
+        at = tree.add_child(at, place, 0.003 + (tip - 0.003) * i / 10.0);
+    }
+    return build_branch_tubes(tree);
+}
+
+TEST(BranchTubes, AStraightTwigIsOneCone) {
+    const Mesh mesh = twig_mesh(0.0, 0.001);
+    size_t triangles = 0;
+    for (size_t t = 0; t < mesh.indices.size(); t += 3)
+        triangles += mesh.custom0[mesh.indices[t]].w > 0.0F ? 1 : 0;
+    EXPECT_EQ(triangles, 3U);
+}
+
+TEST(BranchTubes, ABentTwigHasNoElbow) {
+    const Mesh mesh = twig_mesh(2.0, 0.003);
+    // The middles of its rings: vertices at one height of the bark's picture, but for the last, which is the
+    // first anew.
+    std::vector<DVec3> middles;
+    for (size_t v = 0; v + 3 < mesh.positions.size(); v++) {
+        if (mesh.custom0[v].w <= 0.0F || mesh.uvs[v].y != mesh.uvs[v + 3].y) continue;
+        middles.push_back(DVec3(mesh.positions[v] + mesh.positions[v + 1] + mesh.positions[v + 2]) / 3.0);
+        v += 3;
+    }
+    ASSERT_GE(middles.size(), 4U);
+    for (size_t i = 1; i + 1 < middles.size(); i++) {
+        const DVec3 in = glm::normalize(middles[i] - middles[i - 1]);
+        const DVec3 out = glm::normalize(middles[i + 1] - middles[i]);
+        EXPECT_GT(glm::dot(in, out), std::cos(glm::radians(27.0))) << i;
+    }
+}
+
 // A swept trunk shows no corners: what bends by a quarter turn within a metre has rings enough for it.
 TEST(BranchTubes, AStoutTrunkBendsWithoutCorners) {
     for (const double radius : {0.09, 0.15, 0.3}) {

@@ -178,12 +178,13 @@ TEST(HuggingShoots, ThoseInTheCrotchAndAlongTheBarkGo) {
         grown.axes[0][i].position = {y > 1.0 ? -0.3 * (y - 1.0) : 0.0, y, 0.0};
     }
     grown.add(0, 20, straight({0.015, 1.05, 0.0}, {0.3, 2.0, 0.0}, 19), 0.05);
-    // In the crotch; along the bark; away from it; along the bark, but it bears what goes away.
+    // In the crotch; along the bark; away from it; along the bark, but it bears what goes away; and a spur.
     grown.add(0, 21, {{0.0, 1.12, 0.0}, {0.0, 1.2, 0.0}}, 0.003);
     grown.add(0, 10, {{0.07, 0.5, 0.0}, {0.09, 0.55, 0.0}, {0.1, 0.6, 0.0}}, 0.003);
     grown.add(0, 10, {{-0.07, 0.5, 0.0}, {-0.2, 0.55, 0.0}}, 0.003);
     grown.add(0, 12, {{0.0, 0.6, 0.07}, {0.0, 0.65, 0.09}, {0.0, 0.7, 0.1}}, 0.003);
     grown.add(5, 1, {{0.0, 0.7, 0.2}, {0.0, 0.75, 0.3}}, 0.002);
+    grown.add(0, 8, {{-0.07, 0.4, 0.0}, {-0.15, 0.4, 0.0}}, 0.003);
     drop_hugging_shoots(grown.branches, grown.axes);
     ASSERT_EQ(grown.branches.size(), 5u);
     EXPECT_EQ(grown.axes[2].back().position, DVec3(-0.2, 0.55, 0.0));
