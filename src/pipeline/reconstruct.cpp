@@ -13,7 +13,9 @@
 #include "scan/check_shape.h"
 #include "scan/cleaning/thin_cloud.h"
 #include "scan/leaves/wood_leaf.h"
+#include "scan/usual_size.h"
 #include "skeleton/twigs/leaf_twigs.h"
+#include "skeleton/twigs/smooth_twigs.h"
 
 namespace treerec {
 
@@ -308,6 +310,9 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
         SubProgress doubting(progress, kFirstSkeletonEnd, kSkeletonEnd);
         take_back_leaves(result, told, skeleton_options, skeleton, doubting);
     }
+    // The other methods are those of their papers.
+    if (options.skeleton.method == SkeletonMethod::kGeodesic)
+        smooth_twigs(skeleton.tree, enlargement_to_usual(result.cloud.positions));
     append(result.warnings, skeleton.warnings);
     result.stages.insert(result.stages.end(), skeleton.stages.begin(), skeleton.stages.end());
     result.spacing = skeleton.spacing;

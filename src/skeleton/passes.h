@@ -49,7 +49,6 @@ enum class Pass : uint8_t {
     kMeasuredEnds,
     kPalmWidth,
     kLateStrips,
-    kSmoothAxes,
     kTips,
     // twigs/
     kStumpEnds,
@@ -109,7 +108,6 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kMeasuredEnds, "measured ends"},
     {Pass::kPalmWidth, "palm width"},
     {Pass::kLateStrips, "late strips"},
-    {Pass::kSmoothAxes, "smooth axes"},
     {Pass::kTips, "tips drawn back"},
     {Pass::kStumpEnds, "stump ends"},
     {Pass::kBlur, "blur"},

@@ -7,7 +7,6 @@
 #include "skeleton/cylinders/bark.h"
 #include "skeleton/cylinders/radii.h"
 #include "skeleton/cylinders/refine.h"
-#include "skeleton/cylinders/spline.h"
 #include "skeleton/cylinders/stem_base.h"
 #include "skeleton/cylinders/tips.h"
 #include "skeleton/stages.h"
@@ -69,7 +68,6 @@ void refine_cylinders(SkeletonWork& work) {
     if (work.does(Pass::kPalmWidth) && work.options.one_stem) keep_width(axes.front());
     // Twigs that now lie on the bark of others were none.
     if (work.does(Pass::kLateStrips)) drop_strips(branches, axes, 0.5 * work.twig_options.least_escape);
-    if (work.does(Pass::kSmoothAxes)) smooth_axes(branches, axes);
     if (work.does(Pass::kHugging)) drop_hugging_shoots(branches, axes);
     if (work.does(Pass::kTightBends)) smooth_bends(branches, axes);
     if (work.does(Pass::kTips)) draw_back_tips(axes, branches, work.branch_options.minimum_branch);
