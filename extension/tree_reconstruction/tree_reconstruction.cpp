@@ -258,16 +258,16 @@ Dictionary TreeReconstruction::measure() const {
     });
 }
 
-Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats) const {
+Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, bool p_leaves) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
         const std::shared_ptr<const Tree> tree = get_tree();
         const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
         const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
-        return to_surface_arrays(
-            treerec::build_level_bark(treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod,
-                                      treerec::hide_twigs(kinds), p_whole_repeats, nullptr, bark.get()));
+        return to_surface_arrays(treerec::build_level_bark(
+            treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod,
+            p_leaves && treerec::hide_twigs(kinds), p_whole_repeats, nullptr, bark.get()));
     });
 }
 

@@ -125,7 +125,7 @@ class TreeReconstruction : public godot::Resource {
 #endif
 
     // Builders.
-    godot::Array build_mesh_arrays(int p_lod, bool p_whole_repeats = false) const;
+    godot::Array build_mesh_arrays(int p_lod, bool p_whole_repeats = false, bool p_leaves = true) const;
     godot::Ref<godot::ArrayMesh> build_mesh(int p_lod) const;
     godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
     godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;
@@ -153,7 +153,7 @@ class TreeReconstruction : public godot::Resource {
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
                                                       const godot::PackedInt32Array& p_budgets,
-                                                      bool p_joined) const;
+                                                      bool p_joined, bool p_leaves) const;
 
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);

@@ -10,8 +10,8 @@
 using namespace godot;
 
 TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& p_levels,
-                                                        const PackedInt32Array& p_budgets,
-                                                        bool p_joined) const {
+                                                        const PackedInt32Array& p_budgets, bool p_joined,
+                                                        bool p_leaves) const {
     const TypedArray<Dictionary> none;
     for (const int32_t level : p_levels) {
         ERR_FAIL_COND_V_MSG(level < 0, none,
@@ -24,7 +24,10 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
     return guarded(none, [&] {
         const std::shared_ptr<const treerec::Tree> tree = get_tree();
         const std::shared_ptr<const treerec::Foliage> foliage = get_leaf_density();
-        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
+        std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
+        if (!p_leaves)
+            for (treerec::LeafKind& kind : kinds)
+                kind.rules.standing = 0.0;
         const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
         const treerec::LevelBuilder builder(*tree, kinds, uint64_t(get_seed()), *foliage, nullptr,
                                             bark.get());
@@ -66,6 +69,7 @@ TypedArray<Dictionary> TreeReconstruction::build_levels(const PackedInt32Array& 
 }
 
 void TreeReconstruction::_bind_levels() {
-    ClassDB::bind_method(D_METHOD("build_levels", "levels", "budgets", "joined"),
-                         &TreeReconstruction::build_levels, DEFVAL(PackedInt32Array()), DEFVAL(false));
+    ClassDB::bind_method(D_METHOD("build_levels", "levels", "budgets", "joined", "leaves"),
+                         &TreeReconstruction::build_levels, DEFVAL(PackedInt32Array()), DEFVAL(false),
+                         DEFVAL(true));
 }

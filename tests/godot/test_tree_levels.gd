@@ -2,6 +2,7 @@ extends "./suite.gd"
 ## A TreeInstance3D's levels of detail: that they take turns without a gap, and follow the tree.
 
 const Levels := preload("res://addons/tree_reconstruction/nodes/tree_levels.gd")
+const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
 const LIMIT_FRAMES: int = 2000
 
 
@@ -191,6 +192,37 @@ func test_levels_of_a_resource() -> void:
 	check_equal(made.build_levels([1], [500])[0].triangles <= 500, true, "the budget")
 	expect_error("no level of detail -1")
 	check_equal(made.build_levels([-1]).size(), 0, "a negative level")
+
+
+func test_a_tree_without_leaves_keeps_the_twigs_that_they_hide() -> void:
+	var made: TreeReconstruction = grown_tree(2, 4000)
+	var hidden: Array = made.build_mesh_arrays(3)
+	var bare: Array = made.build_mesh_arrays(3, false, false)
+	check(_triangles(bare) > _triangles(hidden), "It has no more twigs than a tree in leaf.")
+	check_equal(made.build_mesh_arrays(1, false, false), made.build_mesh_arrays(1), "level 1")
+	var level: Dictionary = made.build_levels([3], [], false, false)[0]
+	check_equal(level.bark, bare, "the bark of a level")
+	check_equal(_count(level.leaves), 0, "the leaves")
+	check_equal(level.triangles, _triangles(bare), "the triangles")
+	var instance: TreeInstance3D = _instance(made)
+	instance.levels = 4
+	await _settle(instance)
+	check(instance.get_level_triangle_count(3) > _triangles(hidden), "It bears no leaves.")
+	instance.leaves = false
+	await _settle(instance)
+	check_equal(instance.get_level_triangle_count(3), _triangles(bare), "without leaves")
+	instance.lod = 3
+	await _settle(instance)
+	check_equal(instance.get_triangle_count(), _triangles(bare), "at a level of its own")
+	instance.leaves = true
+	await _settle(instance)
+	check_equal(BuildJob.triangles(instance.mesh), _triangles(hidden), "in leaf again")
+	instance.free()
+
+
+func _triangles(arrays: Array) -> int:
+	@warning_ignore("integer_division")
+	return (arrays[Mesh.ARRAY_INDEX] as PackedInt32Array).size() / 3
 
 
 func _count(buffer: PackedFloat32Array) -> int:

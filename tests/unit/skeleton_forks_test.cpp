@@ -193,5 +193,21 @@ TEST(HuggingShoots, ThoseInTheCrotchAndAlongTheBarkGo) {
     EXPECT_EQ(grown.branches[4].parent, 3);
 }
 
+TEST(HuggingShoots, SproutsOfAStoutTrunkStayHoweverNearToItsAxis) {
+    Branches grown;
+    grown.add(-1, 0, straight(DVec3(0.0), {0.0, 4.0, 0.0}, 40), 0.3);
+    grown.branches[0] = {};
+    // Out of the bark by .05, by .2 and by .5 m: 1.2 to 2.7 radii from the axis.
+    for (const double out : {0.05, 0.2, 0.5}) {
+        const int32_t at = static_cast<int32_t>(10.0 * (1.0 + 2.0 * out));
+        const double y = 0.1 * at;
+        grown.add(0, at, straight({0.3, y, 0.0}, {0.3 + out, y + 0.5 * out, 0.0}, 4), 0.004);
+    }
+    drop_hugging_shoots(grown.branches, grown.axes);
+    ASSERT_EQ(grown.branches.size(), 3u);
+    EXPECT_EQ(grown.axes[1].back().position.x, 0.5);
+    EXPECT_EQ(grown.axes[2].back().position.x, 0.8);
+}
+
 }  // namespace
 }  // namespace treerec

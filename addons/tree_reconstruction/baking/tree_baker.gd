@@ -181,7 +181,8 @@ static func joined_leaves(parts: Parts) -> Array[Array]:
 
 func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
 	# Only the addon's shader knows how to hide the seam of a picture that does not fit around.
-	var arrays: Array = tree.build_mesh_arrays(level, not PlainMaterials.is_addons(_bark_of(tree)))
+	var whole_repeats: bool = not PlainMaterials.is_addons(_bark_of(tree))
+	var arrays: Array = tree.build_mesh_arrays(level, whole_repeats, leaves)
 	if lightmap_uv2 and level == 0 and not arrays.is_empty():
 		var unwrapped: Lightmap.Unwrapped = Lightmap.unwrap(arrays, lightmap_texel_size)
 		if unwrapped.arrays.is_empty():

@@ -52,14 +52,14 @@ func run() -> void:
 		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 	var started: int = Time.get_ticks_usec()
 	if budget > 0:
-		for made: Dictionary in source.build_levels([lod], [budget]):
+		for made: Dictionary in source.build_levels([lod], [budget], false, leaves):
 			_wood = made.bark
 			warning = made.warning
+			foliage = made.foliage
 			if leaves:
 				leaf_box = made.box
-				foliage = made.foliage
 	elif with_bark:
-		_wood = source.build_mesh_arrays(lod)
+		_wood = source.build_mesh_arrays(lod, false, leaves)
 	var barked: int = Time.get_ticks_usec()
 	bark_time = (barked - started) / 1000.0
 	if budget == 0 and leaves:

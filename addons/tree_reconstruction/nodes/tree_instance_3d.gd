@@ -364,10 +364,11 @@ func _start() -> void:
 		return
 	var job: BuildJob = BuildJob.new()
 	job.take(self)
-	# A change of the leaves alone keeps the bark.
+	# A change of the leaves alone keeps the bark, up to level 1: beyond, they hide some of it.
 	job.with_bark = (
 		mesh == null
 		or job.budget > 0
+		or job.lod > 1
 		or _bark_of != [reconstruction, job.revision, job.lod, job.budget]
 	)
 	if not threaded:

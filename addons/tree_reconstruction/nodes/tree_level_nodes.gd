@@ -269,6 +269,7 @@ func _mixes(part: GeometryInstance3D) -> bool:
 func _new_job() -> LevelsJob:
 	var job: LevelsJob = LevelsJob.new()
 	job.source = _tree.reconstruction
+	job.leaves = _tree.leaves
 	for level: int in range(1, _tree.levels):
 		job.numbers.append(level)
 		job.budgets.append(_tree.get_level_budget(level))
@@ -319,7 +320,7 @@ func _apply_next() -> void:
 		last.free_nodes()
 	if level == _parts.size():
 		_parts.append(Part.new(_tree, "Level%d" % (level + 1)))
-	_parts[level].fill(made, _tree.leaves)
+	_parts[level].fill(made)
 	if not _made.is_empty():
 		return
 	_fill_shadow()
@@ -361,10 +362,10 @@ class Part:
 		tree.add_child(bark, false, Node.INTERNAL_MODE_BACK)
 		leaves = LeafNodes.new(tree, name + "Leaves", false)
 
-	func fill(made: Dictionary, with_leaves: bool) -> void:
+	func fill(made: Dictionary) -> void:
 		bark.mesh = made.bark
-		leaves.fill(made.foliage if with_leaves else ([] as Array[Dictionary]))
-		triangles = made.triangles if with_leaves else BuildJob.triangles(bark.mesh)
+		leaves.fill(made.foliage)
+		triangles = made.triangles
 		warning = made.warning
 
 	func set_visible(shown: bool) -> void:
@@ -388,12 +389,13 @@ class LevelsJob:
 	var source: TreeReconstruction
 	var numbers: PackedInt32Array
 	var budgets: PackedInt32Array
+	var leaves: bool
 	var task: int = -1
 	var stale: bool = false
 	var made: Array[Dictionary] = []
 
 	func run() -> void:
-		made = source.build_levels(numbers, budgets)
+		made = source.build_levels(numbers, budgets, false, leaves)
 		if BuildJob.may_workers_draw():
 			for level: Dictionary in made:
 				draw(level)

@@ -17,7 +17,8 @@ constexpr double kUnion = 1.3;     // radii
 constexpr size_t kMostWood = 4;    // branches that meet in one place
 constexpr double kNear = 2.0;      // radii: so near to an axis,
 constexpr double kStandOff = 0.7;  // a shoot reaches so much of its length out of the bark,
-constexpr double kHair = 3.0;      // radii: and farther than so near
+constexpr double kHair = 3.0;      // radii: and farther than so near,
+constexpr double kSprout = 0.1;    // metres: or so far out of the bark, as sprouts of stout trunks are
 
 class HuggingShoots {
   public:
@@ -45,7 +46,7 @@ class HuggingShoots {
             // Blinn's blobs (1982), as powers: one branch alone ends at its own surface.
             const double near = kUnion * place.radius / std::max(place.distance, 1e-9);
             field += near * near;
-            along = along || place.distance < kHair * place.radius ||
+            along = along || place.outside() < std::min((kHair - 1.0) * place.radius, kSprout) ||
                     (place.distance < kNear * place.radius + kMargin &&
                      place.outside() < kStandOff * length_outside(l));
         }

@@ -106,7 +106,7 @@ func step() -> bool:
 				_tree, Collision.Kind.CAPSULES, capsules_wanted, capsule_radius
 			)
 	elif _step <= levels:
-		_add(-1, _step - 1, _tree.build_mesh_arrays(_step - 1))
+		_add(-1, _step - 1, _tree.build_mesh_arrays(_step - 1, false, leaves))
 	elif leaves and _step <= 2 * levels:
 		var level: int = _step - levels - 1
 		_add_leaves(level, _tree.build_joined_foliage(level))
@@ -212,11 +212,7 @@ func _fit(level: int) -> void:
 			bytes -= surfaces[place].bytes
 			surfaces.remove_at(place)
 	triangles[level] = 0
-	if not leaves:
-		_tree.edit("leaves where=all rule=default")
-		_tree.leaf_rule = null
-		_tree.leaf_preset = "none"
-	for made: Dictionary in _tree.build_levels([level], [budget], true):
+	for made: Dictionary in _tree.build_levels([level], [budget], true, leaves):
 		_add(-1, level, made.bark)
 		_add_leaves(level, made.joined_foliage)
 		if warning.is_empty():
