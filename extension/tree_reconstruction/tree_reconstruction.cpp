@@ -35,11 +35,13 @@ std::shared_ptr<const Tree> TreeReconstruction::get_tree() const {
 int64_t TreeReconstruction::get_bark_revision() const {
     const SharedParts::Parts parts = parts_.get();
     std::vector<bool> followed = guarded(std::vector<bool>(), [&] {
-        std::vector<bool> kinds;
-        for (const treerec::LeafKind& kind : make_leaf_kinds(*parts.tree)) {
-            kinds.push_back(treerec::follows(kind.rules, *parts.foliage));
+        std::vector<bool> told;
+        const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*parts.tree);
+        for (const treerec::LeafKind& kind : kinds) {
+            told.push_back(treerec::follows(kind.rules, *parts.foliage));
         }
-        return kinds;
+        told.push_back(treerec::hide_twigs(kinds));
+        return told;
     });
     return bark_revision_.count(parts, std::move(followed));
 }
@@ -267,7 +269,7 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, boo
         const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
         return to_surface_arrays(treerec::build_level_bark(
             treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod,
-            p_leaves && treerec::hide_twigs(kinds), p_whole_repeats, nullptr, bark.get()));
+            {p_leaves && treerec::hide_twigs(kinds), p_whole_repeats, true, bark.get()}));
     });
 }
 

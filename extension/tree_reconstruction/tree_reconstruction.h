@@ -152,8 +152,8 @@ class TreeReconstruction : public godot::Resource {
 
     // tree_reconstruction_levels.cpp
     godot::TypedArray<godot::Dictionary> build_levels(const godot::PackedInt32Array& p_levels,
-                                                      const godot::PackedInt32Array& p_budgets,
-                                                      bool p_joined, bool p_leaves) const;
+                                                      const godot::PackedInt32Array& p_budgets, bool p_joined,
+                                                      bool p_leaves) const;
 
     // Editing (tree_reconstruction_editing.cpp), by one thread at a time.
     godot::Ref<TreeEdit> edit(const godot::String& p_command);

@@ -11,8 +11,10 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        for (int i = 2; i < argc; i++)
+        for (int i = 2; i < argc; i++) {
             write_pictures(argv[1], argv[i], draw_pictures(argv[i], kTextureSize, kTextureSeed));
+            write_pictures(argv[1], argv[i], draw_sprays(argv[i], kTextureSize, kTextureSeed));
+        }
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;

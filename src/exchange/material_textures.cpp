@@ -109,6 +109,13 @@ std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uin
     return encode_all(kNames, images);
 }
 
+std::vector<NamedPicture> draw_sprays(const std::string& preset, int size, uint64_t seed) {
+    constexpr const char* kSprayNames[] = {"sprays_albedo", "sprays_normal"};
+    const LeafTextures sprays = make_spray_textures(preset, size, seed);
+    const Image* images[] = {&sprays.albedo, &sprays.normal};
+    return encode_all(kSprayNames, images);
+}
+
 std::vector<NamedPicture> encode_bark(const BarkTextures& bark) {
     const Image grey = channel_of(bark.roughness, 1);
     const Image* images[] = {&bark.albedo, &bark.normal, &bark.roughness, &grey};

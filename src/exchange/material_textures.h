@@ -60,6 +60,8 @@ std::vector<NamedPicture> make_pictures(const std::string& preset, int size = kT
 
 // The same bytes, always drawn anew; it takes seconds.
 std::vector<NamedPicture> draw_pictures(const std::string& preset, int size, uint64_t seed);
+// "sprays_albedo" and "sprays_normal": make_spray_textures(), for the addon's shader alone.
+std::vector<NamedPicture> draw_sprays(const std::string& preset, int size, uint64_t seed);
 
 // The four pictures of a bark, with these names.
 std::vector<NamedPicture> encode_bark(const BarkTextures& bark);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "error.h"
@@ -91,7 +92,7 @@ std::vector<OutlinePart> outline_parts(const Tree& tree, const std::vector<LeafK
                                        const std::string& textures, uint64_t seed, const Foliage& foliage,
                                        const Progress* progress) {
     const LevelBuilder builder(tree, kinds, seed, foliage, progress);
-    TreeLevel level = builder.build(0, 0, progress);
+    TreeLevel level = builder.build(0, SIZE_MAX, progress);  // all that it has
     std::vector<OutlinePart> parts;
     parts.push_back({std::move(level.bark), {}});
     for (size_t kind = 0; kind < level.foliage.size(); kind++) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
+#include <numeric>
 
 #include "error.h"
 #include "geometry/parallel.h"
@@ -37,6 +39,8 @@ constexpr double kUnevenRadius = 0.03;      // metres: and the thinnest that doe
 constexpr int kRootedSides = 16;            // coarser trunks have no roots
 constexpr uint32_t kSidesPerRoot = 5;       // at level 0
 constexpr size_t kFewBranches = 256;        // are built sooner than threads start
+constexpr double kMostCoarser = 4.0;        // levels, where there would be too many triangles,
+constexpr double kCoarserStep = 1.0 / 64;   // to so much of one
 
 // How much rings leave out at level 0 of branches of such a radius in metres: the eye rests on the stout
 // ones.
@@ -127,7 +131,7 @@ void Builder::pick_rings(const Branch& branch, const std::vector<AxisPoint>& poi
     const BendLimit& limits =
         *std::find_if(std::begin(kBendLimits), std::end(kBendLimits) - 1,
                       [&](const BendLimit& limit) { return stoutness >= limit.least_radius; });
-    const double bend_limit = portable::cos(std::min(limits.bend * (1 + level), 1.2));
+    const double bend_limit = portable::cos(std::min(limits.bend * (1 << level), 1.2));
     const double change_limit = 0.4 * (1 + level);
     const double spacing_limit = std::max(0.5, 0.1 * branch.length) * (1 << level);
     const double closeness = 0.35 * (1 + level);
@@ -343,30 +347,67 @@ void Builder::for_all(const Progress* progress, const std::function<void(size_t,
                  });
 }
 
+// Where the rings of all branches lie.
+void Builder::lay_out(const Progress* progress) {
+    // From near by, a twig that stood for others would look swollen; a few that are missing, nobody misses.
+    if (options.level == 0)
+        for (float& share : widened)
+            share = std::min(share, 1.0f);
+    for_all(progress, [&](size_t begin, size_t end) {
+        std::vector<AxisPoint> points;
+        for (size_t i = begin; i < end; i++)
+            plan(i, points);
+    });
+    for (size_t i = 0; i < tubes.size(); i++)  // parents before children
+        seat(i);
+    if (options.level > 0)
+        for (size_t i = 0; i < tubes.size(); i++)
+            widen(i);
+    for_all(progress, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++)
+            join(i);
+    });
+}
+
+size_t Builder::triangles() const {
+    return std::accumulate(tubes.begin(), tubes.end(), size_t{0},
+                           [](size_t sum, const Tube& tube) { return sum + tube.indices() / 3; });
+}
+
+// Of a tree that was laid out at a finer one: the least at which what still stands has no more triangles, or
+// the coarsest.
+double Builder::coarseness_of(size_t triangles, double finer, double coarser) const {
+    while (coarser - finer > kCoarserStep) {
+        const double between = 0.5 * (finer + coarser);
+        const std::vector<float> shares = share_twigs(tree, list, crown, between);
+        size_t count = 0;
+        for (size_t i = 0; i < tubes.size(); i++)
+            if (shares[i] > 0.0f) count += tubes[i].indices() / 3;
+        (count > triangles ? finer : coarser) = between;
+    }
+    return coarser;
+}
+
 }  // namespace tubes
 
 Mesh build_branch_tubes(const Tree& tree, const TubeOptions& options, const Progress* progress) {
     Mesh mesh;
     if (tree.size() < 2) return mesh;
     if (options.maximum_sides > 64) throw Error("A branch can have at most 64 sides.");
-    tubes::Builder builder(tree, options);
-    if (!(builder.crown.coordinate < tubes::kLargestTree))
+    double coarseness = options.twig_level < 0.0 ? options.level : options.twig_level;
+    const double coarsest = coarseness + tubes::kMostCoarser;
+    auto laid_out = std::make_unique<tubes::Builder>(tree, options, coarseness);
+    if (!(laid_out->crown.coordinate < tubes::kLargestTree))
         throw Error("The tree reaches beyond 1000 km; check the scan's units.");
-    const size_t branches = builder.tubes.size();
-    builder.for_all(progress, [&](size_t begin, size_t end) {
-        std::vector<AxisPoint> points;
-        for (size_t i = begin; i < end; i++)
-            builder.plan(i, points);
-    });
-    for (size_t i = 0; i < branches; i++)  // parents before children
-        builder.seat(i);
-    if (options.level > 0)
-        for (size_t i = 0; i < branches; i++)
-            builder.widen(i);
-    builder.for_all(progress, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; i++)
-            builder.join(i);
-    });
+    laid_out->lay_out(progress);
+    // Wider twigs may have more sides, so that it takes another time.
+    while (options.most_triangles > 0 && laid_out->triangles() > options.most_triangles &&
+           coarseness < coarsest) {
+        coarseness = laid_out->coarseness_of(options.most_triangles, coarseness, coarsest);
+        laid_out = std::make_unique<tubes::Builder>(tree, options, coarseness);
+        laid_out->lay_out(progress);
+    }
+    tubes::Builder& builder = *laid_out;
     size_t vertices = 0, indices = 0;
     for (tubes::Tube& tube : builder.tubes) {
         tube.first_vertex = vertices;

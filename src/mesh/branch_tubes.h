@@ -15,7 +15,10 @@ inline constexpr double kCutMark = 64.0;
 
 struct TubeOptions {
     int level = 0;  // level of detail: 0 the finest; each level halves sides, drops rings and thins out twigs
-    double twig_level = -1.0;   // of the twigs, where it is another one: between the levels, too
+    double twig_level = -1.0;  // of the twigs, where it is another one: between the levels, too
+    // Where there would be more, fewer twigs are drawn and stand for the others; 0: any number. What can't be
+    // left out may still be more.
+    size_t most_triangles = 0;
     double side_length = 0.02;  // metres of circumference per side aimed at, at level 0
     int minimum_sides = 5;      // one less on branches under 24 mm of diameter, two less under 12 mm
     int maximum_sides = 24;

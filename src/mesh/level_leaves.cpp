@@ -13,8 +13,11 @@ namespace treerec {
 
 namespace {
 
-constexpr double kBoughs = 0.45;  // of the single cards that a level would have
-constexpr double kSpray = 1.5;    // times its own size: as large as a bough's card draws a spray, about
+constexpr size_t kMostTriangles =
+    20000;                            // of all leaves: single cards are flat where bent ones would have more
+constexpr double kStep = 1.0 / 16.0;  // of levels
+constexpr double kBoughs = 0.45;      // of the single cards that a level would have
+constexpr double kSpray = 1.5;        // times its own size: as large as a bough's card draws a spray, about
 constexpr float kSpread = 1.05f;  // of a bough's edge over the root of its leaves' area: gaps between them
 constexpr float kFacing = 1.0f;   // the way out of the crown over a leaf's own: how a bough faces
 constexpr float kReach = 2.4f;    // deviations of its leaves from its middle: a bough is no larger
@@ -90,6 +93,33 @@ LeafPlacement bough_of(std::span<const uint32_t> run, const std::vector<LeafPlac
     return bough;
 }
 
+// Whether leaves of which such a share is kept are no larger than they may be.
+bool grows_little(double share) {
+    return share * kMostGrowth * kMostGrowth >= 1.0;
+}
+
+// The level by which so many leaves are thinned, from level 1 on: there, cards can't become simpler.
+double affordable(size_t count, const LeafRules& rules, double level) {
+    if (level < 0.5) return level;
+    const auto triangles =
+        static_cast<double>(build_leaf_card(rules, kMostLevels - 1).triangle_count() * count);
+    double coarser = level;
+    while (kept_share(coarser, count) * triangles > static_cast<double>(foliage_triangles(level)) &&
+           grows_little(kept_share(coarser + kStep, count)))
+        coarser += kStep;
+    return coarser;
+}
+
+// Of so many leaves: as fine as a level is, or as they can afford.
+Mesh card_of(const LeafRules& rules, double level, size_t count) {
+    Mesh card;
+    for (int form = std::min(static_cast<int>(level + 0.5), kMostLevels - 1); form < kMostLevels; form++) {
+        card = build_leaf_card(rules, form);
+        if (card.triangle_count() * count <= foliage_triangles(level)) break;
+    }
+    return card;
+}
+
 }  // namespace
 
 std::vector<LeafPlacement> gather_boughs(const std::vector<LeafPlacement>& leaves, size_t count) {
@@ -124,18 +154,20 @@ Mesh build_bough_card(int sprays) {
     return card;
 }
 
-LevelLeaves leaves_of_level(const std::vector<LeafPlacement>& leaves, const LeafRules& rules, double level) {
+LevelLeaves leaves_of_level(const std::vector<LeafPlacement>& leaves, const LeafRules& rules, double level,
+                            bool limited) {
     LevelLeaves made;
     const double share = kept_share(level, leaves.size());
     const auto fewest = static_cast<double>(std::min(kFewestBoughs, leaves.size()));
-    if (share * kMostGrowth * kMostGrowth >= 1.0 || uses_blade_picture(rules)) {
-        made.leaves = thin_leaves(leaves, level);
-        const int whole = std::min(static_cast<int>(level + 0.5), kMostLevels - 1);
-        if (!made.leaves.empty()) made.card = build_leaf_card(rules, whole);
+    if (grows_little(share) || uses_blade_picture(rules)) {
+        made.leaves = thin_leaves(leaves, limited ? affordable(leaves.size(), rules, level) : level);
+        if (!made.leaves.empty()) made.card = card_of(rules, level, limited ? made.leaves.size() : 0);
         return made;
     }
     const auto all = static_cast<double>(leaves.size());
-    const double boughs = std::max(kBoughs * leaf_share(level) * all, std::min(fewest, share * all));
+    const double most = limited ? 0.5 * static_cast<double>(foliage_triangles(level)) : all;
+    const double boughs =
+        std::max(std::min(kBoughs * leaf_share(level) * all, most), std::min(fewest, share * all));
     made.leaves = gather_boughs(leaves, static_cast<size_t>(boughs));
     const double growth = kSpread * std::sqrt(all / std::max(boughs, 1.0));
     if (!made.leaves.empty()) made.card = build_bough_card(static_cast<int>(growth / kSpray + 0.5));

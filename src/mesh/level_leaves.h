@@ -18,7 +18,9 @@ struct LevelLeaves {
 // are gathered into boughs: cards as large as it takes, whose picture is the spray's, drawn many times over
 // (build_bough_card()). Rules whose card is not a spray have no boughs. level: not negative, may lie between
 // two; has fewer cards the higher it is. Deterministic.
-LevelLeaves leaves_of_level(const std::vector<LeafPlacement>& leaves, const LeafRules& rules, double level);
+// limited: to foliage_triangles(), where cards can become fewer or flat.
+LevelLeaves leaves_of_level(const std::vector<LeafPlacement>& leaves, const LeafRules& rules, double level,
+                            bool limited = true);
 
 inline constexpr double kMostGrowth = 2.0;
 

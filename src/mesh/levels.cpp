@@ -16,13 +16,16 @@ namespace treerec {
 
 namespace {
 
-constexpr double kWidth = 0.0004;    // over the tree's height, at level 0
-constexpr double kCoarsest = 16.0;   // a trunk of a few triangles
-constexpr double kStep = 1.0 / 64;   // between two levels that a budget tells apart
-constexpr double kHiding = 0.5;      // of full foliage: so much hides most of the wood,
-constexpr double kFewer = 1.75;      // levels: and so many farther ones are its twigs, from level 2 on
-constexpr double kWidestBark = 1.5;  // of a node's radius
-constexpr double kBase = 4.0;        // likewise, where the trunk stands on its roots
+constexpr double kWidth = 0.0004;     // over the tree's height, at level 0
+constexpr double kCoarsest = 16.0;    // a trunk of a few triangles
+constexpr double kStep = 1.0 / 64;    // between two levels that a budget tells apart
+constexpr double kHiding = 0.5;       // of full foliage: so much hides most of the wood,
+constexpr double kFewerTwigs = 1.75;  // levels: and so many farther ones are its twigs, from level 2 on
+constexpr double kFinest = 60000.0;   // triangles at level 0,
+constexpr double kFewer = 4.65;       // times fewer per level,
+constexpr double kOfBark = 0.57;      // and so much of them is bark
+constexpr double kWidestBark = 1.5;   // of a node's radius
+constexpr double kBase = 4.0;         // likewise, where the trunk stands on its roots
 
 int whole(double level) {
     return static_cast<int>(level + 0.5);
@@ -34,20 +37,28 @@ double level_width(double height, double level) {
     return kWidth * height * portable::pow(2.0, level);
 }
 
+size_t bark_triangles(double level, bool hidden) {
+    return static_cast<size_t>((hidden ? kOfBark : 1.0) * kFinest * portable::pow(kFewer, -level));
+}
+
+size_t foliage_triangles(double level) {
+    return static_cast<size_t>((1.0 - kOfBark) * kFinest * portable::pow(kFewer, -level));
+}
+
 bool hide_twigs(const std::vector<LeafKind>& kinds) {
     if (kinds.empty()) return false;
     const LeafRules& own = kinds.front().rules;
     return own.enabled && own.maximum_leaves > 0 && own.standing * own.unfolded > kHiding;
 }
 
-Mesh build_level_bark(const Tree& wood, double level, bool hidden, bool whole_repeats,
-                      const Progress* progress, const GrownBark* grown) {
+Mesh build_level_bark(const Tree& wood, double level, const LevelBark& how, const Progress* progress) {
     TubeOptions options;
+    options.most_triangles = how.limited ? bark_triangles(level, how.hidden) : 0;
     options.level = whole(level);
-    options.twig_level = level + (hidden ? kFewer * std::clamp(level - 1.0, 0.0, 1.0) : 0.0);
-    options.whole_repeats = whole_repeats;
+    options.twig_level = level + (how.hidden ? kFewerTwigs * std::clamp(level - 1.0, 0.0, 1.0) : 0.0);
+    options.whole_repeats = how.whole_repeats;
     GrownBark lighter;
-    options.grown = bark_of_level(grown, level, lighter);
+    options.grown = bark_of_level(how.grown, level, lighter);
     return build_branch_tubes(wood, options, progress);
 }
 
@@ -77,28 +88,37 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
     if (grown_)
         for (const GrownBark::Vertex& vertex : grown_->vertices)
             box_.add(DVec3(vertex.position), grown_->parents.empty() ? 0.0 : kMostSwell * vertex.radius);
-    for (size_t kind = 0; kind < kinds_.size(); kind++)
+    for (size_t kind = 0; kind < kinds_.size(); kind++) {
         for (int level = 0; level < kMostLevels; level++)
             add_leaves(box_, leaves_of_level(leaves_[kind], kinds_[kind].rules, level).leaves);
+        // Between two levels, leaves may be larger than at both.
+        std::vector<LeafPlacement> largest = leaves_[kind];
+        for (LeafPlacement& leaf : largest)
+            leaf.size *= static_cast<float>(kMostGrowth);
+        add_leaves(box_, largest);
+    }
 }
 
-TreeLevel LevelBuilder::build_at(double level, const Progress* progress) const {
+TreeLevel LevelBuilder::build_at(double level, bool limited, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
-    made.bark = build_level_bark(wood_, level, hide_twigs(kinds_), false, progress, grown_);
+    made.bark = build_level_bark(wood_, level, {hide_twigs(kinds_), false, limited, grown_}, progress);
     for (size_t kind = 0; kind < kinds_.size(); kind++)
-        made.foliage.push_back(leaves_of_level(leaves_[kind], kinds_[kind].rules, level));
+        made.foliage.push_back(leaves_of_level(leaves_[kind], kinds_[kind].rules, level, limited));
     return made;
 }
 
 TreeLevel LevelBuilder::build(int level, size_t budget, const Progress* progress) const {
     if (level < 0) throw Error("There is no level of detail " + std::to_string(level) + "; 0 is the finest.");
-    if (budget == 0) return build_at(level, progress);
-    TreeLevel made = build_at(0.0, progress);
-    if (made.triangle_count() <= budget) return made;
+    if (budget == 0) return build_at(level, true, progress);
+    TreeLevel made;
+    for (const bool limited : {false, true}) {
+        made = build_at(0.0, limited, progress);
+        if (made.triangle_count() <= budget) return made;
+    }
     // The finest that keeps the budget lies between these.
     double finer = 0.0, coarser = kCoarsest;
-    made = build_at(coarser, progress);
+    made = build_at(coarser, false, progress);
     if (made.triangle_count() > budget) {
         made.warning = "A level of " + std::to_string(budget) +
                        " triangles was asked for, but this tree has " +
@@ -107,7 +127,7 @@ TreeLevel LevelBuilder::build(int level, size_t budget, const Progress* progress
     }
     while (coarser - finer > kStep) {
         const double between = 0.5 * (finer + coarser);
-        TreeLevel tried = build_at(between, progress);
+        TreeLevel tried = build_at(between, false, progress);
         if (tried.triangle_count() > budget) {
             finer = between;
         } else {

@@ -37,6 +37,11 @@ inline constexpr int kMostLevels = 5;
 // is about five times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
 
+// What a level without a budget may have: 60,000 in all at level 0, 580 at level 3. It becomes coarser than
+// it would be by itself, where it can: what no level leaves out may be more.
+size_t bark_triangles(double level, bool hidden);  // see hide_twigs()
+size_t foliage_triangles(double level);            // of all leaves of a kind
+
 struct TreeLevel {
     Mesh bark;
     std::vector<LevelLeaves> foliage;  // by kind of leaves (leaf_kinds())
@@ -63,7 +68,8 @@ class LevelBuilder {
     LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},
                  const Progress* progress = nullptr);
 
-    // level: 0 is the finest. budget: if not 0, the finest thing between the levels, down from level 0, that
+    // level: 0 is the finest, which has no more than bark_triangles() and foliage_triangles() let it have
+    // without a budget. budget: if not 0, the finest thing between the levels, down from level 0, that
     // has at most so many triangles of bark and leaves; `level` is then of no matter. Deterministic; up
     // to 12 times the time of one level with a budget. Throws Error for a negative level, or Cancelled.
     TreeLevel build(int level, size_t budget = 0, const Progress* progress = nullptr) const;
@@ -71,7 +77,7 @@ class LevelBuilder {
     const Bounds& box() const { return box_; }
 
   private:
-    TreeLevel build_at(double level, const Progress* progress) const;
+    TreeLevel build_at(double level, bool limited, const Progress* progress) const;
 
     const Tree wood_;
     const std::vector<LeafKind> kinds_;
@@ -84,9 +90,15 @@ class LevelBuilder {
 // fewer twigs from afar.
 bool hide_twigs(const std::vector<LeafKind>& kinds);
 
-// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree. hidden: see
-// hide_twigs(). whole_repeats: see TubeOptions. grown: see LevelBuilder.
-Mesh build_level_bark(const Tree& wood, double level, bool hidden = false, bool whole_repeats = false,
-                      const Progress* progress = nullptr, const GrownBark* grown = nullptr);
+struct LevelBark {
+    bool hidden = false;               // see hide_twigs()
+    bool whole_repeats = false;        // see TubeOptions
+    bool limited = true;               // to bark_triangles()
+    const GrownBark* grown = nullptr;  // see LevelBuilder
+};
+
+// The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree.
+Mesh build_level_bark(const Tree& wood, double level, const LevelBark& how = {},
+                      const Progress* progress = nullptr);
 
 }  // namespace treerec

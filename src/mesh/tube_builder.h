@@ -80,7 +80,8 @@ struct Builder {
     std::vector<float> node_along;  // by node id: metres along its branch's axis
     std::vector<NodeId> continues;  // by node id: the next one of its branch, or kNoNode
 
-    Builder(const Tree& t, const TubeOptions& o)
+    // coarseness: see share_twigs().
+    Builder(const Tree& t, const TubeOptions& o, double coarseness)
         : tree(t),
           options(o),
           list(list_branches(t)),
@@ -90,7 +91,7 @@ struct Builder {
           tubes(list.branches.size()),
           rings((list.branches.size() + kBranchesPerChunk - 1) / kBranchesPerChunk),
           collars(rings.size()),
-          widened(share_twigs(t, list, crown, o.twig_level < 0.0 ? o.level : o.twig_level)),
+          widened(share_twigs(t, list, crown, coarseness)),
           node_along(static_cast<size_t>(t.id_end()), 0.0f),
           continues(static_cast<size_t>(t.id_end()), kNoNode) {
         take_grown();
@@ -131,6 +132,9 @@ struct Builder {
 
     // Calls body(begin, end) for all branches, on several threads where they are worth it.
     void for_all(const Progress* progress, const std::function<void(size_t, size_t)>& body) const;
+    void lay_out(const Progress* progress);
+    size_t triangles() const;
+    double coarseness_of(size_t triangles, double finer, double coarser) const;
     void plan(size_t index, std::vector<AxisPoint>& points);
     void seat(size_t index);
     void join(size_t index);

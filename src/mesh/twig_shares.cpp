@@ -131,8 +131,9 @@ std::vector<float> share_twigs(const Tree& tree, const BranchList& list, const C
     const size_t count = list.branches.size();
     std::vector<float> standing(count, 1.0f);
     if (coarseness <= 0.0) return standing;
-    const double width = level_width(crown.height, coarseness);
-    choose(tree, list, width, kLength * crown.height * portable::pow(2.0, coarseness), standing);
+    const double begun = std::min(coarseness, 1.0);  // so that the first twigs that go are the thinnest
+    const double width = begun * level_width(crown.height, coarseness);
+    choose(tree, list, width, begun * kLength * crown.height * portable::pow(2.0, coarseness), standing);
 
     // What goes is drawn by what stays beside it, or else by what bore it: nothing is lost.
     std::vector<double> area(count), all(count), borne(count, 0.0), kept(count, 0.0);

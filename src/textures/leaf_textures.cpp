@@ -3,6 +3,8 @@
 
 #include "error.h"
 #include "foliage/leaves.h"
+#include "geometry/parallel.h"
+#include "geometry/random.h"
 #include "mesh/leaf_cards.h"
 #include "textures/leaf_canvas.h"
 #include "textures/leaf_shapes.h"
@@ -146,6 +148,24 @@ LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t se
     std::vector<Sample> canvas(static_cast<size_t>(4) * size * size);
     draw_spray(canvas, 2 * size, spray_of(preset), seed);
     return textures_of(canvas, size);
+}
+
+LeafTextures make_spray_textures(const std::string& preset, int size, uint64_t seed) {
+    check_arguments(preset, size);
+    LeafTextures all{Image(kSprayColumns * size, kSprayRows * size, 4),
+                     Image(kSprayColumns * size, kSprayRows * size, 3)};
+    parallel_for(kSprayColumns * kSprayRows, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; i++) {
+            const LeafTextures one = make_leaf_textures(preset, size, i > 0 ? hash_seed(seed, i) : seed);
+            const int x = static_cast<int>(i) % kSprayColumns * size,
+                      y = static_cast<int>(i) / kSprayColumns * size;
+            for (int row = 0; row < size; row++) {
+                std::copy_n(one.albedo.at(0, row), 4 * size, all.albedo.at(x, y + row));
+                std::copy_n(one.normal.at(0, row), 3 * size, all.normal.at(x, y + row));
+            }
+        }
+    });
+    return all;
 }
 
 LeafTextures make_blade_textures(const std::string& preset, int size, uint64_t seed) {

@@ -43,6 +43,12 @@ BarkTextures make_bark_textures(const std::string& preset, int size, uint64_t se
                                 BarkAge age = BarkAge::kOld);
 LeafTextures make_leaf_textures(const std::string& preset, int size, uint64_t seed);
 
+// kSprayColumns x kSprayRows sprays of so many pixels, each drawn anew; the upper left one is
+// make_leaf_textures()'s. For shaders that choose one: leaf_picture.gdshaderinc.
+LeafTextures make_spray_textures(const std::string& preset, int size, uint64_t seed);
+
+inline constexpr int kSprayColumns = 3, kSprayRows = 2;
+
 // One leaf, or one leaflet of a compound leaf, that fills the picture above its stalk (kBladeStalk in
 // mesh/leaf_cards.h) whatever its width: LeafRules::blade_width gives it its shape back.
 LeafTextures make_blade_textures(const std::string& preset, int size, uint64_t seed);

@@ -145,7 +145,7 @@ func test_other_leaves_are_suited() -> void:
 	session.set_value("Leaf Preset", session.tree, &"leaf_preset", "pine")
 	PhotosPart.suit_leaves(session)
 	var pine: Texture2D = material.get_shader_parameter(&"albedo_texture")
-	check(pine.resource_path.ends_with("/pine_leaf_albedo.png"), "It shows " + pine.resource_path)
+	check(pine.resource_path.ends_with("/pine_sprays_albedo.png"), "It shows " + pine.resource_path)
 	check(material.get_shader_parameter(&"picture_gain") != gain, "It is multiplied as an oak's.")
 	var file: ShaderMaterial = ResourceLoader.load(
 		material.resource_path, "", ResourceLoader.CACHE_MODE_IGNORE_DEEP

@@ -234,7 +234,7 @@ TEST(GrownBark, WithoutLevelsIsDrawnAtTheFinestLevelAlone) {
         EXPECT_LT(farthest(builder.build(level).bark), 0.4);
         EXPECT_EQ(builder.build(level).bark.positions.size(), tubes.build(level).bark.positions.size());
     }
-    EXPECT_NEAR(farthest(build_level_bark(tree, 0.0, false, false, nullptr, &bark)), 0.9, 1e-6);
+    EXPECT_NEAR(farthest(build_level_bark(tree, 0.0, {.grown = &bark})), 0.9, 1e-6);
     EXPECT_NEAR(builder.box().min.z, -0.9, 1e-6);
     EXPECT_NEAR(builder.box().max.z, 0.9, 1e-6);
     // The wind takes it along with the wood.

@@ -178,6 +178,27 @@ TEST(Levels, BudgetsAreMetAndUsed) {
     }
 }
 
+TEST(Levels, NoneHasMoreByItselfThanAGameAffords) {
+    const Tree tree = test::random_tree(2, 8000, 18.0);
+    LeafRules rules = leaf_preset("oak");
+    rules.leaf_area_index = 12.0;
+    const LevelBuilder builder(tree, rules, 1);
+    const size_t most[] = {60000, 12903, 2774, 596};
+    for (int level = 0; level < 4; level++) {
+        SCOPED_TRACE(level);
+        const size_t count = builder.build(level).triangle_count();
+        EXPECT_LE(count, most[level]);
+        EXPECT_GT(count, most[level] / 2);
+        const Mesh bare = build_level_bark(tree, level),
+                   whole = build_level_bark(tree, level, {.limited = false});
+        EXPECT_LE(bare.triangle_count(), most[level]);
+        EXPECT_GT(bare.triangle_count(), most[level] * 4 / 5);
+        EXPECT_GT(whole.triangle_count(), bare.triangle_count() * 3 / 2);
+    }
+    // A budget lifts that.
+    EXPECT_GT(builder.build(0, 1000000).triangle_count(), 100000u);
+}
+
 TEST(Levels, ABudgetThatCannotBeKeptSaysSo) {
     const Tree tree = grown(Habit::kBroadleaf);
     const TreeLevel made = LevelBuilder(tree, leaf_preset("generic"), 1).build(1, 2);

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <numeric>
+#include <set>
+#include <vector>
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -152,6 +156,41 @@ TEST(Textures, BladesCoverAsMuchOfASprayAsItsRuleSays) {
             for (int x = 0; x < 256; x++)
                 covered += leaf.albedo.at(x, y)[3] / 255.0;
         EXPECT_NEAR(covered / (256.0 * 256.0), leaf_preset(preset).spray_cover, 0.02) << preset;
+    }
+}
+
+// Each stands alone in its cell, so that a shader may show any of them; together they cover as one does.
+TEST(Textures, SpraysDifferAndKeepToTheirCells) {
+    constexpr int kSize = 128, kCount = kSprayColumns * kSprayRows;
+    for (const std::string& preset : leaf_preset_names()) {
+        SCOPED_TRACE(preset);
+        const LeafTextures one = make_leaf_textures(preset, kSize, kTextureSeed);
+        const LeafTextures all = make_spray_textures(preset, kSize, kTextureSeed);
+        ASSERT_EQ(all.albedo.width, kSprayColumns * kSize);
+        ASSERT_EQ(all.normal.height, kSprayRows * kSize);
+        double covered = 0.0;
+        std::set<std::vector<uint8_t>> seen;
+        for (int i = 0; i < kCount; i++) {
+            const int x = i % kSprayColumns * kSize, y = i / kSprayColumns * kSize;
+            std::vector<uint8_t> alpha;
+            for (int row = 0; row < kSize; row++) {
+                EXPECT_LT(all.albedo.at(x, y + row)[3], 8);
+                EXPECT_LT(all.albedo.at(x + kSize - 1, y + row)[3], 8);
+                EXPECT_LT(all.albedo.at(x + row, y)[3], 8);
+                for (int column = 0; column < kSize; column++)
+                    alpha.push_back(all.albedo.at(x + column, y + row)[3]);
+                if (i > 0) continue;
+                EXPECT_TRUE(std::equal(one.albedo.at(0, row), one.albedo.at(0, row) + 4 * kSize,
+                                       all.albedo.at(0, row)));
+                EXPECT_TRUE(std::equal(one.normal.at(0, row), one.normal.at(0, row) + 3 * kSize,
+                                       all.normal.at(0, row)));
+            }
+            covered += std::accumulate(alpha.begin(), alpha.end(), 0.0) / 255.0;
+            seen.insert(std::move(alpha));
+        }
+        EXPECT_EQ(seen.size(), static_cast<size_t>(kCount));
+        if (!leaf_preset(preset).enabled) continue;
+        EXPECT_NEAR(covered / (kCount * kSize * kSize), leaf_preset(preset).spray_cover, 0.035);
     }
 }
 

@@ -102,7 +102,8 @@ static var threaded: bool = true
 		_update_instances()
 
 ## The most triangles that each level may have, the finest first: it becomes as fine as that allows.
-## 0, or none: as many as the level has by itself.
+## 0, or none: as many as the level has by itself, which are 60,000 for the finest at most. A larger
+## budget lifts that.
 @export var level_budgets: PackedInt32Array:
 	set(value):
 		level_budgets = value
@@ -364,12 +365,11 @@ func _start() -> void:
 		return
 	var job: BuildJob = BuildJob.new()
 	job.take(self)
-	# A change of the leaves alone keeps the bark, up to level 1: beyond, they hide some of it.
+	# A change of the leaves alone keeps the bark, unless they come or go.
 	job.with_bark = (
 		mesh == null
 		or job.budget > 0
-		or job.lod > 1
-		or _bark_of != [reconstruction, job.revision, job.lod, job.budget]
+		or _bark_of != [reconstruction, job.revision, job.lod, job.budget, job.leaves]
 	)
 	if not threaded:
 		job.run()
@@ -427,7 +427,7 @@ func _apply_bark(job: BuildJob) -> void:
 	var bark: ArrayMesh = job.bark
 	_height = maxf(bark.get_aabb().end.y, 0.1)
 	mesh = bark
-	_bark_of = [job.source, job.revision, job.lod, job.budget]
+	_bark_of = [job.source, job.revision, job.lod, job.budget, job.leaves]
 
 
 # Of all that is drawn, at rest. Where the wind may move it is the margin's.

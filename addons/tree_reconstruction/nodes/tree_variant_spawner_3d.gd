@@ -231,8 +231,8 @@ var ground_heights: Vector2 = Vector2(-10000.0, 10000.0):
 		_change(true)
 
 ## The most triangles that a tree has at each level, the finest first; it becomes as fine as that
-## allows. 0: as many as the level has by itself. Those that are missing are chosen by the trees'
-## heights.
+## allows. 0: as many as the level has by itself, at most 60,000 for the finest. Those that are
+## missing are chosen by the trees' heights.
 @export var level_budgets: PackedInt32Array:
 	set(value):
 		level_budgets = value

@@ -123,6 +123,11 @@ static func _of_leaf(rule: LeafRule, edge: int) -> Image:
 		return null
 	image.clear_mipmaps()
 	image.convert(Image.FORMAT_RGBA8)
+	var many: Variant = material.get_shader_parameter(&"picture_sprays")
+	if many is Vector2i:
+		image.crop(
+			image.get_width() / (many as Vector2i).x, image.get_height() / (many as Vector2i).y
+		)
 	var scale: float = float(edge) / maxi(image.get_width(), image.get_height())
 	image.resize(
 		maxi(int(image.get_width() * scale), 1),

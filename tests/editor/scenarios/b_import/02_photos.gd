@@ -163,7 +163,7 @@ func _choose_leaves(node: TreeInstance3D) -> void:
 	var first: String = _picture_of(leaves)
 	session().set_value("Leaf Preset", session().tree, &"leaf_preset", "birch")
 	await until(
-		func() -> bool: return _picture_of(leaves).ends_with("/birch_leaf_albedo.png"),
+		func() -> bool: return _picture_of(leaves).ends_with("/birch_sprays_albedo.png"),
 		"the birch's picture has them"
 	)
 	await user.move(middle(view().get_parent() as Control))
