@@ -35,7 +35,7 @@ void put_header(Writer& writer, uint32_t width, uint32_t height) {
     writer.put(uint32_t{20000630});  // the magic number
     writer.put(uint32_t{2});         // version 2: one part, scan lines
     writer.attribute("channels", "chlist", 19);
-    writer.put_name("Y");
+    writer.put_name("R");
     writer.put(uint32_t{2});  // 32-bit float
     writer.put(uint32_t{0});  // not perceptually linear, and three bytes to spare
     writer.put(uint32_t{1});  // every pixel along x, along y

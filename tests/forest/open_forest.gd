@@ -1,5 +1,6 @@
 extends SceneTree
-## Opens the scene of ./dev forest: every tree and the ground are there, and each tree of the plot stands on it.
+## Opens the scene of ./dev forest: every tree and the ground are there, and each tree of the plot
+## stands on it.
 
 const PLOT := "slope"
 
