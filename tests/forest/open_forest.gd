@@ -31,9 +31,9 @@ func _open() -> void:
 				wrong.append("%s has no mesh" % tree.name)
 			if group.name == PLOT:
 				_check_foot(forest, tree as Node3D, wrong)
-	if standing != 7:
+	if standing != 8:
 		wrong.append("%d trees stand in the scene" % standing)
-	if trees.size() < 8:
+	if trees.size() < 10:
 		wrong.append("%d meshes are in the scene" % trees.size())
 	_check_heights(wrong)
 	_end(wrong)

@@ -14,12 +14,11 @@ import pictures
 import program
 
 
-def key_of(scan, words, treerec):
+def key_of(scan, words, version):
     """What a tree depends on."""
-    digest = hashlib.sha256(json.dumps(words).encode())
-    for path in (scan, treerec):
-        with open(path, "rb") as file:
-            digest.update(hashlib.file_digest(file, "sha256").digest())
+    digest = hashlib.sha256(json.dumps([*words, version]).encode())
+    with open(scan, "rb") as file:
+        digest.update(hashlib.file_digest(file, "sha256").digest())
     return digest.hexdigest()
 
 
@@ -60,6 +59,10 @@ def row_of(name, scan, report):
     return row
 
 
+def failed(name, scan, code, sentence):
+    return {"id": name, "scan": Path(scan).name, "code": code, "error": sentence, "warnings": []}
+
+
 def reconstruct(name, scan, treerec, words, threads, seconds):
     """The tree's row. Its files come into trees/ when they are whole."""
     part = Path("work/parts") / name
@@ -71,7 +74,7 @@ def reconstruct(name, scan, treerec, words, threads, seconds):
     code, sentence = program.run_on(scan, [treerec, "reconstruct"], after + words, seconds)
     if code != 0:
         shutil.rmtree(part)
-        return {"id": name, "scan": Path(scan).name, "code": code, "error": sentence, "warnings": []}
+        return failed(name, scan, code, sentence)
     row = row_of(name, scan, json.loads((part / "report.json").read_text(encoding="utf-8")))
     Path("work/pictures").mkdir(exist_ok=True)
     pictures.take(part / "sheet.png", Path("work/pictures") / f"{name}.jpg")
@@ -96,24 +99,24 @@ def is_final(row):
     return row["code"] == 1 or (row["code"] == 0 and all(path.exists() for path in made))
 
 
-def row_for(name, scan, treerec, options, threads, seconds):
-    words = words_of(scan, options)
-    key = key_of(scan, words, treerec)
+def row_for(name, scan, job):
+    words = words_of(scan, job.params.options)
+    try:
+        key = key_of(scan, words, job.params.program)
+    except OSError as error:
+        return failed(name, scan, 1, f"'{Path(scan).name}' cannot be read: {error.strerror}.")
     kept = Path("work/rows") / f"{name}.json"
     if kept.exists():
         known = json.loads(kept.read_text(encoding="utf-8"))
         if known["key"] == key and is_final(known["row"]):
             return known["row"]
-    row = reconstruct(name, scan, treerec, words, threads, seconds)
+    row = reconstruct(name, scan, job.config["treerec"], words, job.threads, job.config["timeout"])
     write_whole(kept, json.dumps({"key": key, "row": row}, indent=1) + "\n")
     return row
 
 
 def main(job):
-    rows = [
-        row_for(name, scan, job.config["treerec"], job.params.options, job.threads, job.config["timeout"])
-        for name, scan in job.params.trees
-    ]
+    rows = [row_for(name, scan, job) for name, scan in job.params.trees]
     write_whole(Path(job.output[0]), json.dumps(rows, indent=1) + "\n")
 
 

@@ -23,7 +23,8 @@ def to_las(path, target):
         raise
     # Both libraries have exceptions of many kinds for damaged files.
     except Exception as error:
-        raise ValueError(f"'{path}' could not be unpacked; copy it again. ({type(error).__name__}: {error})") from error
+        why = (str(error).splitlines() or [type(error).__name__])[0]
+        raise ValueError(f"'{path}' could not be unpacked; copy it again. It says: {why}") from error
 
 
 def laz_to_las(path, target):

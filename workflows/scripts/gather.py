@@ -75,8 +75,9 @@ def main(job):
     write_table("trees.csv", rows)
     places = [(row["frame"]["origin"] if "frame" in row else None, values_of(row)) for row in rows]
     geopackage.write("trees.gpkg", COLUMNS, places, int(job.params.epsg))
-    scene.write(made, list(plots), job.params.title)
-    catalogue.write("catalogue.html", rows, [name for name, _ in COLUMNS], values_of, job.params.title)
+    standing = scene.write(made, list(plots), job.params.title)
+    trees = [dict(zip([name for name, _ in COLUMNS], values_of(row))) for row in rows]
+    catalogue.write("catalogue.html", trees, standing, job.params.title)
 
 
 main(snakemake)  # noqa: F821

@@ -53,7 +53,7 @@ def write_ground(path, places, normals, triangles):
         {"bufferView": 2, "componentType": 5125, "count": triangles.size, "type": "SCALAR"},
     ]
     accessors[0]["min"], accessors[0]["max"] = places.min(axis=0).tolist(), places.max(axis=0).tolist()
-    soil = {"name": "Soil", "pbrMetallicRoughness": {"baseColorFactor": [0.16, 0.19, 0.08, 1], "metallicFactor": 0}}
+    soil = {"name": "Soil", "pbrMetallicRoughness": {"baseColorFactor": [0.055, 0.065, 0.03, 1], "metallicFactor": 0}}
     scene = {
         "asset": {"version": "2.0", "generator": "Godot tree reconstruction (workflows)"},
         "scene": 0,

@@ -48,16 +48,16 @@ def in_rows(rows):
 
 
 def place_trees(rows):
-    """Of one group, that has no ground of its own."""
+    """Of one group that has no ground of its own, and whether they stand in rows, on level ground."""
     frames = [row["frame"] for row in rows]
     if not have_places(frames):
-        return in_rows(rows)
+        return in_rows(rows), True
     lowest = min(frame["origin"][2] for frame in frames) if frames[0]["up"] == "z" else frames[0]["origin"][2]
     origin = [frames[0]["origin"][0], frames[0]["origin"][1], lowest]
-    return [to_scene(frame, origin) for frame in frames]
+    return [to_scene(frame, origin) for frame in frames], False
 
 
-def beside(extents, gap=10.0):
+def beside(extents, gap=20.0):
     """How far along x each group goes, so that they stand side by side. extents: (lowest, highest) x of each."""
     shifts = [0.0]
     for before, after in pairwise(extents):

@@ -79,8 +79,27 @@ def write_ground_model(path, ground, heights):
     return True
 
 
+def extent_of(standing, ground):
+    """Along x, of trees and ground."""
+    edges = [place[0] for place in standing]
+    if ground:
+        first = ground[0]["first_pixel_m"][0]
+        edges += [first, first + ground[0]["pixel_m"] * ground[0]["width"]]
+    return min(edges), max(edges)
+
+
+def write_level_ground(path, standing):
+    """Under trees in rows."""
+    room = 10.0
+    left, right, back, front = (f(place[axis] for place in standing) for axis in (0, 2) for f in (min, max))
+    width, depth = right - left + 2 * room, front - back + 2 * room
+    # A square grid of pixels, as a heightmap has, a metre each.
+    heights = numpy.zeros((int(depth) + 1, int(width) + 1), dtype="<f4")
+    write_ground_model(path, {"pixel_m": 1.0, "first_pixel_m": [left - room, back - room]}, heights)
+
+
 def groups_of(rows, plots):
-    """[(name, ground's file or nothing, [(row, place)])]: each plot, and what was scanned tree by tree."""
+    """[(name, ground's file or nothing, [(row, place)], (lowest, highest) x)]: each plot, and loose scans."""
     groups = []
     for plot in plots:
         own = [row for row in rows if row.get("plot") == plot]
@@ -93,10 +112,15 @@ def groups_of(rows, plots):
             Path(f"ground_{plot}.exr").write_bytes((folder / ground[0]["file"]).read_bytes())
         if not ground or not write_ground_model(model, *ground):
             model = None
-        groups.append((plot, model, [(row, places.to_scene(row["frame"], origin)) for row in own]))
+        standing = [places.to_scene(row["frame"], origin) for row in own]
+        groups.append((plot, model, list(zip(own, standing)), extent_of(standing, ground)))
     loose = [row for row in rows if "plot" not in row]
     if loose:
-        groups.append(("scans", None, list(zip(loose, places.place_trees(loose)))))
+        standing, flat = places.place_trees(loose)
+        model = "ground_scans.glb" if flat else None
+        if flat:
+            write_level_ground(model, standing)
+        groups.append(("scans", model, list(zip(loose, standing)), extent_of(standing, None)))
     return groups
 
 
@@ -105,16 +129,15 @@ def transform(x, y, z):
     return f"transform = Transform3D(1, 0, 0, 0, 1, 0, 0, 0, 1, {numbers})\n"
 
 
-def scene_text(groups):
-    files = [model for _, model, _ in groups if model]
-    files += sorted({f"trees/{row['id']}.glb" for _, _, trees in groups for row, _ in trees})
+def scene_text(groups, shifts):
+    files = [model for _, model, _, _ in groups if model]
+    files += sorted({f"trees/{row['id']}.glb" for _, _, trees, _ in groups for row, _ in trees})
     text = f"[gd_scene load_steps={len(files) + 4} format=3]\n\n"
     for number, file in enumerate(files):
         text += f'[ext_resource type="PackedScene" path="{file}" id="{number}"]\n'
     text += "\n" + SURROUNDINGS
     number_of = {file: number for number, file in enumerate(files)}
-    extents = [(min(place[0] for _, place in trees), max(place[0] for _, place in trees)) for _, _, trees in groups]
-    for (name, model, trees), shift in zip(groups, places.beside(extents)):
+    for (name, model, trees, _), shift in zip(groups, shifts):
         text += f'\n[node name="{name}" type="Node3D" parent="."]\n' + transform(shift, 0, 0)
         if model:
             text += f'\n[node name="Ground" parent="{name}" instance=ExtResource("{number_of[model]}")]\n'
@@ -126,8 +149,10 @@ def scene_text(groups):
 
 
 def write(rows, plots, title):
-    """forest.tscn and what it needs besides the trees."""
-    text = scene_text(groups_of(rows, plots))
+    """forest.tscn and what it needs besides the trees. Returns where in it they stand: {id: (x, z)}."""
+    groups = groups_of(rows, plots)
+    shifts = places.beside([extent for *_, extent in groups])
+    text = scene_text(groups, shifts)
     project = Path("project.godot")
     if not project.exists():
         project.write_text(PROJECT.format(name=json.dumps(title)), encoding="utf-8")
@@ -136,3 +161,8 @@ def write(rows, plots, title):
     part = Path("forest.tscn.part")
     part.write_text(text, encoding="utf-8")
     os.replace(part, "forest.tscn")
+    return {
+        row["id"]: (round(x + shift, 3), round(z, 3))
+        for (_, _, trees, _), shift in zip(groups, shifts)
+        for row, (x, _, z) in trees
+    }
