@@ -1,4 +1,7 @@
-"""A folder of scans for tests/forest/run.sh: FOLDER PROGRAM. Grown trees, a broken scan, and a plot of trees on a slope."""
+"""A folder of scans for tests/forest/run.sh: FOLDER PROGRAM.
+
+Grown trees, one of them as LAZ and one as E57, a broken scan, and a plot of trees on a slope.
+"""
 import subprocess
 import sys
 import tempfile

@@ -19,7 +19,8 @@ def split(treerec, plot, folder, options, threads, seconds):
 
 def main(job):
     status = Path(job.output[0])
-    done = split(job.config["treerec"], job.input[0], status.parent, job.params.options, job.threads, job.config["timeout"])
+    treerec, seconds = job.config["treerec"], job.config["timeout"]
+    done = split(treerec, job.input[0], status.parent, job.params.options, job.threads, seconds)
     status.write_text(json.dumps(done, indent=1) + "\n", encoding="utf-8")
 
 
