@@ -44,6 +44,9 @@ void require_own_cloud(const std::string& path);
 const Command& reconstruct_command();
 void run_reconstruct(const std::vector<std::string>& words);
 
+const Command& split_command();
+void run_split(const std::vector<std::string>& words);
+
 const Command& photos_command();
 void run_photos(const std::vector<std::string>& words);
 

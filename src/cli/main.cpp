@@ -22,6 +22,7 @@ std::vector<Entry> entries() {
     return {{reconstruct_command(), run_reconstruct},
             {photos_command(), run_photos},
             {marker_command(), run_marker},
+            {split_command(), run_split},
             {info_command(), run_info},
             {edit_command(), run_edit},
             {lighten_command(), run_lighten},

@@ -111,11 +111,29 @@ class Cleaning {
         report_.steps.push_back({"Other trees", removed});
     }
 
-    // By point of the cloud.
-    std::vector<uint32_t> labels(const Separation& separation) const {
-        std::vector<uint32_t> of_sample(samples_.points.size(), kNoTree);
+    // Into labels by sample.
+    void label_trees(const Separation& separation, std::vector<uint32_t>& of_sample) const {
         for (size_t i = 0; i < alive_.size(); i++)
             of_sample[alive_[i]] = report_.pick.trees.empty() ? 0 : separation.of_point[i];
+    }
+
+    // However many these are: a meadow is nearly all ground.
+    void take_ground(const std::vector<uint8_t>& lies, std::vector<uint32_t>& of_sample) {
+        std::vector<uint32_t> stands;
+        for (size_t i = 0; i < alive_.size(); i++) {
+            if (lies[i])
+                of_sample[alive_[i]] = kOnGround;
+            else
+                stands.push_back(alive_[i]);
+        }
+        alive_.swap(stands);
+    }
+
+    size_t sample_count() const { return samples_.points.size(); }
+    bool empty() const { return alive_.empty(); }
+
+    // By point of the cloud.
+    std::vector<uint32_t> labels(const std::vector<uint32_t>& of_sample) const {
         std::vector<uint32_t> of_point;
         of_point.reserve(samples_.of_point.size());
         for (const uint32_t s : samples_.of_point)
@@ -123,15 +141,24 @@ class Cleaning {
         return of_point;
     }
 
+    // What lies in the ground's layer, below its surface.
+    std::vector<uint8_t> below(const Ground& ground) const {
+        std::vector<uint8_t> lies;
+        for (const Vec3& p : points()) {
+            const double above = ground.above(p);
+            lies.push_back(above < ground.surface && above >= -ground.tolerance);
+        }
+        return lies;
+    }
+
     // Leaves out what lies below the ground's surface at the foot. Counted as ground.
     void take_below(const Ground& ground) {
         if (!ground.found) return;
-        const std::vector<Vec3> left = points();
+        const std::vector<uint8_t> goes = below(ground);
         std::vector<uint32_t> kept;
         size_t removed = 0;
         for (size_t i = 0; i < alive_.size(); i++) {
-            const double above = ground.above(left[i]);
-            if (above < ground.surface && above >= -ground.tolerance)
+            if (goes[i])
                 removed += weights_[alive_[i]];
             else
                 kept.push_back(alive_[i]);
@@ -170,15 +197,20 @@ class Cleaning {
     std::vector<uint32_t> alive_;
 };
 
-// What is left out before the trees are told apart. spacing: as from find_outliers().
-Ground take_what_is_no_tree(Cleaning& cleaning, const CleanOptions& options, double& spacing,
-                            const Progress* progress) {
+void take_outliers(Cleaning& cleaning, const CleanOptions& options, double& spacing,
+                   const Progress* progress) {
     if (options.remove_outliers || options.remove_fragments || options.pick.enabled) {
         const std::vector<uint8_t> outliers =
             find_outliers(cleaning.points(), cleaning.ranges(), options.neighbours,
                           options.outlier_deviations, spacing, progress);
         if (options.remove_outliers) cleaning.take("Outliers", outliers);
     }
+}
+
+// What is left out before the trees are told apart. spacing: as from find_outliers().
+Ground take_what_is_no_tree(Cleaning& cleaning, const CleanOptions& options, double& spacing,
+                            const Progress* progress) {
+    take_outliers(cleaning, options, spacing, progress);
     // Before the fragments, which the ground would hold together.
     Ground ground;
     if (options.remove_ground) {
@@ -236,7 +268,28 @@ std::vector<uint32_t> label_trees(PointCloud cloud, const CleanOptions& options,
     const Ground ground = take_what_is_no_tree(cleaning, options, spacing, progress);
     const Separation separation = cleaning.tell_apart(ground, spacing, options.pick, progress);
     report = cleaned.pick;
-    return cleaning.labels(separation);
+    std::vector<uint32_t> of_sample(cleaning.sample_count(), kNoTree);
+    cleaning.label_trees(separation, of_sample);
+    return cleaning.labels(of_sample);
+}
+
+std::vector<uint32_t> label_plot(PointCloud cloud, const CleanOptions& options, PickReport& report,
+                                 Progress* progress) {
+    if (cloud.empty()) throw Error("The cloud has no points.");
+    CleanReport cleaned;
+    Cleaning cleaning(cloud, cleaned, progress);
+    double spacing = 0.0;
+    take_outliers(cleaning, options, spacing, progress);
+    std::vector<uint32_t> of_sample(cleaning.sample_count(), kNoTree);
+    Ground ground;
+    cleaning.take_ground(find_ground(cleaning.points(), ground, progress), of_sample);
+    if (!cleaning.empty()) {
+        cleaning.take_walls(progress);
+        cleaning.label_trees(cleaning.tell_apart(ground, spacing, options.pick, progress), of_sample);
+        if (ground.found) cleaning.take_ground(cleaning.below(ground), of_sample);
+    }
+    report = cleaned.pick;
+    return cleaning.labels(of_sample);
 }
 
 }  // namespace treerec

@@ -93,4 +93,9 @@ inline constexpr uint32_t kNoTree = std::numeric_limits<uint32_t>::max();
 std::vector<uint32_t> label_trees(PointCloud cloud, const CleanOptions& options, PickReport& report,
                                   Progress* progress = nullptr);
 
+// The same of a part of a plot, most of which may be ground; that is kOnGround.
+inline constexpr uint32_t kOnGround = kNoTree - 1;
+std::vector<uint32_t> label_plot(PointCloud cloud, const CleanOptions& options, PickReport& report,
+                                 Progress* progress = nullptr);
+
 }  // namespace treerec

@@ -1,0 +1,73 @@
+"""A folder of scans for tests/forest/run.sh: FOLDER PROGRAM.
+
+Grown trees, one of them as LAZ and one as E57, a broken scan, and a plot of trees on a slope.
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import laspy
+import numpy
+import pye57
+
+ORIGIN = numpy.array([470600.0, 3810200.0, 2280.0])
+PLACES = [(0.0, 0.0), (7.0, 2.0), (2.0, 8.0)]
+
+
+def grow(program, seed, habit, height, points):
+    """A scan's points, and its file."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["--seed", seed, "--habit", habit, "--height", height, "--points", points]
+        subprocess.run([program, "synth", "-o", folder, "--quiet", *map(str, words)], check=True)
+        data = (Path(folder) / "scan.ply").read_bytes()
+    body = data[data.index(b"end_header\n") + 11 :]
+    record = numpy.dtype([("place", "<f8", 3), ("color", "u1", 3)])
+    return numpy.frombuffer(body, dtype=record), data
+
+
+def slope(x, y):
+    return 0.1 * x - 0.05 * y
+
+
+def write_las(path, places, compress=False):
+    header = laspy.LasHeader(version="1.2", point_format=0)
+    header.offsets, header.scales = ORIGIN, numpy.full(3, 1e-3)
+    with laspy.open(path, mode="w", header=header, do_compress=compress) as file:
+        points = laspy.ScaleAwarePointRecord.zeros(len(places), header=header)
+        points.x, points.y, points.z = places.T
+        file.write_points(points)
+
+
+def write_e57(path, points):
+    """From two stations, each with a place of its own."""
+    file = pye57.E57(str(path), mode="w")
+    for half, station in ((points[::2], numpy.zeros(3)), (points[1::2], numpy.array([4.0, -2.0, 1.0]))):
+        data = {f"cartesian{name}": half["place"][:, axis] - station[axis] for axis, name in enumerate("XYZ")}
+        data |= {f"color{name}": half["color"][:, axis] for axis, name in enumerate(("Red", "Green", "Blue"))}
+        file.write_scan_raw(data, translation=station)
+    file.close()
+
+
+def main(folder, program):
+    folder = Path(folder)
+    (folder / "plots").mkdir(parents=True, exist_ok=True)
+    for seed, (habit, height) in enumerate([("broadleaf", 5), ("birch", 6), ("conifer", 5)], start=1):
+        (folder / f"{habit}.ply").write_bytes(grow(program, seed, habit, height, 5000)[1])
+    whole = (folder / "broadleaf.ply").read_bytes()
+    (folder / "broken.ply").write_bytes(whole[: len(whole) // 2])
+    points, _ = grow(program, 7, "forked", 5, 5000)
+    write_las(folder / "forked.laz", points["place"] + ORIGIN, compress=True)
+    write_e57(folder / "leaning.e57", grow(program, 8, "leaning", 5, 5000)[0])
+    trees = []
+    for seed, (x, y) in enumerate(PLACES, start=11):
+        places = grow(program, seed, "broadleaf", 6, 6000)[0]["place"]
+        places = places[places[:, 2] > -0.2]
+        trees.append(places + (x, y, slope(x, y)))
+    chance = numpy.random.Generator(numpy.random.PCG64(1))
+    ground = chance.uniform(-5.0, 14.0, (15000, 3))
+    ground[:, 2] = slope(ground[:, 0], ground[:, 1]) + chance.normal(0.0, 0.01, len(ground))
+    write_las(folder / "plots" / "slope.las", numpy.concatenate([*trees, ground]) + ORIGIN)
+
+
+main(*sys.argv[1:])
