@@ -11,9 +11,9 @@ mkdir -p "$work/here" "$work/there"
 export WINEPREFIX=$work/wine WINEDEBUG=-all
 windows() { timeout 500 wine "$@" </dev/null 2>"$work/errors"; }
 
-python3 tests/windows/stand_in_table.py build/gdextension/gdextension_interface.h >"$work/stand_in_table.inc" &&
+python3 tests/platforms/stand_in_table.py build/gdextension/gdextension_interface.h >"$work/stand_in_table.inc" &&
     x86_64-w64-mingw32-g++-posix -std=c++20 -Wall -Wextra -Werror -O1 -static -Ibuild/gdextension -I"$work" \
-        tests/windows/stand_in_host.cpp -o "$work/stand_in_host.exe"
+        tests/platforms/stand_in_host.cpp -o "$work/stand_in_host.exe"
 check 'the stand-in for the engine is built' [ -x "$work/stand_in_host.exe" ]
 
 # What a template registers; the editor's library has more.
@@ -39,7 +39,7 @@ for target in editor template_debug template_release; do
         [ "$(grep -cE '\+base\[ *[0-9]+\] +[0-9a-f]+ +Export RVA' "$work/$target.headers")" = 1 ]
     strangers=$(sed -n 's/.*DLL Name: //p' "$work/$target.headers" | grep -viE '^(kernel32|msvcrt|api-ms-win-.*)\.dll$')
     check "$target: needs nothing but Windows ($strangers)" [ -z "$strangers" ]
-    tests/windows/carries_editor.sh "$library"
+    tests/platforms/carries_editor.sh "$library"
     carries=$?
     if [ "$target" = editor ]; then
         check "$target: carries the reconstruction" [ "$carries" = 0 ]

@@ -1,7 +1,11 @@
-// Loads the extension's library on Windows as the engine does, with an engine that knows the names of all
+// Loads the extension's library as the engine does, with an engine that knows the names of all
 // functions (stand_in_table.py, from the real one's own list) and does next to nothing in them. Shows that
 // the library loads, finds everything it asks for, and starts and ends. Tells what it registers.
+#ifdef _WIN32
 #include <windows.h>
+#else
+#include <dlfcn.h>
+#endif
 
 #include <cstdint>
 #include <cstdio>
@@ -72,6 +76,37 @@ const char* letters_of(const void* name) {
 void register_class(void*, const void* name, const void* parent, const void*) {
     std::printf("class %s of %s\n", letters_of(name), letters_of(parent));
 }
+void* load(const char* path) {
+#ifdef _WIN32
+    return reinterpret_cast<void*>(LoadLibraryA(path));
+#else
+    return dlopen(path, RTLD_NOW);
+#endif
+}
+const char* why_not() {
+#ifdef _WIN32
+    static char text[32];
+    std::snprintf(text, sizeof text, "error %lu", GetLastError());
+    return text;
+#else
+    return dlerror();
+#endif
+}
+void* entry_of(void* library) {
+    constexpr const char* kEntry = "tree_reconstruction_library_init";
+#ifdef _WIN32
+    return reinterpret_cast<void*>(GetProcAddress(static_cast<HMODULE>(library), kEntry));
+#else
+    return dlsym(library, kEntry);
+#endif
+}
+void unload(void* library) {
+#ifdef _WIN32
+    FreeLibrary(static_cast<HMODULE>(library));
+#else
+    dlclose(library);
+#endif
+}
 void register_method(void*, const void*, const void*) {
     methods++;
 }
@@ -119,16 +154,15 @@ GDExtensionInterfaceFunctionPtr get_proc_address(const char* name) {
 
 int main(int count, char** arguments) {
     if (count != 2) {
-        std::fprintf(stderr, "usage: stand_in_host LIBRARY.dll\n");
+        std::fprintf(stderr, "usage: stand_in_host LIBRARY\n");
         return 2;
     }
-    const HMODULE library = LoadLibraryA(arguments[1]);
+    void* const library = load(arguments[1]);
     if (!library) {
-        std::printf("not loaded: error %lu\n", GetLastError());
+        std::printf("not loaded: %s\n", why_not());
         return 1;
     }
-    const auto entry = reinterpret_cast<GDExtensionInitializationFunction>(
-        reinterpret_cast<void*>(GetProcAddress(library, "tree_reconstruction_library_init")));
+    const auto entry = reinterpret_cast<GDExtensionInitializationFunction>(entry_of(library));
     if (!entry) {
         std::printf("no entry function\n");
         return 1;
@@ -149,7 +183,7 @@ int main(int count, char** arguments) {
          level >= int(initialization.minimum_initialization_level); level--)
         initialization.deinitialize(initialization.userdata,
                                     static_cast<GDExtensionInitializationLevel>(level));
-    FreeLibrary(library);
+    unload(library);
     std::printf("ended\n");
     return 0;
 }
