@@ -13,7 +13,6 @@ namespace treerec {
 
 namespace {
 
-20000;                                // of all leaves: single cards are flat where bent ones would have more
 constexpr double kStep = 1.0 / 16.0;  // of levels
 constexpr double kBoughs = 0.45;      // of the single cards that a level would have
 constexpr double kSpray = 1.5;        // times its own size: as large as a bough's card draws a spray, about
