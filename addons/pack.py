@@ -14,7 +14,7 @@ import zipfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 INSIDE = "addons/tree_reconstruction/"
-PLATFORMS = ("linux", "windows", "macos")
+PLATFORMS = ("linux", "windows", "macos", "android", "web")
 TARGETS = ("editor", "template_debug", "template_release")
 
 
