@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <unordered_map>
 
 #include "error.h"
@@ -223,15 +224,31 @@ constexpr size_t kSniffed = 4096;
 
 enum class SkeletonFormat { kNone, kTreefile, kPly, kNodeCsv, kQsmCsv, kSwc, kMtg, kLString };
 
-// The file's first 4 kB.
-std::string first_bytes(const std::string& path) {
-    std::error_code failure;
-    if (!std::filesystem::exists(path_of(path), failure)) throw Error("There is no file '" + path + "'.");
-    std::ifstream in(path_of(path), std::ios::binary);
+std::string next_bytes(std::istream& in) {
     std::string bytes(kSniffed, '\0');
-    if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) && in.gcount() == 0) return {};
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<size_t>(in.gcount()));
     return bytes;
+}
+
+std::ifstream open_to_sniff(const std::string& path) {
+    std::error_code failure;
+    if (!std::filesystem::exists(path_of(path), failure)) throw Error("There is no file '" + path + "'.");
+    return std::ifstream(path_of(path), std::ios::binary);
+}
+
+// The file's first 4 kB.
+std::string first_bytes(const std::string& path) {
+    std::ifstream in = open_to_sniff(path);
+    return next_bytes(in);
+}
+
+// 4 kB from the first line on that is no comment: a tree file has its wood's outlines before its nodes.
+std::string bytes_after_comments(const std::string& path) {
+    std::ifstream in = open_to_sniff(path);
+    while (in.peek() == '#')
+        in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    return next_bytes(in);
 }
 
 SkeletonFormat sniff(const std::string& path) {
@@ -250,6 +267,8 @@ SkeletonFormat sniff(const std::string& path) {
         }
         return edges && radius ? SkeletonFormat::kPly : SkeletonFormat::kNone;
     }
+    const std::string table = bytes_after_comments(path);
+    rest = table;
     while (const std::optional<std::string_view> line = next_line(rest)) {
         if (line->empty() || line->front() == '#') continue;
         if (find_qsm_columns(*line)) return SkeletonFormat::kQsmCsv;

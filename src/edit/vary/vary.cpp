@@ -262,8 +262,12 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
     // Bends are small: a tilt across the way does for a turn, and needs no angles.
     const double bend = work.amount * (trunk ? kTrunkBend : kBend);
     const double wave = work.amount * (trunk ? kTrunkBend : kWave);
-    const DVec3 arc = (branch.axes[0] * bell(random) + branch.axes[2] * bell(random)) * (0.7 * bend);
-    const DVec3 swing = (branch.axes[0] * bell(random) + branch.axes[2] * bell(random)) * (0.7 * wave);
+    // One after the other: compilers differ in which side of a sum they do first.
+    const auto aside = [&](double much) {
+        const DVec3 second = branch.axes[2] * bell(random);
+        return (branch.axes[0] * bell(random) + second) * (0.7 * much);
+    };
+    const DVec3 arc = aside(bend), swing = aside(wave);
     const double over_length = branch.length > 0.0 ? 1.0 / branch.length : 0.0;
     const auto first = static_cast<NodeId>(work.positions.size());
     const size_t count = static_cast<size_t>(branch.end - branch.begin);
