@@ -14,8 +14,9 @@ import zipfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 INSIDE = "addons/tree_reconstruction/"
-PLATFORMS = ("linux", "windows", "macos")
+PLATFORMS = ("linux", "windows", "macos", "android", "web")
 TARGETS = ("editor", "template_debug", "template_release")
+GAMES_ALONE = ("android", "web")  # no editor of ours runs there
 
 
 def fail(sentence):
@@ -72,10 +73,10 @@ def collect(addon, folders):
                 files[inside] = read(path)
     for folder in [addon + "/bin", *folders]:
         for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else []:
-            if name.startswith("libtree_reconstruction.") and name.endswith((".so", ".dll", ".dylib")):
+            if name.startswith("libtree_reconstruction.") and name.endswith((".so", ".dll", ".dylib", ".wasm")):
                 libraries[name] = read(os.path.join(folder, name))
     for platform in PLATFORMS:
-        for target in TARGETS:
+        for target in TARGETS[1:] if platform in GAMES_ALONE else TARGETS:
             there = [name for name in libraries if name.startswith("libtree_reconstruction.%s.%s." % (platform, target))]
             if not there and any(".%s." % platform in name for name in libraries):
                 fail("the library %s for %s is missing: build it first." % (target, platform))

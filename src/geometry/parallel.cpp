@@ -170,10 +170,14 @@ void set_thread_count(int threads) {
 }
 
 int thread_count() {
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
+    return 1;  // a web export without threads has none to give
+#else
     // The system is asked once: that opens files.
     static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const int threads = requested_threads;
     return threads > 0 ? threads : cores;
+#endif
 }
 
 void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {

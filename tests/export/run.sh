@@ -125,7 +125,7 @@ check 'only the libraries of the two templates are beside it' \
 ! echo "$libraries" | grep editor
 check 'not that of the editor' [ $? = 0 ]
 for library in "$work"/out/*.so; do
-    tests/windows/carries_editor.sh "$library"
+    tests/platforms/carries_editor.sh "$library"
     carries=$?
     check "$(basename "$library") carries nothing of the reconstruction" [ "$carries" = 1 ]
     strangers=$(objdump -p "$library" | sed -n 's/^ *NEEDED *//p' |

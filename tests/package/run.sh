@@ -24,11 +24,11 @@ check 'the manifest names the libraries that are there' [ "$named" = "$there" ]
 check 'no text in it names this machine or the demo project' [ $? = 0 ]
 for library in "$addon"/bin/*template*; do
     carries=0
-    tests/windows/carries_editor.sh "$library" || carries=$?
+    tests/platforms/carries_editor.sh "$library" || carries=$?
     check "$(basename "$library") carries nothing of the reconstruction" [ "$carries" = 1 ]
 done
 for library in "$addon"/bin/*.editor.*; do
-    check "$(basename "$library") carries it" tests/windows/carries_editor.sh "$library"
+    check "$(basename "$library") carries it" tests/platforms/carries_editor.sh "$library"
 done
 
 cat >"$work/project.godot" <<'END'

@@ -1,7 +1,11 @@
-// Loads the extension's library on Windows as the engine does, with an engine that knows the names of all
+// Loads the extension's library as the engine does, with an engine that knows the names of all
 // functions (stand_in_table.py, from the real one's own list) and does next to nothing in them. Shows that
 // the library loads, finds everything it asks for, and starts and ends. Tells what it registers.
+#ifdef _WIN32
 #include <windows.h>
+#else
+#include <dlfcn.h>
+#endif
 
 #include <cstdint>
 #include <cstdio>
@@ -9,32 +13,43 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <type_traits>
 
 #include "gdextension_interface.h"
 
 namespace {
 
-enum Returns { kNumber, kFunction, kData };
-struct Offered {
-    const char* name;
-    Returns returns;
-};
-constexpr Offered kOffered[] = {
-#include "stand_in_table.inc"
-};
-
 int asked = 0, missing = 0, methods = 0, references = 0;
 alignas(16) unsigned char nothing[1 << 16];
 
-uint64_t give_zero() {
-    return 0;
+// A function of the very type: WebAssembly calls no other.
+template <typename Function>
+struct Stub;
+template <typename Returned, typename... Arguments>
+struct Stub<Returned (*)(Arguments...)> {
+    static Returned give(Arguments...) {
+        if constexpr (std::is_void_v<Returned>)
+            return;
+        else if constexpr (std::is_function_v<std::remove_pointer_t<Returned>>)
+            return Stub<Returned>::give;
+        else if constexpr (std::is_pointer_v<Returned>)
+            return reinterpret_cast<Returned>(nothing);
+        else
+            return {};
+    }
+};
+template <typename Function>
+GDExtensionInterfaceFunctionPtr function(Function given) {
+    return reinterpret_cast<GDExtensionInterfaceFunctionPtr>(given);
 }
-void* give_function() {
-    return reinterpret_cast<void*>(give_zero);
-}
-void* give_data() {
-    return nothing;
-}
+
+struct Offered {
+    const char* name;
+    GDExtensionInterfaceFunctionPtr function;
+};
+const Offered kOffered[] = {
+#include "stand_in_table.inc"
+};
 
 // The few that do something. A name is the pointer to its letters, the same one for the same letters.
 void* allocate(size_t size) {
@@ -51,18 +66,19 @@ void make_name(void* name, const char* letters, GDExtensionBool) {
 void copy_name(void* name, const void* const* from) {
     std::memcpy(name, from[0], sizeof(const char*));
 }
-void compare_names(const void* one, const void* other, void* equal) {
+void compare_names(GDExtensionConstTypePtr one, GDExtensionConstTypePtr other, GDExtensionTypePtr equal) {
     *static_cast<GDExtensionBool*>(equal) = std::memcmp(one, other, sizeof(const char*)) == 0;
 }
-void* constructor_of(GDExtensionVariantType type, int32_t which) {
+GDExtensionPtrConstructor constructor_of(GDExtensionVariantType type, int32_t which) {
     const bool copies = type == GDEXTENSION_VARIANT_TYPE_STRING_NAME && which == 1;
-    return copies ? reinterpret_cast<void*>(copy_name) : reinterpret_cast<void*>(give_zero);
+    return copies ? reinterpret_cast<GDExtensionPtrConstructor>(copy_name)
+                  : Stub<GDExtensionPtrConstructor>::give;
 }
-void* comparison_of(GDExtensionVariantOperator which, GDExtensionVariantType one,
-                    GDExtensionVariantType other) {
+GDExtensionPtrOperatorEvaluator comparison_of(GDExtensionVariantOperator which, GDExtensionVariantType one,
+                                              GDExtensionVariantType other) {
     const bool names =
         which == GDEXTENSION_VARIANT_OP_EQUAL && one == other && one == GDEXTENSION_VARIANT_TYPE_STRING_NAME;
-    return names ? reinterpret_cast<void*>(compare_names) : reinterpret_cast<void*>(give_zero);
+    return names ? compare_names : Stub<GDExtensionPtrOperatorEvaluator>::give;
 }
 const char* letters_of(const void* name) {
     const char* letters = nullptr;
@@ -71,6 +87,37 @@ const char* letters_of(const void* name) {
 }
 void register_class(void*, const void* name, const void* parent, const void*) {
     std::printf("class %s of %s\n", letters_of(name), letters_of(parent));
+}
+void* load(const char* path) {
+#ifdef _WIN32
+    return reinterpret_cast<void*>(LoadLibraryA(path));
+#else
+    return dlopen(path, RTLD_NOW);
+#endif
+}
+const char* why_not() {
+#ifdef _WIN32
+    static char text[32];
+    std::snprintf(text, sizeof text, "error %lu", GetLastError());
+    return text;
+#else
+    return dlerror();
+#endif
+}
+void* entry_of(void* library) {
+    constexpr const char* kEntry = "tree_reconstruction_library_init";
+#ifdef _WIN32
+    return reinterpret_cast<void*>(GetProcAddress(static_cast<HMODULE>(library), kEntry));
+#else
+    return dlsym(library, kEntry);
+#endif
+}
+void unload(void* library) {
+#ifdef _WIN32
+    FreeLibrary(static_cast<HMODULE>(library));
+#else
+    dlclose(library);
+#endif
 }
 void register_method(void*, const void*, const void*) {
     methods++;
@@ -82,34 +129,24 @@ void print_error(const char* text, const char*, const char*, int32_t, GDExtensio
     std::printf("error %s\n", text);
 }
 
-struct Own {
-    const char* name;
-    void* function;
-};
-const Own kOwn[] = {
-    {"mem_alloc", reinterpret_cast<void*>(allocate)},
-    {"mem_alloc2", reinterpret_cast<void*>(allocate2)},
-    {"string_name_new_with_latin1_chars", reinterpret_cast<void*>(make_name)},
-    {"variant_get_ptr_constructor", reinterpret_cast<void*>(constructor_of)},
-    {"variant_get_ptr_operator_evaluator", reinterpret_cast<void*>(comparison_of)},
-    {"classdb_register_extension_class5", reinterpret_cast<void*>(register_class)},
-    {"classdb_register_extension_class_method", reinterpret_cast<void*>(register_method)},
-    {"editor_help_load_xml_from_utf8_chars_and_len", reinterpret_cast<void*>(load_reference)},
-    {"print_error", reinterpret_cast<void*>(print_error)},
+const Offered kOwn[] = {
+    {"mem_alloc", function(allocate)},
+    {"mem_alloc2", function(allocate2)},
+    {"string_name_new_with_latin1_chars", function(make_name)},
+    {"variant_get_ptr_constructor", function(constructor_of)},
+    {"variant_get_ptr_operator_evaluator", function(comparison_of)},
+    {"classdb_register_extension_class5", function(register_class)},
+    {"classdb_register_extension_class_method", function(register_method)},
+    {"editor_help_load_xml_from_utf8_chars_and_len", function(load_reference)},
+    {"print_error", function(print_error)},
 };
 
 GDExtensionInterfaceFunctionPtr get_proc_address(const char* name) {
     asked++;
-    for (const Own& own : kOwn)
-        if (std::strcmp(own.name, name) == 0)
-            return reinterpret_cast<GDExtensionInterfaceFunctionPtr>(own.function);
-    for (const Offered& offered : kOffered) {
-        if (std::strcmp(offered.name, name) != 0) continue;
-        void* const function = offered.returns == kNumber     ? reinterpret_cast<void*>(give_zero)
-                               : offered.returns == kFunction ? reinterpret_cast<void*>(give_function)
-                                                              : reinterpret_cast<void*>(give_data);
-        return reinterpret_cast<GDExtensionInterfaceFunctionPtr>(function);
-    }
+    for (const Offered& own : kOwn)
+        if (std::strcmp(own.name, name) == 0) return own.function;
+    for (const Offered& offered : kOffered)
+        if (std::strcmp(offered.name, name) == 0) return offered.function;
     std::printf("missing %s\n", name);
     missing++;
     return nullptr;
@@ -119,16 +156,15 @@ GDExtensionInterfaceFunctionPtr get_proc_address(const char* name) {
 
 int main(int count, char** arguments) {
     if (count != 2) {
-        std::fprintf(stderr, "usage: stand_in_host LIBRARY.dll\n");
+        std::fprintf(stderr, "usage: stand_in_host LIBRARY\n");
         return 2;
     }
-    const HMODULE library = LoadLibraryA(arguments[1]);
+    void* const library = load(arguments[1]);
     if (!library) {
-        std::printf("not loaded: error %lu\n", GetLastError());
+        std::printf("not loaded: %s\n", why_not());
         return 1;
     }
-    const auto entry = reinterpret_cast<GDExtensionInitializationFunction>(
-        reinterpret_cast<void*>(GetProcAddress(library, "tree_reconstruction_library_init")));
+    const auto entry = reinterpret_cast<GDExtensionInitializationFunction>(entry_of(library));
     if (!entry) {
         std::printf("no entry function\n");
         return 1;
@@ -149,7 +185,7 @@ int main(int count, char** arguments) {
          level >= int(initialization.minimum_initialization_level); level--)
         initialization.deinitialize(initialization.userdata,
                                     static_cast<GDExtensionInitializationLevel>(level));
-    FreeLibrary(library);
+    unload(library);
     std::printf("ended\n");
     return 0;
 }

@@ -4,6 +4,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 . tests/tools/checks.sh
+. tests/platforms/stand_in.sh
 
 work=$PWD/build/windows
 rm -rf "$work/here" "$work/there"
@@ -11,25 +12,14 @@ mkdir -p "$work/here" "$work/there"
 export WINEPREFIX=$work/wine WINEDEBUG=-all
 windows() { timeout 500 wine "$@" </dev/null 2>"$work/errors"; }
 
-python3 tests/windows/stand_in_table.py build/gdextension/gdextension_interface.h >"$work/stand_in_table.inc" &&
+stand_in_table &&
     x86_64-w64-mingw32-g++-posix -std=c++20 -Wall -Wextra -Werror -O1 -static -Ibuild/gdextension -I"$work" \
-        tests/windows/stand_in_host.cpp -o "$work/stand_in_host.exe"
+        tests/platforms/stand_in_host.cpp -o "$work/stand_in_host.exe"
 check 'the stand-in for the engine is built' [ -x "$work/stand_in_host.exe" ]
 
-# What a template registers; the editor's library has more.
-runtime='LSystem LeafRule TreeEdit TreeReconstruction TreeSketch'
 for target in editor template_debug template_release; do
     library=project/addons/tree_reconstruction/bin/libtree_reconstruction.windows.$target.x86_64.dll
-    windows "$work/stand_in_host.exe" "$library" | tr -d '\r' >"$work/$target.log"
-    check "$target: starts, finds all functions of the engine and ends" grep -q '^ended$' "$work/$target.log"
-    check "$target: no error in between" [ "$(grep -cE '^(error|missing)' "$work/$target.log")" = 0 ]
-    classes=$(sed -n 's/^class \([^ ]*\) .*/\1/p' "$work/$target.log" | LC_ALL=C sort | tr '\n' ' ')
-    if [ "$target" = editor ]; then
-        check "$target: registers the editor's classes" [ "$classes" != "$runtime " ]
-        check "$target: has the class reference" grep -qE 'methods, [1-9][0-9]* pages' "$work/$target.log"
-    else
-        check "$target: registers the classes of a game alone" [ "$classes" = "$runtime " ]
-    fi
+    check_library "$target" "$library" windows "$work/stand_in_host.exe"
     x86_64-w64-mingw32-objdump -p "$library" >"$work/$target.headers"
     # The names of what it exports; newer binutils write their ordinals before them.
     shown=$(sed -nE '/^\[Ordinal\/Name Pointer\] Table/,/^$/s/^\t\[ *[0-9]+\] (\+base\[ *[0-9]+\] +[0-9a-f]+ +)?//p' \
@@ -39,14 +29,6 @@ for target in editor template_debug template_release; do
         [ "$(grep -cE '\+base\[ *[0-9]+\] +[0-9a-f]+ +Export RVA' "$work/$target.headers")" = 1 ]
     strangers=$(sed -n 's/.*DLL Name: //p' "$work/$target.headers" | grep -viE '^(kernel32|msvcrt|api-ms-win-.*)\.dll$')
     check "$target: needs nothing but Windows ($strangers)" [ -z "$strangers" ]
-    tests/windows/carries_editor.sh "$library"
-    carries=$?
-    if [ "$target" = editor ]; then
-        check "$target: carries the reconstruction" [ "$carries" = 0 ]
-    else
-        check "$target: carries nothing of the reconstruction" [ "$carries" = 1 ]
-    fi
-    echo "        $(stat -c %s "$library") bytes"
 done
 
 # The unit tests of what must be the same everywhere.
