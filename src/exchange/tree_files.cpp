@@ -21,6 +21,8 @@ namespace treerec {
 
 namespace {
 
+constexpr std::string_view kOwnBegin = "# Tree file, one line per tree, one tuple per node";
+
 // Where the values of one node lie in its tuple; -1 where they are missing.
 struct Columns {
     int x = -1, y = -1, z = -1, radius = -1, parent = -1, flags = -1, id = -1, count = 0;
@@ -103,8 +105,7 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 void write_treefile(const std::string& path, const Tree& tree) {
     require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
-    std::string text =
-        "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) + "\n";
+    std::string text = std::string(kOwnBegin) + "; " + stamp_text(tree.frame()) + "\n";
     append_section_lines(text, tree);
     text += "x,y,z,radius,parent_id,flags\n";
     text.reserve(text.size() + 90 * table.positions.size());
@@ -237,6 +238,8 @@ std::string first_bytes(const std::string& path) {
 SkeletonFormat sniff(const std::string& path) {
     const std::string bytes = first_bytes(path);
     if (is_lstring_file(bytes) || extension_of(path) == "lstring") return SkeletonFormat::kLString;
+    // Its fields may come behind more sections than were read here.
+    if (bytes.starts_with(kOwnBegin)) return SkeletonFormat::kTreefile;
     if (looks_like_mtg(bytes)) return SkeletonFormat::kMtg;
     if (looks_like_qsm_sections(bytes)) return SkeletonFormat::kQsmCsv;
     std::string_view rest = bytes;
