@@ -4,8 +4,10 @@ TREEREC_CLI: the program, whose bytes are to be the same. TREEREC_SAMPLE: a grow
 """
 
 import ast
+import contextlib
 import gc
 import inspect
+import io
 import json
 import os
 import pathlib
@@ -335,6 +337,22 @@ class Stubs(unittest.TestCase):
         path = pathlib.Path(treerec.__file__).with_name("_treerec.pyi")
         self.check(ast.parse(path.read_text(encoding="utf-8")), treerec._treerec)
         self.assertTrue(path.with_name("py.typed").exists())
+
+
+class Notebook(unittest.TestCase):
+    def test_its_cells_run(self):
+        path = pathlib.Path(__file__).parents[2] / "docs" / "python.ipynb"
+        cells = [cell for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+        names, said = {}, io.StringIO()
+        with contextlib.redirect_stdout(said):
+            for cell in cells:
+                lines = "".join(cell["source"]).replace("import matplotlib.pyplot as plt\n", "")
+                if "plt." not in lines:
+                    exec(lines, names)
+        self.assertIn("the same after reading it: True", said.getvalue())
+        # What stands below the cells is what comes out.
+        shown = [text for cell in cells for output in cell["outputs"] for text in output.get("text", [])]
+        self.assertIn(repr(names["tree"]), "".join(shown))
 
 
 class Strings(Case):
