@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/grow_from.h"
 #include "cli/terminal_progress.h"
 #include "exchange/lstring_file.h"
 #include "file_bytes.h"
@@ -21,8 +22,13 @@ std::string preset_list() {
     return names;
 }
 
-// The text of a file, or of a grammar that ships with the program.
-std::string source_text(const std::string& name) {
+bool wants_string(const std::string& path) {
+    return extension_of(path) == "lstring";
+}
+
+}  // namespace
+
+std::string grammar_source(const std::string& name) {
     std::error_code failure;
     const std::vector<std::string> presets = grammar_preset_names();
     if (!std::filesystem::exists(path_of(name), failure)) {
@@ -33,14 +39,8 @@ std::string source_text(const std::string& name) {
     return std::string(read_file(name).view());
 }
 
-struct Grown {
-    LStringTree read;
-    std::string string;      // as it was drawn; empty for one that was read from a file
-    LStringOptions options;  // by which it was drawn
-    std::string leaf_preset;
-};
-
-Grown grow(const std::string& name, const std::string& text, const Arguments& arguments, Progress& progress) {
+Grown grow_from(const std::string& name, const std::string& text, const Arguments& arguments,
+                Progress& progress) {
     Grown grown;
     LStringOptions& options = grown.options;
     const bool grammatical = is_grammar(text);
@@ -86,11 +86,13 @@ Grown grow(const std::string& name, const std::string& text, const Arguments& ar
     return grown;
 }
 
-bool wants_string(const std::string& path) {
-    return extension_of(path) == "lstring";
+Foliage foliage_of(const Grown& grown, const Progress* progress) {
+    if (grown.read.leaves.empty()) return {};
+    std::vector<Vec3> places;
+    for (const LStringLeaf& leaf : grown.read.leaves)
+        places.push_back(Vec3(leaf.position));
+    return gather_foliage(places, {}, progress);
 }
-
-}  // namespace
 
 const Command& grow_command() {
     static const Command command{
@@ -144,18 +146,13 @@ void run_grow(const std::vector<std::string>& words) {
     const bool quiet = arguments.has("--quiet");
     TerminalProgress progress(quiet);
     progress.update(0.0, "Growing");
-    const Grown grown = grow(positional[0], source_text(positional[0]), arguments, progress);
+    const Grown grown = grow_from(positional[0], grammar_source(positional[0]), arguments, progress);
     const Tree& tree = grown.read.tree;
     exports.textures =
         arguments.text("--leaves", grown.leaf_preset.empty() ? exports.textures : grown.leaf_preset);
     exports.leaves = leaf_preset(exports.textures);
     exports.seed = grown.options.seed;
-    if (!grown.read.leaves.empty()) {
-        std::vector<Vec3> places;
-        for (const LStringLeaf& leaf : grown.read.leaves)
-            places.push_back(Vec3(leaf.position));
-        exports.foliage = gather_foliage(places, {}, &progress);
-    }
+    exports.foliage = foliage_of(grown, &progress);
     TreeExporter exporter(tree, exports, &progress);
     for (size_t i = 0; i < outs.size(); i++) {
         progress.check();

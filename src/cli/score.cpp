@@ -8,13 +8,13 @@
 #include "cli/print_outline.h"
 #include "cli/reconstruct_options.h"
 #include "cli/terminal_progress.h"
-#include "completion/unexplained.h"
 #include "exchange/tree_files.h"
 #include "fidelity/doubtful.h"
 #include "fidelity/fidelity.h"
 #include "fidelity/photo_overlap.h"
 #include "fidelity/score.h"
 #include "pipeline/judge_outline.h"
+#include "pipeline/scan_report.h"
 #include "pipeline/sheets.h"
 #include "scan/formats/read_cloud.h"
 
@@ -65,92 +65,6 @@ void print_skeleton_score(const SkeletonScore& score, bool as_json) {
                 100.0 * score.volume_error);
     std::printf("radius error, median %+.1f %%, absolute %.1f %%\n", 100.0 * score.radius_error,
                 100.0 * score.radius_error_abs);
-}
-
-Json part_json(const FidelityPart& part) {
-    return {
-        {"points", part.points},       {"explained", part.explained},   {"median_mm", 1000.0 * part.median},
-        {"p95_mm", 1000.0 * part.p95}, {"mean_mm", 1000.0 * part.mean}, {"length_m", part.length},
-        {"bark_m2", part.bark},        {"coverage", part.coverage}};
-}
-
-Json point_json(const DVec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-// What `score` tells of a tree and a scan.
-struct ScanReport {
-    ScanScore score;
-    Fidelity fidelity;
-    std::vector<LevelFidelity> levels;
-    std::vector<UnexplainedCluster> unexplained;
-    std::vector<DoubtfulBranch> doubtful;
-    std::optional<PhotoFidelity> photos;
-    std::optional<OutlineOverlap> outline;
-    OutlineSource source = OutlineSource::kMasks;
-    double noise = 0.0;
-};
-
-void print_json(const ScanReport& report, const Tree& tree) {
-    Json json;
-    const ScanScore& score = report.score;
-    json["reference"] = "point cloud";
-    json["points"] = score.points;
-    json["median_mm"] = score.median_mm;
-    json["mean_mm"] = score.mean_mm;
-    json["p95_mm"] = score.p95_mm;
-    json["explained_2cm"] = score.explained_2cm;
-    json["noise_m"] = report.noise;
-    json["explained_2cm_noise"] = score.explained_2cm_noise;
-    Json fidelity;
-    fidelity["tolerance_m"] = report.fidelity.tolerance;
-    fidelity["R_s"] = report.fidelity.skeleton;
-    fidelity["R_s_strict"] = report.fidelity.skeleton_strict;
-    if (report.photos) {
-        fidelity["I"] = report.photos->information;
-        fidelity["R_3d"] = report.photos->reconstruction;
-        fidelity["R_3d_seen"] = report.photos->seen;
-        fidelity["Q"] = modelling_fidelity(*report.photos, report.fidelity);
-        const Overlap& outline = report.outline->mean;
-        const bool known = report.source == OutlineSource::kMasks;
-        fidelity["by"] = outline_source_name(report.source);
-        fidelity["recall"] = known ? Json(outline.recall) : Json(nullptr);
-        fidelity["precision"] = outline.precision;
-        fidelity["iou"] = known ? Json(outline.iou) : Json(nullptr);
-        for (const PhotoHits& photo : report.photos->photos)
-            fidelity["photos"].push_back(
-                {{"name", photo.name}, {"inside", photo.inside}, {"outside", photo.outside}});
-    }
-    fidelity["all"] = part_json(report.fidelity.all);
-    fidelity["by_order"] = Json::array();
-    for (const FidelityPart& part : report.fidelity.by_order)
-        fidelity["by_order"].push_back(part_json(part));
-    if (!report.levels.empty()) fidelity["levels"] = Json::array();
-    for (const LevelFidelity& level : report.levels) {
-        Json entry{{"nodes", level.nodes}, {"R_s", level.skeleton}};
-        entry.update(part_json(level.all));
-        fidelity["levels"].push_back(entry);
-    }
-    json["fidelity"] = fidelity;
-    json["unexplained"] = Json::array();
-    for (const UnexplainedCluster& cluster : report.unexplained)
-        json["unexplained"].push_back(
-            {{"points", cluster.points.size()},
-             {"size_m", cluster.size},
-             {"centre", point_json(tree.frame().to_scan(cluster.centre))},
-             {"joint", cluster.joint},
-             {"gap_m", cluster.gap},
-             {"direction", point_json(tree.frame().turn_to_scan(cluster.direction))}});
-    json["doubtful"] = Json::array();
-    for (const DoubtfulBranch& branch : report.doubtful)
-        json["doubtful"].push_back({{"node", branch.node},
-                                    {"attach", branch.attach},
-                                    {"reasons", doubt_text(branch.reasons)},
-                                    {"doubt", branch.doubt},
-                                    {"length_m", branch.length},
-                                    {"points", branch.points}});
-    // Names of photos may hold bytes that are no UTF-8.
-    std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
 void print_part(const char* name, const FidelityPart& part) {
@@ -304,7 +218,6 @@ void run_score(const std::vector<std::string>& words) {
         SubProgress reading(&progress, 0.0, 0.3);
         const PointCloud cloud = read_cloud(reference, read_options_from(arguments), nullptr, &reading);
         ScanReport report;
-        report.noise = noise;
         std::optional<PhotoJudge> judge;
         std::vector<OutlinePart> parts;
         if (!photos.empty() || arguments.has("--sheet"))
@@ -316,18 +229,14 @@ void run_score(const std::vector<std::string>& words) {
             report.outline = judge->judge(parts, tree.frame(), &progress);
             report.source = judge->source();
         }
-        SubProgress scoring(&progress, 0.3, 0.6);
-        report.score = score_scan(tree, cloud, noise, &scoring);
-        report.fidelity = measure_fidelity(tree, cloud, options, &progress);
-        if (levels > 1) report.levels = measure_levels(tree, cloud, levels, options, &progress);
-        report.unexplained = find_unexplained(tree, cloud, report.fidelity, {}, {}, &progress);
-        report.doubtful = find_doubtful(tree, report.fidelity);
+        SubProgress scoring(&progress, 0.3, 1.0);
+        score_against_scan(report, tree, cloud, noise, options, levels, &scoring);
         if (arguments.has("--sheet"))
             write_png(sheet, score_sheet(tree, cloud, parts, report, judge ? &*judge : nullptr,
                                          {photos, masks, pictures}, stem_of(model), &progress));
         progress.clear();
         if (as_json)
-            print_json(report, tree);
+            std::printf("%s\n", scan_report_json(report, tree).c_str());
         else
             print_text(report, tree);
     }

@@ -53,8 +53,9 @@ class TreeExporter {
     const std::vector<std::vector<LeafPlacement>>& placed();
     const Measurements& measured();  // of the tree
 
+    const Mesh& bark();  // of the finest level
+
   private:
-    const Mesh& bark();
     const std::vector<Mesh>& leaf_cards();  // by kind
     int card_level(size_t kind);
     std::string look_of(size_t kind) const;

@@ -87,7 +87,7 @@ void keep_stem(PointCloud& cloud, const SubjectStem& stem) {
 void let_photos_tell(const std::string& path, PointCloud& cloud, ReconstructOptions& options,
                      std::vector<std::string>& warnings, Progress& progress) {
     if (options.orient.up) return;
-    const PhotosTell told = ask_photos(path, cloud, progress);
+    const PhotosTell told = path.empty() ? PhotosTell() : ask_photos(path, cloud, progress);
     append(warnings, told.warnings);
     const PickOptions& pick = options.clean.pick;
     const bool shown = !pick.enabled || pick.number > 1 || pick.position;
@@ -198,56 +198,12 @@ double told_spacing(const Reconstruction& result) {
     return spacing < kWidestSpacing * bounds.diagonal() ? spacing : 0.0;
 }
 
-}  // namespace
-
-PointCloud wood_of(const Reconstruction& result) {
-    PointCloud wood;
-    wood.frame = result.cloud.frame;
-    wood.positions = result.cloud.positions;
-    if (!result.wood.empty() && result.leaf_points < wood.size()) wood.keep_only(result.wood);
-    return wood;
-}
-
-std::string chosen_leaves(const std::string& asked, const Reconstruction& result) {
-    if (asked != "auto") return asked;
-    return result.palm ? "palm" : "generic";
-}
-
-LeafRules suited_leaves(const std::string& preset, const Reconstruction& result) {
-    LeafRules rules = leaf_preset(preset);
-    if (result.palm && preset == "palm") {
-        // As many fronds as ever, from as much of the stem as suits their length.
-        const double size = kFrondShare * result.foliage.reach / rules.leaf_size;
-        rules.leaf_size *= size;
-        rules.twig_length *= size;
-        rules.internode *= size;
-    }
-    return rules;
-}
-
-Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
-                                Progress* progress, ReconstructCache* cache) {
-    SubProgress reconstructing(progress, 0.0, kCompletedEnd), scoring(progress, kCompletedEnd, 1.0);
-    Reconstruction result = reconstruct_tree(path, options, &reconstructing, cache);
-    score_reconstruction(result, options, &scoring);
-    return result;
-}
-
-Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOptions& asked, Progress* progress,
-                                ReconstructCache* cache) {
-    const std::string path = cloud_file_of(scan);
-    Reconstruction result;
-    ReconstructOptions options = asked;
+// The way from the cloud that was read, of that path. kept: the cache had it.
+void reconstruct_read(Reconstruction& result, const std::string& path, ReconstructOptions options,
+                      Progress* progress, ReconstructCache* cache, bool kept) {
     StageClock clock(result.stages);
-    bool kept = false;
-
-    SubProgress reading(progress, 0.0, kReadEnd);
-    reading.update(0.0, "Reading");
-    result.cloud = read_or_take(path, options.read, result.read, &reading, cache, kept);
     result.points_read = result.cloud.size();
     append(result.warnings, result.read.warnings);
-    clock.stop("Read", result.cloud.size(), kept);
-    reading.check();
 
     SubProgress orienting(progress, kReadEnd, kOrientEnd);
     orienting.update(0.0, "Orienting");
@@ -304,7 +260,8 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
     skeleton_options.noise = std::max(skeleton_options.noise, told.noise);
     SkeletonResult skeleton = skeletonize_wood(result, told, skeleton_options, growing);
     if (skeleton.tree.size() < 2)
-        throw Error("No tree was found in '" + path + "': nothing in it looks like wood.");
+        throw Error("No tree was found in " + (path.empty() ? "the points" : "'" + path + "'") +
+                    ": nothing in it looks like wood.");
     rebase_cloud(result.cloud, skeleton.tree.frame());
     if (doubted) {
         SubProgress doubting(progress, kFirstSkeletonEnd, kSkeletonEnd);
@@ -350,6 +307,65 @@ Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOption
         clock.stop("Pruning", result.tree.size());
     }
     apply_radius_rule(result.tree, options.radii);
+}
+
+}  // namespace
+
+PointCloud wood_of(const Reconstruction& result) {
+    PointCloud wood;
+    wood.frame = result.cloud.frame;
+    wood.positions = result.cloud.positions;
+    if (!result.wood.empty() && result.leaf_points < wood.size()) wood.keep_only(result.wood);
+    return wood;
+}
+
+std::string chosen_leaves(const std::string& asked, const Reconstruction& result) {
+    if (asked != "auto") return asked;
+    return result.palm ? "palm" : "generic";
+}
+
+LeafRules suited_leaves(const std::string& preset, const Reconstruction& result) {
+    LeafRules rules = leaf_preset(preset);
+    if (result.palm && preset == "palm") {
+        // As many fronds as ever, from as much of the stem as suits their length.
+        const double size = kFrondShare * result.foliage.reach / rules.leaf_size;
+        rules.leaf_size *= size;
+        rules.twig_length *= size;
+        rules.internode *= size;
+    }
+    return rules;
+}
+
+Reconstruction reconstruct_file(const std::string& path, const ReconstructOptions& options,
+                                Progress* progress, ReconstructCache* cache) {
+    SubProgress reconstructing(progress, 0.0, kCompletedEnd), scoring(progress, kCompletedEnd, 1.0);
+    Reconstruction result = reconstruct_tree(path, options, &reconstructing, cache);
+    score_reconstruction(result, options, &scoring);
+    return result;
+}
+
+Reconstruction reconstruct_tree(const std::string& scan, const ReconstructOptions& options,
+                                Progress* progress, ReconstructCache* cache) {
+    const std::string path = cloud_file_of(scan);
+    Reconstruction result;
+    StageClock clock(result.stages);
+    bool kept = false;
+    SubProgress reading(progress, 0.0, kReadEnd);
+    reading.update(0.0, "Reading");
+    result.cloud = read_or_take(path, options.read, result.read, &reading, cache, kept);
+    clock.stop("Read", result.cloud.size(), kept);
+    reading.check();
+    reconstruct_read(result, path, options, progress, cache, kept);
+    return result;
+}
+
+Reconstruction reconstruct_cloud(const PointCloud& cloud, const ReadCloudReport& read,
+                                 const std::string& path, const ReconstructOptions& options,
+                                 Progress* progress) {
+    Reconstruction result;
+    result.cloud = cloud;
+    result.read = read;
+    reconstruct_read(result, path, options, progress, nullptr, false);
     return result;
 }
 

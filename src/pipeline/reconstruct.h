@@ -88,6 +88,12 @@ Reconstruction reconstruct_tree(const std::string& path, const ReconstructOption
 void score_reconstruction(Reconstruction& result, const ReconstructOptions& options,
                           Progress* progress = nullptr);
 
+// reconstruct_tree() of a cloud that was read before. path: of its file, beside which its photos may lie;
+// empty for one that is in none.
+Reconstruction reconstruct_cloud(const PointCloud& cloud, const ReadCloudReport& read,
+                                 const std::string& path, const ReconstructOptions& options,
+                                 Progress* progress = nullptr);
+
 // Throws Error with a sentence, or Cancelled.
 // cache: if given, stages that it has with the same options of the same file are taken from it
 // (StageTime::kept says which), and it gets those that were done; it changes nothing else.

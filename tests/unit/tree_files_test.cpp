@@ -192,6 +192,23 @@ TEST_F(TreeFiles, TellsSkeletonsFromClouds) {
     EXPECT_THROW(read_skeleton(path("c.txt")), Error);
 }
 
+// Their comments are longer than what tells a file from others.
+TEST_F(TreeFiles, ATreeOfManySectionsIsASkeleton) {
+    Tree tree = random_tree(5, 300);
+    std::vector<SectionShape> shapes(200);
+    for (size_t i = 0; i < shapes.size(); i++)
+        shapes[i].cosine[0] = 0.01f + 1e-4f * static_cast<float>(i);
+    const size_t first = tree.add_sections(shapes);
+    const std::vector<NodeId> ids = tree.depth_first();
+    for (size_t i = 0; i < shapes.size(); i++)
+        tree.set_section(ids[i], first + i + 1);
+    write_treefile(path("many.txt"), tree);
+    EXPECT_TRUE(is_skeleton_file(path("many.txt")));
+    const Tree read = read_skeleton(path("many.txt"));
+    EXPECT_EQ(read.size(), 300u);
+    EXPECT_EQ(read.sections().size(), 200u);
+}
+
 TEST_F(TreeFiles, QsmCylindersJoinUp) {
     const Tree tree = random_tree(9, 200, utm_frame());
     write_qsm_csv(path("q.csv"), tree);

@@ -253,22 +253,6 @@ TEST_F(SectionFiles, KeepThemToTheBit) {
     }
 }
 
-// What a file is, is told by its first lines: those of all sections come before its nodes.
-TEST_F(SectionFiles, AreToldFromOtherFilesHoweverManyTheyAre) {
-    Tree tree = measured_tree();
-    NodeId last = tree.root();
-    for (int i = 0; i < 300; i++) {
-        last = tree.add_child(last, tree.node(last).position + DVec3(0.0, 0.1, 0.0), 0.2);
-        SectionShape shape;
-        shape.cosine[0] = 0.001234567f * static_cast<float>(i);
-        tree.set_section(last, tree.add_sections(std::vector{shape}) + 1);
-    }
-    write_treefile(path_, tree);
-    ASSERT_GT(get().find("x,y,z"), 4096u);
-    EXPECT_TRUE(is_skeleton_file(path_));
-    EXPECT_EQ(read_skeleton(path_).sections().size(), tree.sections().size());
-}
-
 TEST_F(SectionFiles, OlderOnesAreRead) {
     Tree plain = measured_tree();
     for (const NodeId id : plain.depth_first())

@@ -396,6 +396,20 @@ PointCloud read_cloud(const std::string& asked, const ReadCloudOptions& options,
     }
 }
 
+PointCloud cloud_of_places(const std::string& name, std::vector<DVec3> places, std::vector<Vec3> colors,
+                           float white, ReadCloudReport* report, Progress* progress) {
+    ReadCloudReport own_report;
+    ReadCloudReport& the_report = report ? *report : own_report;
+    the_report = {"places in memory", {}};
+    FileBytes none;
+    const ReadCloudOptions options;
+    RawCloud raw;
+    raw.positions = std::move(places);
+    raw.colors = std::move(colors);
+    raw.color_white = white;
+    return settle({name, none, options, the_report, progress}, std::move(raw));
+}
+
 PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes, const ReadCloudOptions& options,
                             ReadCloudReport* report) {
     FileBytes copy;

@@ -58,6 +58,13 @@ PointCloud read_cloud(const std::string& path, const ReadCloudOptions& options =
 PointCloud read_cloud_bytes(const std::string& name, std::string_view bytes,
                             const ReadCloudOptions& options = {}, ReadCloudReport* report = nullptr);
 
+// The cloud that a file of these places would be read as. colors: none, or one per place; white: their full
+// brightness, 0: by the largest of them, as in files that don't say. name: what sentences about it begin
+// with, in quotes. Throws Error, or Cancelled.
+PointCloud cloud_of_places(const std::string& name, std::vector<DVec3> places, std::vector<Vec3> colors = {},
+                           float white = 0.0F, ReadCloudReport* report = nullptr,
+                           Progress* progress = nullptr);
+
 // Writes by extension: .ply (binary little endian, doubles), .xyz/.txt/.asc (text; with a header line where
 // there is more than places), .las (1.2; without normals and labels). Only PLY has the points' radii, and the
 // cloud's spacing and `comment`, one line without its end, in its header. Labels become a column "leaf" (or
