@@ -194,7 +194,7 @@ TEST_F(TreeFiles, TellsSkeletonsFromClouds) {
 
 // Their comments are longer than what tells a file from others.
 TEST_F(TreeFiles, ATreeOfManySectionsIsASkeleton) {
-    Tree tree = random_tree(5, 300);
+    Tree tree = random_tree(5, 300, utm_frame());
     std::vector<SectionShape> shapes(200);
     for (size_t i = 0; i < shapes.size(); i++)
         shapes[i].cosine[0] = 0.01f + 1e-4f * static_cast<float>(i);
