@@ -230,7 +230,7 @@ class Splitting {
             throw Error("No tree was found in '" + scan_ + "': no stem of at least " +
                         fixed(options_.least_height, 1) +
                         " m stands by itself. If it is one tree, reconstruct it as it is; small ones are "
-                        "found with --least-height.");
+                        "found with a lower least height.");
         for (const size_t c : chosen) {
             std::array<char, 32> name;
             std::snprintf(name.data(), name.size(), "tree_%04zu", report_.trees.size() + 1);

@@ -260,14 +260,12 @@ void VariantMaker::grow(Work& work, const Slot& slot) const {
     const bool trunk = slot.branch == 0;
     Random random(slot.key);
     // Bends are small: a tilt across the way does for a turn, and needs no angles.
-    const double bend = work.amount * (trunk ? kTrunkBend : kBend);
-    const double wave = work.amount * (trunk ? kTrunkBend : kWave);
     // One after the other: compilers differ in which side of a sum they do first.
-    const auto aside = [&](double much) {
+    const auto aside = [&](double most) {
         const DVec3 second = branch.axes[2] * bell(random);
-        return (branch.axes[0] * bell(random) + second) * (0.7 * much);
+        return (branch.axes[0] * bell(random) + second) * (0.7 * (work.amount * most));
     };
-    const DVec3 arc = aside(bend), swing = aside(wave);
+    const DVec3 arc = aside(trunk ? kTrunkBend : kBend), swing = aside(trunk ? kTrunkBend : kWave);
     const double over_length = branch.length > 0.0 ? 1.0 / branch.length : 0.0;
     const auto first = static_cast<NodeId>(work.positions.size());
     const size_t count = static_cast<size_t>(branch.end - branch.begin);
