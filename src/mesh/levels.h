@@ -37,7 +37,7 @@ inline constexpr int kMostLevels = 5;
 // is about five times as wide. level: any number, doubles per level.
 double level_width(double height, double level);
 
-// What a level without a budget may have: 60,000 in all at level 0, 580 at level 3. It becomes coarser than
+// What a level without a budget may have: 60,000 in all at level 0, 600 at level 3. It becomes coarser than
 // it would be by itself, where it can: what no level leaves out may be more.
 size_t bark_triangles(double level, bool hidden);  // see hide_twigs()
 size_t foliage_triangles(double level);            // of all leaves of a kind
