@@ -26,7 +26,7 @@ const Command& edit_command() {
         "Prunes, shapes and mends a tree by a script of commands.",
         {{"--script", "FILE", "one command per line, # begins a comment; a log of the editor will do", true},
          {"-c", "COMMAND", "one command; after the scripts, in the order given", true},
-         {"-o", "FILE", "what to write: .glb .gltf .obj, or .txt .ply .csv .lstring (the skeleton)", true},
+         {"-o", "FILE", "what to write: .glb .gltf .obj, or .txt .ply .csv .mtg .lstring (the skeleton)", true},
          {"--log", "FILE", "writes what was done, nodes by their places too, to be replayed on another tree"},
          {"--keep-going", "", "leaves out what does not fit the tree, and tells it"},
          {"--tolerance", "M", "how far away a log's nodes are looked for (default: 1 % of the height)"},

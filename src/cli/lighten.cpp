@@ -17,7 +17,7 @@ const Command& lighten_command() {
         "lighten",
         "lighten IN -o OUT [-o OUT...] [options]",
         "Leaves fewer nodes in a tree, the least visible ones first.",
-        {{"-o", "OUT", "a file to write, as reconstruct does: .glb .gltf .obj .ply .txt .csv", true},
+        {{"-o", "OUT", "a file to write, as reconstruct does: .glb .gltf .obj .ply .txt .csv .mtg", true},
          {"--nodes", "N", "how many nodes to leave; or:"},
          {"--share", "S", "which share of them to leave, 0 to 1; or what these allow:"},
          {"--angle", "DEG", "a node goes where the wood turns by less (default 60)"},

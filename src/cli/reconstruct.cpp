@@ -52,7 +52,7 @@ const Command& reconstruct_command() {
         "Turns a point cloud into a tree.",
         {{"-o", "OUT",
           "a file to write; its ending names the format: .glb .gltf .obj (bark and leaves:\n"
-          "metres, Y up, base at the origin), .ply .txt .csv .lstring (skeleton, tree file, QSM\n"
+          "metres, Y up, base at the origin), .ply .txt .csv .mtg .lstring (skeleton, tree file, QSM\n"
           "cylinders: the scan's own coordinates). More of them: -o A -o B",
           true},
          {"--report", "FILE", "stage times, counts, measurements and warnings as JSON"},

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "error.h"
+#include "exchange/finite.h"
 #include "exchange/skeleton_graph.h"
 #include "exchange/skeleton_parsers.h"
 #include "exchange/text_scan.h"
+#include "exchange/tree_files.h"
 #include "file_bytes.h"
+#include "tree/branches.h"
 #include "tree/trunk.h"
 
 namespace treerec {
@@ -66,6 +69,52 @@ MtgColumns columns_of(const std::vector<std::string_view>& head, const std::stri
 }
 
 }  // namespace
+
+void write_mtg(const std::string& path, const Tree& tree) {
+    require_readable(tree, path);
+    const BranchList list = list_branches(tree);
+    size_t columns = 1;
+    for (const Branch& branch : list.branches)
+        columns = std::max(columns, static_cast<size_t>(branch.order) + 1);
+    std::string text =
+        "CODE:\tFORM-A\n\n"
+        "CLASSES:\nSYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION\n"
+        "$\t0\tFREE\tFREE\tIMPLICIT\nP\t1\tFREE\tFREE\tEXPLICIT\nN\t2\tFREE\tFREE\tEXPLICIT\n\n"
+        "DESCRIPTION:\nLEFT\tRIGHT\tRELTYPE\tMAX\nN\tN\t+\t?\nN\tN\t<\t?\n\n"
+        "FEATURES:\nNAME\tTYPE\nXX\tREAL\nYY\tREAL\nZZ\tREAL\nradius\tREAL\n\n"
+        "MTG:\nENTITY-CODE" +
+        std::string(columns, '\t') + "XX\tYY\tZZ\tradius\n/P1\n";
+    text.reserve(text.size() + 100 * tree.size());
+    const ScanFrame& frame = tree.frame();
+    int64_t count = 0;
+    // What grows aside is told before its branch goes on.
+    std::vector<NodeId> left{tree.root()};
+    while (!left.empty()) {
+        const NodeId id = left.back();
+        left.pop_back();
+        const Node& node = tree.node(id);
+        const int32_t branch = list.branch_of[id];
+        const auto column = static_cast<size_t>(list.branches[branch].order);
+        text.append(column, '\t');
+        const bool goes_on = node.parent != kNoNode && list.branch_of[node.parent] == branch;
+        text += node.parent == kNoNode ? "^/N" : goes_on ? "^<N" : "+N";
+        append_number(text, ++count);
+        text.append(columns - column, '\t');
+        const DVec3 place = frame.to_scan(node.position);
+        for (const double value : {place.x, place.y, place.z, frame.length_to_scan(node.radius)}) {
+            append_number(text, value);
+            text += '\t';
+        }
+        text.back() = '\n';
+        for (const NodeId child : tree.children(id))
+            if (list.branch_of[child] == branch) left.push_back(child);
+        const size_t first = left.size();
+        for (const NodeId child : tree.children(id))
+            if (list.branch_of[child] != branch) left.push_back(child);
+        std::reverse(left.begin() + static_cast<std::ptrdiff_t>(first), left.end());
+    }
+    write_file(path, text);
+}
 
 bool looks_like_mtg(std::string_view bytes) {
     while (const std::optional<std::string_view> line = next_line(bytes)) {

@@ -76,6 +76,8 @@ Tree read_node_csv(const std::string& path, const SkeletonChoice& choice = {},
 // kept; a unit is a metre.
 Tree read_swc(const std::string& path, const SkeletonChoice& choice = {}, SkeletonReport* report = nullptr);
 
+// As plantscan3d writes them: a plant of nodes with places and radii in the scan's own coordinates.
+void write_mtg(const std::string& path, const Tree& tree);
 // Multiscale tree graphs (C. Godin, Y. Caraglio, "A multiscale model of plant topological structures", 1998)
 // in the form of OpenAlea's and AMAPmod's text files, as plantscan3d writes them: every line with features
 // XX, YY and ZZ and a radius (or diameter) is a node; the tabs before its code tell what it grows on.

@@ -37,7 +37,7 @@ void refine_repeats(Mesh& bark) {
         uv /= static_cast<float>(kYoungScale);
 }
 
-enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kLString, kUnknown };
+enum class Format { kGltf, kObj, kPly, kTreefile, kCsv, kMtg, kLString, kUnknown };
 
 // Where a coarser level takes over, in heights of the tree: as in nodes/tree_levels.gd.
 constexpr double kSwitch[kMostLevels - 1] = {2.5, 6.0, 14.0, 30.0};
@@ -51,6 +51,7 @@ Format format_of(const std::string& path) {
     if (extension == "ply") return Format::kPly;
     if (extension == "txt") return Format::kTreefile;
     if (extension == "csv") return Format::kCsv;
+    if (extension == "mtg") return Format::kMtg;
     if (extension == "lstring") return Format::kLString;
     return Format::kUnknown;
 }
@@ -105,7 +106,7 @@ void require_writable_format(const std::string& path) {
         throw Error(
             "'" + path +
             "' names no format that can be written; end it in .glb, .gltf or .obj (the tree with bark and "
-            "leaves), or .ply, .txt, .csv or .lstring (its skeleton).");
+            "leaves), or .ply, .txt, .csv, .mtg or .lstring (its skeleton).");
     require_writable(path);
     require_own_companions(path, format_of(path));
 }
@@ -255,6 +256,8 @@ void TreeExporter::write(const std::string& path) {
             return write_treefile(path, tree_);
         case Format::kCsv:
             return write_qsm_csv(path, tree_);
+        case Format::kMtg:
+            return write_mtg(path, tree_);
         case Format::kLString:
             return write_lstring_file(path, tree_, {}, progress_);
         case Format::kUnknown:

@@ -43,7 +43,7 @@ class TreeExporter {
     void prepare(const std::vector<std::string>& paths);
 
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
-    // the tree has it; with leaves) or .ply .txt .csv .lstring (the skeleton in scan coordinates). Throws
+    // the tree has it; with leaves) or .ply .txt .csv .mtg .lstring (the skeleton in scan coordinates). Throws
     // Error for another extension, or if it cannot be written.
     void write(const std::string& path);
 

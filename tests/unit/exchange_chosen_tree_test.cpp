@@ -288,6 +288,17 @@ TEST(Mtg, IsReadAsTheTreeThatItsTabsDraw) {
         }
 }
 
+TEST(Mtg, IsWrittenAsItIsRead) {
+    const Folder folder;
+    for (const Tree& tree : three_trees()) {
+        const std::string path = folder.write("a.mtg", "");
+        write_mtg(path, tree);
+        ASSERT_TRUE(is_skeleton_file(path));
+        expect_same(tree, read_skeleton(path), "written");
+    }
+    EXPECT_THROW(write_mtg(folder.write("b.mtg", ""), Tree()), Error);
+}
+
 // plantscan3d's own file of a real tree, and its nodes in another program's table.
 TEST(Mtg, OfARealTreeAgreesWithItsTable) {
     const std::string clouds = scan_test::scans_folder();
