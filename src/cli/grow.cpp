@@ -100,7 +100,8 @@ const Command& grow_command() {
         "grow STRING-OR-GRAMMAR -o FILE [options]",
         "Makes a tree from an L-string or a grammar.",
         {{"-o", "FILE",
-          "the file to write: .glb .gltf .obj .ply .txt .csv .mtg, or .lstring for the string; again for more",
+          "the file to write: .glb .gltf .obj .ply .txt .csv .mtg, or .lstring for the string; again for "
+          "more",
           true},
          {"--seed", "N", "what is drawn by chance (default: the grammar's)"},
          {"--iterations", "N", "of the grammar (default: its own)"},

@@ -69,7 +69,8 @@ const Command& sketch_command() {
         "[options]",
         "Makes a whole tree of a few freehand strokes, or draws missing branches over a scan.",
         {{"-o", "FILE",
-          "the file to write: .glb .gltf .obj .ply .txt .csv .mtg .lstring, or .json for the strokes; again for "
+          "the file to write: .glb .gltf .obj .ply .txt .csv .mtg .lstring, or .json for the strokes; again "
+          "for "
           "more",
           true},
          {"--report", "", "print what became of each stroke, and how well the crown is filled, as JSON"},

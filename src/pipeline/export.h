@@ -43,8 +43,8 @@ class TreeExporter {
     void prepare(const std::vector<std::string>& paths);
 
     // Writes in the format that the extension of `path` names: .glb .gltf .obj (metres, Y up, the root where
-    // the tree has it; with leaves) or .ply .txt .csv .mtg .lstring (the skeleton in scan coordinates). Throws
-    // Error for another extension, or if it cannot be written.
+    // the tree has it; with leaves) or .ply .txt .csv .mtg .lstring (the skeleton in scan coordinates).
+    // Throws Error for another extension, or if it cannot be written.
     void write(const std::string& path);
 
     size_t triangles();  // of bark and leaves together, of the finest level
