@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <string_view>
 
 #include "error.h"
 #include "exchange/exr.h"
@@ -27,6 +28,24 @@ constexpr double kLeastOverlap = 5.0, kMostOverlap = 30.0;  // metres
 // be seen as well.
 constexpr double kOverlapShare = 0.7;
 constexpr size_t kLookEvery = 1 << 20;
+constexpr const char *kTable = "trees.csv", *kPlot = "plot.json", *kGround = "ground.exr";
+
+// Whether a run writes files of such a name.
+bool is_own(const std::string& name) {
+    if (name == kTable || name == kPlot || name == kGround) return true;
+    constexpr std::string_view start = "tree_", end = ".ply";
+    if (!name.starts_with(start) || !name.ends_with(end) || name.size() < start.size() + 4 + end.size())
+        return false;
+    const auto digits = std::string_view(name).substr(start.size(), name.size() - start.size() - end.size());
+    return digits.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+std::vector<fs::path> entries_of(const std::string& folder) {
+    std::vector<fs::path> entries;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path_of(folder)))
+        entries.push_back(entry.path());
+    return entries;
+}
 
 // Where all is made until it is whole. Goes away with whatever is still in it.
 class Workshop {
@@ -51,16 +70,26 @@ class Workshop {
 
     std::string file(const std::string& name) const { return folder_ + "/" + name; }
     void drop_tiles() const { fs::remove_all(path_of(file("tiles"))); }
-    // Now it is whole.
+    // Now it is whole. What somebody has put beside an earlier run's files stays.
     void move_to(const std::string& folder) const {
-        std::error_code failure;
-        fs::remove_all(path_of(folder), failure);
-        fs::remove(path_of(mark()), failure);
-        fs::rename(path_of(folder_), path_of(folder), failure);
-        if (failure) throw Error("'" + folder + "' could not be written: " + failure.message() + ".");
+        try {
+            fs::create_directories(path_of(folder));
+            // First, so that the folder is known as one of this kind whenever this is cut off.
+            move_file(kTable, folder);
+            for (const fs::path& old : entries_of(folder))
+                if (const std::string name = utf8_of(old.filename()); name != kTable && is_own(name))
+                    fs::remove(old);
+            for (const fs::path& made : entries_of(folder_))
+                if (made != path_of(mark())) move_file(utf8_of(made.filename()), folder);
+        } catch (const fs::filesystem_error& failure) {
+            throw Error("'" + folder + "' could not be written: " + failure.code().message() + ".");
+        }
     }
 
   private:
+    void move_file(const std::string& name, const std::string& folder) const {
+        fs::rename(path_of(file(name)), path_of(folder + "/" + name));
+    }
     std::string mark() const { return folder_ + "/made_by_treerec"; }
 
     std::string folder_;
@@ -127,7 +156,7 @@ std::string plot_json(const std::string& scan, const PlotGuide& guide, const Hei
                      {"up", up_axis_name(guide.frame.up)}};
     if (report.ground) {
         const auto [low, high] = std::minmax_element(map.heights.begin(), map.heights.end());
-        json["ground"] = {{"file", "ground.exr"},
+        json["ground"] = {{"file", kGround},
                           {"width", map.width},
                           {"depth", map.depth},
                           {"pixel_m", map.pixel},
@@ -164,11 +193,11 @@ class Splitting {
         const Heightmap map = ground.finish();
         report_.ground = !map.heights.empty();
         if (report_.ground)
-            write_file(workshop_.file("ground.exr"), exr_bytes(map.width, map.depth, map.heights));
+            write_file(workshop_.file(kGround), exr_bytes(map.width, map.depth, map.heights));
         else
             report_.warnings.emplace_back("No ground was seen, and no ground.exr was written.");
-        write_file(workshop_.file("plot.json"), plot_json(scan_, guide_, map, report_, options_));
-        write_file(workshop_.file("trees.csv"), csv_of(report_.trees));
+        write_file(workshop_.file(kPlot), plot_json(scan_, guide_, map, report_, options_));
+        write_file(workshop_.file(kTable), csv_of(report_.trees));
         if (progress_) progress_->check();
         workshop_.move_to(folder);
         return std::move(report_);
@@ -259,7 +288,7 @@ void require_split_folder(const std::string& folder) {
     if (!fs::is_directory(path_of(folder), failure))
         throw Error("'" + folder + "' is a file; name a folder to write to.");
     if (fs::is_empty(path_of(folder), failure)) return;
-    std::ifstream stream(path_of(folder + "/trees.csv"));
+    std::ifstream stream(path_of(folder + "/" + kTable));
     std::string line;
     if (!std::getline(stream, line) || line != kSplitColumns)
         throw Error("'" + folder +

@@ -43,10 +43,10 @@ inline constexpr const char* kSplitColumns = "id,file,x,y,z,height_m,dbh_cm,poin
 // Throws Error where `folder` is there and is neither empty nor of this kind. To be asked before the work.
 void require_split_folder(const std::string& folder);
 
-// Writes tree_0001.ply …, trees.csv, plot.json and, where ground is seen, ground.exr into `folder`, which
-// takes the place of an older one when all is done. Trees stand where they stood in the scan. Tile by tile:
-// memory holds the points of one tile and what is around it, and of files other than LAS all points' places.
-// Throws Error (no tree, flat, what read_cloud() says …), or Cancelled.
+// Writes tree_0001.ply …, trees.csv, plot.json and, where ground is seen, ground.exr into `folder`, where
+// they take the place of an earlier run's when all is done; what else is there stays. Trees stand where they
+// stood in the scan. Tile by tile: memory holds the points of one tile and what is around it, and of files
+// other than LAS all points' places. Throws Error (no tree, flat, what read_cloud() says …), or Cancelled.
 SplitReport split_plot(const std::string& scan, const std::string& folder, const SplitOptions& options,
                        Progress* progress = nullptr);
 

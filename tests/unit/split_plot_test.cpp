@@ -304,9 +304,24 @@ TEST_F(SplitPlot, WhatIsNotOfThisKindStays) {
 TEST_F(SplitPlot, ARunTakesThePlaceOfAnOlderOne) {
     split_plot(plot(), path("trees"), {});
     put("trees/tree_0099.ply", "of the older one");
+    const auto made = files("trees");
+    // What somebody has put there is nobody's to remove.
+    const std::vector<std::string> kept = {"tree_0001_pruned.ply", "tree_1.ply", "notes.txt",
+                                           "a/tree_0002.ply"};
+    test::fs::create_directories(path("trees/a"));
+    for (const std::string& name : kept)
+        put("trees/" + name, "years of work");
     split_plot(path("plot.ply"), path("trees"), {});
     EXPECT_FALSE(test::fs::exists(path("trees/tree_0099.ply")));
-    EXPECT_TRUE(test::fs::exists(path("trees/tree_0001.ply")));
+    EXPECT_FALSE(test::fs::exists(path("trees.part")));
+    for (const std::string& name : kept) {
+        EXPECT_EQ(get("trees/" + name), "years of work") << name;
+        test::fs::remove(path("trees/" + name));
+    }
+    test::fs::remove(path("trees/a"));
+    auto again = files("trees");
+    again["tree_0099.ply"] = "of the older one";
+    EXPECT_EQ(again, made);
 }
 
 TEST_F(SplitPlot, ItStopsWhenAskedToAndLeavesNothing) {
