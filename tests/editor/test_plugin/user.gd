@@ -15,6 +15,10 @@ const WHEEL_DOWN: int = 5
 # What the editor needs to take what xdotool sent: one frame to get the events, one to act, and
 # one for what was deferred.
 const _FRAMES: int = 4
+# The engine reads the X server's events in a thread of its own, which a busy machine may hold up.
+const _MOST_WAIT: int = 2000
+# What of xdotool ends with a key or a button that is let go.
+const _LETS_GO: Array[String] = ["key", "keyup", "click", "mouseup", "type"]
 
 ## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
 ## It looks through the project when it becomes true, and that it is false it only finds after a
@@ -26,10 +30,13 @@ var saves: int = 0
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
 var _heard: String = ""
+# Keys and buttons that the editor has seen let go.
+var _let_go: int = 0
 
 
 ## Waits until run.sh has come to the socket whose number is left in `folder`.
 func meet(folder: String) -> void:
+	_window().window_input.connect(_on_input)
 	_server.listen(0, "127.0.0.1")
 	var path: String = folder.path_join("port")
 	var file: FileAccess = FileAccess.open(path + ".part", FileAccess.WRITE)
@@ -61,6 +68,8 @@ func end() -> void:
 
 
 func leave() -> void:
+	if _window().window_input.is_connected(_on_input):
+		_window().window_input.disconnect(_on_input)
 	if _peer != null:
 		_peer.disconnect_from_host()
 	_server.stop()
@@ -146,8 +155,18 @@ func _held(modifiers: String, what: PackedStringArray) -> PackedStringArray:
 
 
 func _x(words: PackedStringArray) -> void:
+	var before: int = _let_go
 	await ask(PackedStringArray(["x"]) + words)
+	var end: int = Time.get_ticks_msec() + _MOST_WAIT
+	var lets_go: bool = _LETS_GO.any(func(word: String) -> bool: return word in words)
+	while lets_go and _let_go == before and Time.get_ticks_msec() < end:
+		await _frame()
 	await frames(_FRAMES)
+
+
+func _on_input(event: InputEvent) -> void:
+	if (event is InputEventKey or event is InputEventMouseButton) and not event.is_pressed():
+		_let_go += 1
 
 
 # The engine takes its window for focused from the beginning, whether it is or not, and overlooks

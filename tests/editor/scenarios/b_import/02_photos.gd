@@ -180,9 +180,10 @@ func _end() -> void:
 	var root: Node = EditorInterface.get_edited_scene_root()
 	await user.move(middle(view().get_parent() as Control))
 	await user.key("ctrl+z")
-	check_equal(root.get_child_count(), 0, "trees after undo")
+	await until(func() -> bool: return root.get_child_count() == 0, "undo takes the tree away")
 	await user.key("ctrl+shift+z")
-	check_equal(root.get_child_count(), 1, "trees after redo")
+	if not await until(func() -> bool: return root.get_child_count() == 1, "redo brings it again"):
+		return
 	check((root.get_child(0) as TreeInstance3D).bark_material != null, "Redo has lost its bark.")
 	check((root.get_child(0) as TreeInstance3D).leaf_material != null, "Redo has lost its leaves.")
 	check(FileAccess.file_exists(TREE), "The tree's file is gone.")
