@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import atexit
 import os
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _treerec
+from . import _treerec, usd
 from ._arrays import Leaves, Mesh, as_cloud, leaves_of, mesh_of
 from ._treerec import Cancelled, Cloud, Error, __version__
 
@@ -144,11 +145,18 @@ class Tree:
         pictures_beside: bool = False, progress: Progress | None = None,
     ) -> None:
         """Writes what the path's ending names: .glb .gltf .obj (bark and leaves), .txt (tree file), .csv (QSM
-        cylinders), .ply (skeleton), .lstring.
+        cylinders), .ply (skeleton), .lstring, or .usd .usda .usdc .usdz (bark and leaves; needs Pixar's usd-core).
 
         leaves: one of leaf_presets(), or auto. levels: of detail, 1 to 5. pictures_beside: of a .glb, in a folder.
         """
-        self._tree.write(os.fspath(path), leaves, seed, levels, pictures_beside, progress)
+        if not usd.is_usd(path):
+            self._tree.write(os.fspath(path), leaves, seed, levels, pictures_beside, progress)
+            return
+        usd.require()
+        with tempfile.TemporaryDirectory() as folder:
+            model = os.path.join(folder, "tree.glb")
+            self._tree.write(model, leaves, seed, levels, False, progress)
+            usd.convert(model, path)
 
     def write_glb(
         self, path: Path, leaves: str = "auto", *, seed: int | None = None, levels: int = 1,

@@ -318,26 +318,30 @@ class Calls(Case):
         self.assertEqual(done.stdout, "heard\n", done.stderr)
 
 
-class Stubs(unittest.TestCase):
+class Types(unittest.TestCase):
     """_treerec.pyi names what there is; mypy reads the rest, which is written in Python."""
 
-    def check(self, stub, thing):
-        wanted = {item.name: item for item in stub.body if isinstance(item, (ast.FunctionDef, ast.ClassDef))}
+    def check(self, declared, thing):
+        """How many functions were compared by their arguments."""
+        compared = 0
+        wanted = {item.name: item for item in declared.body if isinstance(item, (ast.FunctionDef, ast.ClassDef))}
         there = {name for name in vars(thing) if not name.startswith("_") or name == "__len__"}
         self.assertEqual({name for name in wanted if name[0] != "_" or name == "__len__"}, there)
         for name, item in wanted.items():
             member = getattr(thing, name)
             if isinstance(item, ast.ClassDef):
                 if not issubclass(member, Exception):
-                    self.check(item, member)
+                    compared += self.check(item, member)
             elif hasattr(member, "__nb_signature__") and name != "__len__":
                 words = member.__nb_signature__[0][0]
                 taken = [argument.arg for argument in item.args.args]
                 self.assertEqual(re.findall(r"(\w+):", words.replace("self,", "self:,").replace("self)", "self:)")), taken)
+                compared += 1
+        return compared
 
     def test_are_right(self):
         path = pathlib.Path(treerec.__file__).with_name("_treerec.pyi")
-        self.check(ast.parse(path.read_text(encoding="utf-8")), treerec._treerec)
+        self.assertGreater(self.check(ast.parse(path.read_text(encoding="utf-8")), treerec._treerec), 15)
         self.assertTrue(path.with_name("py.typed").exists())
 
 
