@@ -267,9 +267,13 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, boo
         const std::shared_ptr<const Tree> tree = get_tree();
         const std::shared_ptr<const treerec::GrownBark> bark = get_bark_on(tree);
         const std::vector<treerec::LeafKind> kinds = make_leaf_kinds(*tree);
-        return to_surface_arrays(treerec::build_level_bark(
-            treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod,
-            {p_leaves && treerec::hide_twigs(kinds), p_whole_repeats, true, bark.get()}));
+        treerec::LevelBark how{.whole_repeats = p_whole_repeats, .grown = bark.get()};
+        if (p_leaves) {
+            how.hidden = treerec::hide_twigs(kinds);
+            how.leaves = _count_leaf_triangles(*tree, kinds, p_lod);
+        }
+        return to_surface_arrays(
+            treerec::build_level_bark(treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod, how));
     });
 }
 

@@ -212,6 +212,8 @@ class TreeReconstruction : public godot::Resource {
     std::vector<treerec::LeafPlacement> _place_leaves(int p_lod) const;
     std::vector<std::vector<treerec::LeafPlacement>> _place_foliage(
         const treerec::Tree& p_tree, const std::vector<treerec::LeafKind>& p_kinds, int p_lod) const;
+    size_t _count_leaf_triangles(const treerec::Tree& p_tree, const std::vector<treerec::LeafKind>& p_kinds,
+                                 int p_lod) const;
     // Adds what is wanted of a kind's leaves and its card to what is told of the kind.
     using AddLeaves = void (*)(godot::Dictionary& r_part, const std::vector<treerec::LeafPlacement>& p_leaves,
                                treerec::Mesh p_card);

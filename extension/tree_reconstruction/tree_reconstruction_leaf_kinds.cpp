@@ -56,6 +56,17 @@ std::vector<std::vector<treerec::LeafPlacement>> TreeReconstruction::_place_foli
     return placed;
 }
 
+size_t TreeReconstruction::_count_leaf_triangles(const treerec::Tree& p_tree,
+                                                 const std::vector<treerec::LeafKind>& p_kinds,
+                                                 int p_lod) const {
+    const auto placed = _place_foliage(p_tree, p_kinds, 0);
+    size_t count = 0;
+    for (size_t i = 0; i < placed.size(); i++) {
+        count += treerec::leaves_of_level(placed[i], p_kinds[i].rules, p_lod).triangle_count();
+    }
+    return count;
+}
+
 Dictionary TreeReconstruction::_describe_kind(const treerec::LeafKind& p_kind, double p_season_shift) const {
     const Ref<LeafRule> rule = get_leaf_rule();
     const String look = p_kind.look.empty() ? get_leaf_look() : to_godot(p_kind.look);

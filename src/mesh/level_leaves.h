@@ -12,6 +12,8 @@ namespace treerec {
 struct LevelLeaves {
     std::vector<LeafPlacement> leaves;
     Mesh card;  // of the leaves; empty without any
+
+    size_t triangle_count() const { return leaves.size() * card.triangle_count(); }
 };
 
 // Down to where thin_leaves() would draw a leaf more than kMostGrowth times as large: those. Beyond, sprays

@@ -23,12 +23,16 @@ constexpr double kHiding = 0.5;       // of full foliage: so much hides most of 
 constexpr double kFewerTwigs = 1.75;  // levels: and so many farther ones are its twigs, from level 2 on
 constexpr double kFinest = 60000.0;   // triangles at level 0,
 constexpr double kFewer = 4.65;       // times fewer per level,
-constexpr double kOfBark = 0.57;      // and so much of them is bark
+constexpr double kOfBark = 0.57;      // and so much of them is bark at least
 constexpr double kWidestBark = 1.5;   // of a node's radius
 constexpr double kBase = 4.0;         // likewise, where the trunk stands on its roots
 
 int whole(double level) {
     return static_cast<int>(level + 0.5);
+}
+
+size_t triangles_left(double level, size_t leaves) {
+    return level_triangles(level) - std::min(leaves, foliage_triangles(level));
 }
 
 }  // namespace
@@ -37,8 +41,8 @@ double level_width(double height, double level) {
     return kWidth * height * portable::pow(2.0, level);
 }
 
-size_t bark_triangles(double level, bool hidden) {
-    return static_cast<size_t>((hidden ? kOfBark : 1.0) * kFinest * portable::pow(kFewer, -level));
+size_t level_triangles(double level) {
+    return static_cast<size_t>(kFinest * portable::pow(kFewer, -level));
 }
 
 size_t foliage_triangles(double level) {
@@ -53,7 +57,7 @@ bool hide_twigs(const std::vector<LeafKind>& kinds) {
 
 Mesh build_level_bark(const Tree& wood, double level, const LevelBark& how, const Progress* progress) {
     TubeOptions options;
-    options.most_triangles = how.limited ? bark_triangles(level, how.hidden) : 0;
+    options.most_triangles = how.limited ? triangles_left(level, how.leaves) : 0;
     options.level = whole(level);
     options.twig_level = level + (how.hidden ? kFewerTwigs * std::clamp(level - 1.0, 0.0, 1.0) : 0.0);
     options.whole_repeats = how.whole_repeats;
@@ -102,9 +106,10 @@ LevelBuilder::LevelBuilder(const Tree& tree, std::vector<LeafKind> kinds, uint64
 TreeLevel LevelBuilder::build_at(double level, bool limited, const Progress* progress) const {
     TreeLevel made;
     made.level = level;
-    made.bark = build_level_bark(wood_, level, {hide_twigs(kinds_), false, limited, grown_}, progress);
     for (size_t kind = 0; kind < kinds_.size(); kind++)
         made.foliage.push_back(leaves_of_level(leaves_[kind], kinds_[kind].rules, level, limited));
+    const LevelBark how{hide_twigs(kinds_), false, limited, grown_, made.triangle_count()};
+    made.bark = build_level_bark(wood_, level, how, progress);
     return made;
 }
 

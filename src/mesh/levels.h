@@ -39,8 +39,8 @@ double level_width(double height, double level);
 
 // What a level without a budget may have: 60,000 in all at level 0, 600 at level 3. It becomes coarser than
 // it would be by itself, where it can: what no level leaves out may be more.
-size_t bark_triangles(double level, bool hidden);  // see hide_twigs()
-size_t foliage_triangles(double level);            // of all leaves of a kind
+size_t level_triangles(double level);
+size_t foliage_triangles(double level);  // of them, all leaves of a kind; bark has what leaves leave
 
 struct TreeLevel {
     Mesh bark;
@@ -52,7 +52,7 @@ struct TreeLevel {
     size_t triangle_count() const {
         size_t count = bark.triangle_count();
         for (const LevelLeaves& kind : foliage)
-            count += kind.leaves.size() * kind.card.triangle_count();
+            count += kind.triangle_count();
         return count;
     }
 };
@@ -68,10 +68,10 @@ class LevelBuilder {
     LevelBuilder(const Tree& tree, const LeafRules& rules, uint64_t seed, const Foliage& foliage = {},
                  const Progress* progress = nullptr);
 
-    // level: 0 is the finest, which has no more than bark_triangles() and foliage_triangles() let it have
-    // without a budget. budget: if not 0, the finest thing between the levels, down from level 0, that
-    // has at most so many triangles of bark and leaves; `level` is then of no matter. Deterministic; up
-    // to 12 times the time of one level with a budget. Throws Error for a negative level, or Cancelled.
+    // level: 0 is the finest, which has no more than level_triangles() without a budget. budget: if not 0,
+    // the finest thing between the levels, down from level 0, that has at most so many triangles of bark and
+    // leaves; `level` is then of no matter. Deterministic; up to 12 times the time of one level with a
+    // budget. Throws Error for a negative level, or Cancelled.
     TreeLevel build(int level, size_t budget = 0, const Progress* progress = nullptr) const;
     // Metres, around all levels at rest.
     const Bounds& box() const { return box_; }
@@ -93,8 +93,9 @@ bool hide_twigs(const std::vector<LeafKind>& kinds);
 struct LevelBark {
     bool hidden = false;               // see hide_twigs()
     bool whole_repeats = false;        // see TubeOptions
-    bool limited = true;               // to bark_triangles()
+    bool limited = true;               // to level_triangles()
     const GrownBark* grown = nullptr;  // see LevelBuilder
+    size_t leaves = 0;                 // triangles that the level has of leaves
 };
 
 // The bark alone, of a level or between two: wood is what leafy_tree() makes of a tree.

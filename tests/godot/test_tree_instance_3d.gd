@@ -199,6 +199,26 @@ func test_duplicates_do_not_double_the_leaves() -> void:
 	instance.free()
 
 
+# Bark has what leaves leave of a level's triangles: much of it is built again with them.
+func test_bark_gives_way_to_leaves() -> void:
+	var made: TreeReconstruction = grown_tree(3, 8000)
+	made.leaf_rule = LeafRule.new()
+	var instance: TreeInstance3D = _instance(made)
+	var counts: PackedInt64Array = []
+	for area: float in [0.2, 8.0, 0.2]:
+		made.leaf_rule.leaf_area_index = area
+		await tree.process_frame
+		await _settle(instance)
+		check(
+			instance.get_triangle_count() <= 60000, "%d triangles" % instance.get_triangle_count()
+		)
+		var bark: PackedInt32Array = instance.mesh.surface_get_arrays(0)[Mesh.ARRAY_INDEX]
+		counts.append(bark.size() / 3)
+	check(counts[0] > 40000 and counts[1] < 40000, "The bark has %s triangles." % counts)
+	check_equal(counts[2], counts[0], "triangles with few leaves again")
+	instance.free()
+
+
 func test_scenes_hold_the_tree_but_not_its_mesh() -> void:
 	var instance: TreeInstance3D = TreeInstance3D.new()
 	instance.name = "Tree"

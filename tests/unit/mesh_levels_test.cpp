@@ -199,6 +199,24 @@ TEST(Levels, NoneHasMoreByItselfThanAGameAffords) {
     EXPECT_GT(builder.build(0, 1000000).triangle_count(), 100000u);
 }
 
+TEST(Levels, BarkHasWhatLeavesLeaveOfALevel) {
+    const Tree tree = test::random_tree(2, 8000, 18.0);
+    LeafRules rules = leaf_preset("oak");
+    size_t before = SIZE_MAX;
+    for (const double area : {0.4, 1.5, 12.0, 60.0}) {
+        SCOPED_TRACE(area);
+        rules.leaf_area_index = area;
+        const TreeLevel made = LevelBuilder(tree, rules, 1).build(0);
+        EXPECT_LE(made.triangle_count(), level_triangles(0));
+        EXPECT_GT(made.triangle_count(), level_triangles(0) * 9 / 10);
+        // Never less than its own share.
+        const size_t bark = made.bark.triangle_count();
+        EXPECT_GT(bark, (level_triangles(0) - foliage_triangles(0)) * 9 / 10);
+        EXPECT_LE(bark, before);
+        before = bark;
+    }
+}
+
 TEST(Levels, ABudgetThatCannotBeKeptSaysSo) {
     const Tree tree = grown(Habit::kBroadleaf);
     const TreeLevel made = LevelBuilder(tree, leaf_preset("generic"), 1).build(1, 2);

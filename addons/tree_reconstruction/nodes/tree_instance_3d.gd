@@ -49,6 +49,9 @@ const _SHARED: PackedStringArray = [
 	"visibility_range_end_margin",
 	"visibility_range_fade_mode",
 ]
+# Bark of more triangles than these at level 0, times fewer per level, may have made room for leaves.
+const _MUCH_BARK: float = 30000.0
+const _FEWER: float = 4.65
 
 ## Whether trees are built on worker threads. Turn it off to find errors more easily: then they are
 ## built on the main thread, at the end of the frame.
@@ -365,10 +368,12 @@ func _start() -> void:
 		return
 	var job: BuildJob = BuildJob.new()
 	job.take(self)
-	# A change of the leaves alone keeps the bark, unless they come or go.
+	# A change of the leaves alone keeps the bark, unless they come or go, or leave it more or less of
+	# the level's triangles.
 	job.with_bark = (
 		mesh == null
 		or job.budget > 0
+		or BuildJob.triangles(mesh) > _MUCH_BARK / pow(_FEWER, job.lod)
 		or _bark_of != [reconstruction, job.revision, job.lod, job.budget, job.leaves]
 	)
 	if not threaded:
