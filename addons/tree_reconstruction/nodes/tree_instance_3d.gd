@@ -49,7 +49,7 @@ const _SHARED: PackedStringArray = [
 	"visibility_range_end_margin",
 	"visibility_range_fade_mode",
 ]
-# Bark of more triangles than these at level 0, times fewer per level, may have made room for leaves.
+# Bark of more triangles at level 0, or _FEWER times fewer per level, may give way to leaves.
 const _MUCH_BARK: float = 30000.0
 const _FEWER: float = 4.65
 
