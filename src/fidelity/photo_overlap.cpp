@@ -9,6 +9,7 @@
 #include "fidelity/photo_fidelity.h"
 #include "foliage/leaf_rule_text.h"
 #include "geometry/parallel.h"
+#include "mesh/above_ground.h"
 #include "mesh/leaf_cards.h"
 #include "mesh/levels.h"
 #include "textures/textures.h"
@@ -94,7 +95,7 @@ std::vector<OutlinePart> outline_parts(const Tree& tree, const std::vector<LeafK
     const LevelBuilder builder(tree, kinds, seed, foliage, progress);
     TreeLevel level = builder.build(0, SIZE_MAX, progress);  // all that it has
     std::vector<OutlinePart> parts;
-    parts.push_back({std::move(level.bark), {}});
+    parts.push_back({above_ground(level.bark, tree), {}});
     for (size_t kind = 0; kind < level.foliage.size(); kind++) {
         const LevelLeaves& leaves = level.foliage[kind];
         if (leaves.leaves.empty()) continue;

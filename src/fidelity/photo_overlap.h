@@ -43,7 +43,8 @@ struct OutlinePart {
     Image cut_out;  // of four channels: what is less than half opaque is a hole; or empty
 };
 
-// A tree as a game shows it from near: its bark, and its leaves' cards with the holes in their pictures.
+// A tree as a game shows it from near: its bark above the ground, and its leaves' cards with the holes in
+// their pictures.
 // Throws Error for rules that check_leaf_rules() refuses, or Cancelled.
 std::vector<OutlinePart> outline_parts(const Tree& tree, const LeafRules& rules, const std::string& textures,
                                        uint64_t seed, const Foliage& foliage,

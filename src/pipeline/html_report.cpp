@@ -11,6 +11,7 @@
 #include "file_bytes.h"
 #include "geometry/portable_math.h"
 #include "geometry/random.h"
+#include "mesh/above_ground.h"
 #include "mesh/branch_tubes.h"
 #include "pipeline/histogram_svg.h"
 #include "pipeline/html_parts.h"
@@ -95,7 +96,8 @@ LeafPoints leaves_of(const Reconstruction& result) {
 }
 
 std::string tree_pictures(const Page& page, const Bounds& box, Progress& progress) {
-    const Mesh bark = build_branch_tubes(page.result.tree, {}, &progress);
+    const Tree& tree = page.result.tree;
+    const Mesh bark = above_ground(build_branch_tubes(tree, {}, &progress), tree);
     const LeafPoints leaves = leaves_of(page.result);
     std::string html = "<section><h2>The tree</h2><div class=\"row two\">";
     for (const auto& [azimuth, name] : {std::pair(0.0, "Front"), std::pair(0.5 * kPi, "From the right")}) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "mesh/above_ground.h"
 #include "mesh/branch_tubes.h"
 #include "mesh/root_flare.h"
 #include "mesh_tubes.h"
@@ -98,6 +99,44 @@ TEST(Feet, OfTallTreesGoDeeper) {
     EXPECT_NEAR(foot_depth(3.0), 0.6, 1e-9);
     EXPECT_NEAR(foot_depth(12.0), 1.2, 1e-9);
     EXPECT_NEAR(foot_depth(50.0), 2.0, 1e-9);
+}
+
+// Pictures draw no ground that would hide it.
+TEST(Feet, AboveTheGroundIsWhatIsSeen) {
+    for (const double radius : {0.02, 0.2, 0.6}) {
+        SCOPED_TRACE(radius);
+        const Tree tree = standing(radius, 3);
+        const Mesh bark = build_branch_tubes(tree), seen = above_ground(bark, tree);
+        const auto lowest = [](const Mesh& mesh) {
+            return std::min_element(mesh.positions.begin(), mesh.positions.end(),
+                                    [](const Vec3& a, const Vec3& b) { return a.y < b.y; })
+                ->y;
+        };
+        EXPECT_LT(lowest(bark), -0.15F);
+        EXPECT_GT(lowest(seen), -0.1F * static_cast<float>(radius));
+        // All that is higher is there, with all that it has.
+        size_t above = 0;
+        for (size_t i = 0; i + 2 < bark.indices.size(); i += 3)
+            above += std::any_of(&bark.indices[i], &bark.indices[i] + 3,
+                                 [&](uint32_t corner) { return bark.positions[corner].y > 1e-3F; });
+        EXPECT_EQ(seen.triangle_count(), above);
+        for (const size_t count :
+             {seen.normals.size(), seen.tangents.size(), seen.uvs.size(), seen.colors.size(),
+              seen.custom0.size(), seen.radii.size(), seen.wind.size()})
+            EXPECT_EQ(count, seen.positions.size());
+        EXPECT_LT(seen.positions.size(), bark.positions.size());
+        const uint32_t last = bark.indices.back(), same = seen.indices.back();
+        EXPECT_EQ(seen.positions[same], bark.positions[last]);
+        EXPECT_EQ(seen.wind[same], bark.wind[last]);
+    }
+    // A branch that was cut off hangs where it likes.
+    Tree branch;
+    NodeId at = branch.add_root({0, 0, 0}, 0.05);
+    for (int i = 1; i < 5; i++)
+        at = branch.add_child(at, {0.01 * i, -0.1 * i, 0}, 0.04);
+    const Mesh bark = build_branch_tubes(branch);
+    EXPECT_EQ(above_ground(bark, branch).triangle_count(), bark.triangle_count());
+    EXPECT_EQ(above_ground(Mesh(), Tree()).triangle_count(), 0U);
 }
 
 TEST(Feet, ATrunkRunsOutIntoRootsOfItsOwn) {
