@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Packs the built addon as the Asset Library and users want it: addons/tree_reconstruction/… in a zip.
+"""Packs the built addon as the Asset Store and users want it: addons/tree_reconstruction/… in a zip.
 
     addons/pack.py --addon project/addons/tree_reconstruction --out FOLDER [--libraries FOLDER…]
 
