@@ -85,7 +85,8 @@ for name in "${@:-icon photos same skeleton tree graft forest film}"; do
             words foot tree 3 'To a tree' 'Bark, leaves and wind; levels of detail, collision, and a fall when it is cut'
             ;;
         graft)
-            shot graft "$work/graft.png"
+            # Those of docs/first_tree.md (tests/editor/make_pictures.sh), without what the editor says below them.
+            convert docs/editor/branch.jpg docs/editor/graft.jpg +append -crop 1800x695+0+0 +repage "$work/graft.png"
             words head graft 4 'That you shape' 'Cut, prune, bend, grow, graft: each tool shows what a click would do, and each click is one undo'
             ;;
         forest)

@@ -34,7 +34,8 @@ static func at_head(
 	var room: Vector2 = size - Vector2(0.0, _HEAD)
 	var shown: Vector2 = picture.get_size()
 	shown *= minf(room.x / shown.x, room.y / shown.y)
-	page.add_child(_placed(picture, Rect2(Vector2((size.x - shown.x) * 0.5, _HEAD), shown)))
+	var corner: Vector2 = Vector2(0.0, _HEAD) + (room - shown) * 0.5
+	page.add_child(_placed(picture, Rect2(corner, shown)))
 	_write(page, Vector2(_MARGIN, 18.0), number, title, text)
 	return await _draw(tree, page)
 
