@@ -4,8 +4,10 @@ extends RefCounted
 
 const Stage := preload("./stage.gd")
 const Plots := preload("res://demo/plots.gd")
-# Metres: how wide the photos hang, and how far the points are that are shown.
-const _PHOTO: float = 1.9
+# How wide the photos hang, by the circle's radius.
+const _PHOTO: float = 0.24
+# Points of bark are dark; before a dark ground they are shown lighter than they are.
+const _LIGHT: float = 0.5
 const _LINE: Color = Color("c4e260")
 
 var tree: TreeReconstruction
@@ -19,10 +21,11 @@ var _maker: TreeReconstructor = TreeReconstructor.new()
 var _folder: String
 
 
-## Reads the cloud that 'treerec photos' left beside COLMAP's model, and its tree.
-func read(cloud: String, photos: String) -> bool:
+## Reads the cloud that 'treerec photos' left beside COLMAP's model, and its tree. Points are at
+## least [param spacing] metres apart; 0: as they are.
+func read(cloud: String, photos: String, spacing: float) -> bool:
 	_folder = photos
-	tree = _maker.reconstruct_file(cloud, {})
+	tree = _maker.reconstruct_file(cloud, {} if spacing == 0.0 else {"spacing": spacing})
 	if tree != null:
 		points = _maker.get_cloud_points()
 		colors = _maker.get_cloud_colors()
@@ -41,19 +44,27 @@ func load_photo(view: int, longest: int) -> Image:
 	return Image.create_from_data(size.x, size.y, false, Image.FORMAT_RGBA8, photo["pixels"])
 
 
+func show_points(stage: Stage) -> void:
+	var light: PackedColorArray = []
+	for color: Color in colors:
+		light.append(color.lightened(_LIGHT))
+	stage.show_mesh(Plots.cloud(points, light), Plots.bead_material(2.6, 0.0))
+
+
 ## Hangs every second photo where it was taken, around the points.
 func set_up(stage: Stage) -> void:
-	stage.show_mesh(Plots.cloud(points, colors), Plots.bead_material(3.0, 0.0))
+	show_points(stage)
+	var wide: float = _PHOTO * _reach()
 	var lines: PackedVector3Array = []
 	for i: int in range(0, views.size(), 2):
 		var photo: Image = load_photo(i, 400)
 		if photo == null:
 			continue
-		var half: Vector2 = Vector2.ONE * 0.5 * _PHOTO
+		var half: Vector2 = Vector2.ONE * 0.5 * wide
 		half.y *= float(photo.get_height()) / photo.get_width()
 		var size: Vector2 = views[i]["size"]
 		var focal: float = views[i]["focal"]
-		var ahead: float = _PHOTO * focal / size.x
+		var ahead: float = wide * focal / size.x
 		var place: Transform3D = views[i]["transform"]
 		var picture: QuadMesh = QuadMesh.new()
 		picture.size = 2.0 * half
@@ -84,14 +95,10 @@ func set_up(stage: Stage) -> void:
 
 ## All of them in view, from above.
 func see_from(stage: Stage, turn: float) -> void:
-	var reach: float = 0.0
-	for view: Dictionary in views:
-		var place: Transform3D = view["transform"]
-		reach = maxf(reach, Vector2(place.origin.x, place.origin.z).length())
+	var reach: float = _reach()
+	var from: Vector3 = Vector3(2.55 * sin(turn), 1.15, 2.55 * cos(turn)) * reach
 	var high: float = tree.get_aabb().size.y
-	var from: Vector3 = Vector3(sin(turn), 0.0, cos(turn)) * 1.9 * reach
-	from.y = 1.0 * high
-	stage.look(from, Vector3(0.0, 0.2 * high, 0.0), 40.0)
+	stage.look(from, Vector3(0.0, 0.3 * high, 0.0), 36.0)
 
 
 ## Where a photo was taken, with its lens.
@@ -105,3 +112,12 @@ func stand_at(stage: Stage, view: int) -> void:
 	)
 	stage.camera.transform = views[view]["transform"]
 	stage.camera.set_frustum(near * size.y / focal, off, near, 1000.0)
+
+
+# How far from the tree the photos were taken.
+func _reach() -> float:
+	var reach: float = 0.0
+	for view: Dictionary in views:
+		var place: Transform3D = view["transform"]
+		reach = maxf(reach, Vector2(place.origin.x, place.origin.z).length())
+	return reach

@@ -18,7 +18,11 @@ const Ring := preload("./ring.gd")
 const Wood := preload("./wood.gd")
 const Plots := preload("res://demo/plots.gd")
 const SIZE: Vector2i = Vector2i(1600, 900)
+# Metres between points: finer, and noise of quick matching counts.
+const SPACING: float = 0.02
 const INSET: Vector2i = Vector2i(400, 300)
+# Which of the photos, of the way around.
+const VIEW: float = 0.75
 const FILM: Vector2i = Vector2i(1280, 720)
 # What the film shows of the tree, one after another.
 const STAGES: Array[PackedStringArray] = [
@@ -108,7 +112,7 @@ static func _outermost(tree: TreeReconstruction, way: Vector3) -> Vector3:
 
 func _draw_photos() -> bool:
 	var ring: Ring = Ring.new()
-	if not ring.read(_words[2], _words[3]):
+	if not ring.read(_words[2], _words[3], 0.0):
 		printerr(ring.message)
 		return false
 	var stage: Stage = Stage.new(self, SIZE)
@@ -121,17 +125,17 @@ func _draw_photos() -> bool:
 # A photo, its points, the tree and the tree in leaf, all from where that photo was taken.
 func _draw_same() -> bool:
 	var ring: Ring = Ring.new()
-	if not ring.read(_words[2], _words[3]):
+	if not ring.read(_words[2], _words[3], SPACING):
 		printerr(ring.message)
 		return false
-	var view: int = ring.views.size() / 3
+	var view: int = roundi(VIEW * ring.views.size())
 	var photo: Image = ring.load_photo(view, 1200)
 	if photo == null:
 		return false
 	var size: Vector2i = photo.get_size()
 	var dark: Stage = Stage.new(self, size)
 	dark.darken()
-	dark.show_mesh(Plots.cloud(ring.points, ring.colors), Plots.bead_material(3.0, 0.0))
+	ring.show_points(dark)
 	ring.stand_at(dark, view)
 	var points: Image = await dark.picture()
 	dark.free_all()
@@ -144,8 +148,13 @@ func _draw_same() -> bool:
 	var bare: Image = await day.picture()
 	planted.leaves = true
 	var leafy: Image = await day.picture()
+	# The edges of a photo without distortion are bent.
+	var part: Rect2i = Rect2i(size / 14, size - size / 7)
+	var pictures: Array[Image] = []
+	for picture: Image in [photo, points, bare, leafy]:
+		pictures.append(picture.get_region(part))
 	var words: PackedStringArray = ["One of the photos", "Their points", "The tree", "In leaf"]
-	var all: Image = await Caption.beside(self, [photo, points, bare, leafy], words)
+	var all: Image = await Caption.beside(self, pictures, words)
 	all.resize(1600, roundi(1600.0 * all.get_height() / all.get_width()), Image.INTERPOLATE_LANCZOS)
 	return save(all, _words[1])
 

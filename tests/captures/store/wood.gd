@@ -51,4 +51,4 @@ func stand(share: float) -> void:
 	var z: float = 22.0 - _WALK * share
 	var at: Vector3 = Vector3(2.2 * sin(z / 11.0), 1.65, z)
 	var on: float = z - 14.0
-	stage.look(at, Vector3(2.2 * sin(on / 11.0), 3.4, on), 62.0)
+	stage.look(at, Vector3(2.2 * sin(on / 11.0), 3.7, on), 54.0)
