@@ -25,11 +25,12 @@ const INSET: Vector2i = Vector2i(400, 300)
 const VIEW: float = 0.75
 const FILM: Vector2i = Vector2i(1280, 720)
 # What the film shows of the tree, one after another.
-const STAGES: Array[PackedStringArray] = [
-	["Points", "What a scanner saw of a tree in a street"],
-	["Skeleton", "Trunk, branches and twigs, each of which can be edited"],
-	["Bark", "One surface, with wind in it"],
-	["Leaves", "Of thirteen kinds, or of your own rule, in any season"],
+const STAGES: PackedStringArray = ["Points", "Skeleton", "Bark", "Leaves"]
+const TELLING: PackedStringArray = [
+	"What a scanner saw of a tree in a street",
+	"Trunk, branches and twigs, each of which can be edited",
+	"One surface, with wind in it",
+	"Of thirteen kinds, or of your own rule, in any season",
 ]
 
 var _words: PackedStringArray
@@ -75,11 +76,11 @@ func _draw_tree() -> bool:
 	var stage: Stage = Stage.new(self, SIZE)
 	stage.light_up(24.0, 0.3 * box.size.x)
 	stage.plant(tree)
-	var away: float = 1.2 * maxf(box.size.y, 0.62 * box.size.x)
+	var away: float = 1.3 * maxf(box.size.y, 0.62 * box.size.x)
 	var aside: Vector3 = Vector3(0.3, 0.0, 0.95)
 	var middle: Vector3 = box.get_center() * Vector3(1, 0, 1)
 	var from: Vector3 = middle + aside * away + Vector3.UP * 1.5
-	stage.look(from, middle + Vector3(0.2 * box.size.x, 0.38 * box.size.y, 0.0), 50.0)
+	stage.look(from, middle + Vector3(0.2 * box.size.x, 0.43 * box.size.y, 0.0), 50.0)
 	var whole: Image = await stage.picture()
 	stage.viewport.size = INSET
 	var high: float = minf(1.4, 0.2 * box.size.y)
@@ -88,7 +89,7 @@ func _draw_tree() -> bool:
 		trunk = tree.get_node_position(id)
 		if trunk.y >= high:
 			break
-	stage.look(trunk + aside * 1.5 + Vector3.UP * 0.1, trunk, 50.0)
+	stage.look(trunk + aside * 0.8 + Vector3.UP * 0.1, trunk, 50.0)
 	var insets: Array[Image] = [await stage.picture()]
 	var sprig: Vector3 = _outermost(tree, aside)
 	stage.look(sprig + (aside + 0.2 * Vector3.UP) * 1.1, sprig, 45.0)
@@ -187,18 +188,18 @@ func _draw_stages() -> bool:
 		return false
 	DirAccess.make_dir_recursive_absolute(_words[1])
 	var box: AABB = tree.get_aabb()
-	var away: float = 1.15 * maxf(box.size.y, 0.7 * maxf(box.size.x, box.size.z))
+	var away: float = 1.3 * maxf(box.size.y, 0.7 * maxf(box.size.x, box.size.z))
 	var from: Vector3 = Vector3(0.5 * away, 0.2 * box.size.y, 0.87 * away)
-	var aim: Vector3 = Vector3(box.get_center().x, 0.4 * box.size.y, box.get_center().z)
+	var aim: Vector3 = Vector3(box.get_center().x, 0.45 * box.size.y, box.get_center().z)
 	var dark: Stage = Stage.new(self, FILM)
 	dark.darken()
 	dark.look(from, aim, 50.0)
 	var day: Stage = Stage.new(self, FILM)
 	day.light_up(16.0, 0.3 * box.size.x)
 	day.look(from, aim, 50.0)
-	var cloud: Mesh = Plots.cloud(maker.get_cloud_points(), maker.get_cloud_colors())
+	var cloud: Mesh = _lighter(Plots.cloud(maker.get_cloud_points(), maker.get_cloud_colors()))
 	var points: MeshInstance3D = dark.show_mesh(cloud, Plots.bead_material(2.4, 0.0))
-	var lines: Mesh = Plots.segments(tree, true)
+	var lines: Mesh = _lighter(Plots.segments(tree, true))
 	var planted: TreeInstance3D = day.plant(tree)
 	for i: int in STAGES.size():
 		if i == 1:
@@ -206,10 +207,22 @@ func _draw_stages() -> bool:
 			dark.show_mesh(lines, Plots.line_material(2.0))
 		planted.leaves = i == 3
 		var seen: Image = await (dark if i < 2 else day).picture()
-		seen = await Caption.at_foot(self, seen, "", STAGES[i][0], STAGES[i][1])
+		seen = await Caption.at_foot(self, seen, "", STAGES[i], TELLING[i])
 		if not save(seen, _words[1].path_join("%d.png" % i)):
 			return false
 	return true
+
+
+# Before a dark ground.
+static func _lighter(mesh: ArrayMesh) -> ArrayMesh:
+	var arrays: Array = mesh.surface_get_arrays(0)
+	var colors: PackedColorArray = arrays[Mesh.ARRAY_COLOR]
+	for i: int in colors.size():
+		colors[i] = colors[i].lightened(0.45)
+	arrays[Mesh.ARRAY_COLOR] = colors
+	var light: ArrayMesh = ArrayMesh.new()
+	light.add_surface_from_arrays(mesh.surface_get_primitive_type(0), arrays)
+	return light
 
 
 func _caption() -> bool:
