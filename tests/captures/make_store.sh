@@ -9,7 +9,8 @@
 #
 #   tests/captures/make_store.sh [icon] [photos] [same] [skeleton] [tree] [graft] [forest] [film]
 #
-# Scenes are drawn by Forward+; the film's by what RENDERER says.
+# The forest is drawn by Forward+, the others by Compatibility, which a processor alone draws in minutes, or as RENDERER=forward_plus
+# says.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 : "${GODOT:?GODOT must name the engine; './dev godot --version' finds one}"
@@ -18,6 +19,7 @@ out=$PWD/docs/store
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
+renderer=${RENDERER:-gl_compatibility}
 
 scan() {
     local path=${SCANS:?SCANS must name the folder of scans}/$1
@@ -72,16 +74,16 @@ for name in "${@:-icon photos same skeleton tree graft forest film}"; do
         case $picture in
         icon) draw gl_compatibility icon "$out/icon.svg" "$out" ;;
         photos)
-            draw forward_plus photos "$work/photos.png" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos"
+            draw "$renderer" photos "$work/photos.png" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos"
             words foot photos 1 'From photos, or a laser scan' 'Walk around a tree with a phone: where each photo was taken, and the points that they agree on'
             ;;
-        same) draw forward_plus same "$out/photo_and_tree.jpg" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos" oak ;;
+        same) draw "$renderer" same "$out/photo_and_tree.jpg" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos" oak ;;
         skeleton)
             shot scan "$work/skeleton.png"
             words head skeleton 2 'To a skeleton, in the editor' 'Drop a scan into the project. P lays its points over the tree that was made of them'
             ;;
         tree)
-            draw forward_plus tree "$work/tree.png" "$(scan rtls_leafy_urban.txt)" oak
+            draw "$renderer" tree "$work/tree.png" "$(scan rtls_leafy_urban.txt)" ''
             words foot tree 3 'To a tree' 'Bark, leaves and wind; levels of detail, collision, and a fall when it is cut'
             ;;
         graft)

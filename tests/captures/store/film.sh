@@ -36,7 +36,7 @@ for i, frame in enumerate(ImageSequence.Iterator(Image.open(sys.argv[1]))):
 
 card title 'Tree Reconstruction' 'Real trees for Godot games'
 card end 'Godot 4.6 and newer' 'Open source. Your trees are yours.'
-draw "${RENDERER:-forward_plus}" stages "$clips" "$(scan rtls_leafy_urban.txt)" ''
+draw "$renderer" stages "$clips" "$(scan rtls_leafy_urban.txt)" ''
 standing 1 "$clips/title.png" 2.5
 still 2 "$out/1_photos.jpg" 4.5
 for i in 0 1 2 3; do
