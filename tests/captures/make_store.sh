@@ -75,7 +75,7 @@ for name in "${@:-icon photos same skeleton tree graft forest film}"; do
         icon) draw gl_compatibility icon "$out/icon.svg" "$out" ;;
         photos)
             draw "$renderer" photos "$work/photos.png" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos"
-            words foot photos 1 'From photos, or a laser scan' 'Walk around a tree with a phone: where each photo was taken, and the points that they agree on'
+            words foot photos 1 'From photos, or a laser scan' 'Where each photo of a walk was taken, and the points that they agree on'
             ;;
         same) draw "$renderer" same "$out/photo_and_tree.jpg" "${GARDEN:?GARDEN must name the folder of the photos}/out/cloud.ply" "$GARDEN/photos" oak ;;
         skeleton)
