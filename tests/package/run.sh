@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Unpacks the zip that users get into an empty project and opens that in the engine. ./dev test package calls it with
-# GODOT set and the zip's path. The last line is 'N passed, N failed'.
+# GODOT set and the zips' paths. The last line is 'N passed, N failed'.
 set -uo pipefail
 cd "$(dirname "$0")/../.."
 zip=$1
