@@ -71,14 +71,14 @@ def reconstruct(name, scan, treerec, words, threads, seconds):
     part.mkdir(parents=True)
     model = part / f"{name}.glb"
     after = ["-o", str(model), "-o", str(part / f"{name}.txt"), "--report", str(part / "report.json")]
-    after += ["--sheet", str(part / "sheet.png"), "--pictures-beside", "--quiet", "--threads", str(threads)]
+    after += ["--picture", str(part / "picture.png"), "--pictures-beside", "--quiet", "--threads", str(threads)]
     code, sentence = program.run_on(scan, [treerec, "reconstruct"], after + words, seconds)
     if code != 0:
         shutil.rmtree(part)
         return failed(name, scan, code, sentence)
     row = row_of(name, scan, json.loads((part / "report.json").read_text(encoding="utf-8")))
     Path("work/pictures").mkdir(exist_ok=True)
-    pictures.take(part / "sheet.png", Path("work/pictures") / f"{name}.jpg")
+    pictures.take(part / "picture.png", Path("work/pictures") / f"{name}.jpg")
     Path("models").mkdir(exist_ok=True)
     # The engine is to leave what other programs read: it would import each.
     Path("models/.gdignore").touch()

@@ -89,6 +89,8 @@ def main(job):
     if baked is not None:
         warn_of(made, baked)
     write_table("trees.csv", rows)
+    # The engine takes tables for translations otherwise.
+    Path("trees.csv.import").write_text('[remap]\n\nimporter="keep"\n', encoding="utf-8")
     places = [(row["frame"]["origin"] if "frame" in row else None, values_of(row)) for row in rows]
     geopackage.write("trees.gpkg", COLUMNS, places, int(job.params.epsg))
     standing = scene.write(made, list(plots), job.params.title, baked)

@@ -182,7 +182,7 @@ def write(rows, plots, title, baked):
         Path("forest.tscn").unlink(missing_ok=True)
     else:
         write_scene(groups, shifts, title)
-        clear_shared({name for row in baked.values() for name in row["shared"]})
+        clear_shared({name for row in baked.values() for name in row.get("shared", [])})
     return {
         row["id"]: (round(x + shift, 3), round(z, 3))
         for (_, _, trees, _), shift in zip(groups, shifts)
