@@ -75,7 +75,7 @@ done
 END
 chmod +x "$work/dying"
 cp -r "$work/two" "$work/ended"
-rm -rf "$work/ended/work/baked" "$work/ended/work/bakes"
+rm -rf "$work/ended/work/baked" "$work/ended/work/bakes" "$work/ended/forest.tscn"
 check 'an engine that ends over a tree stops nothing' forest "$work/ended" 1 --config godot="$work/dying"
 check 'the tree is told of' grep -q '^conifer,.*It is not in the scene: The engine ended' "$work/ended/trees.csv"
 check 'the others are in the scene' [ "$(grep -c 'type="PackedScene" path="trees/' "$work/ended/forest.tscn")" = 7 ]

@@ -180,6 +180,6 @@ func _add_dependencies(path: String, found: PackedStringArray) -> void:
 		var file: String = named.get_slice("::", named.get_slice_count("::") - 1)
 		if not file.is_absolute_path():
 			file = path.get_base_dir().path_join(file).simplify_path()
-		if not file.get_file() in found:
+		if not file.ends_with(".scn") and not file.get_file() in found:
 			found.append(file.get_file())
 			_add_dependencies(file, found)
