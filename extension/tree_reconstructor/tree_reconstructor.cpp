@@ -204,6 +204,7 @@ Ref<TreeReconstruction> TreeReconstructor::import_skeleton(const String& p_path,
         }
         made.instantiate();
         made->set_tree(std::move(tree));
+        made->set_leaf_density(std::move(report.foliage));
         Dictionary provenance;
         provenance["source"] = p_path;
         made->set_provenance(provenance);

@@ -150,6 +150,7 @@ PythonTree read_tree(const std::filesystem::path& path, const std::string& up, s
     SkeletonReport report;
     made.tree = read_skeleton(utf8_of(path), choice, &report);
     made.warnings = report.warnings;
+    made.foliage = std::move(report.foliage);
     return {std::make_shared<const Reconstruction>(std::move(made)), "generic", 1};
 }
 

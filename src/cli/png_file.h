@@ -12,7 +12,7 @@ namespace treerec {
 // the long work.
 inline void require_png(const std::string& path) {
     if (extension_of(path) != "png")
-        throw UsageError("A sheet is a PNG: '" + path + "' does not end in .png.");
+        throw UsageError("A picture is a PNG: '" + path + "' does not end in .png.");
     try {
         require_writable(path);
     } catch (const Error& error) {

@@ -63,6 +63,7 @@ const Command& reconstruct_command() {
          {"--sheet", "FILE.png",
           "a picture to show: the cloud, the skeleton before and after pruning, the tree, and it from its\n"
           "four sides"},
+         {"--picture", "FILE.png", "the tree alone, from the front: small, and soon drawn"},
          {"--seed", "N", "of everything random (default 1)"},
          {"--up", "AXIS", "the scan's axis to the sky: auto x y z -x -y -z (default auto)"},
          {"--scale", "S", "metres per unit of the scan (default: found out)"},
@@ -116,7 +117,7 @@ void run_reconstruct(const std::vector<std::string>& words) {
     const std::string scan = positional[0];
     std::vector<std::string> outs = arguments.all("-o");
     const bool told = arguments.has("--report") || arguments.has("--html") || arguments.has("--cloud") ||
-                      arguments.has("--sheet");
+                      arguments.has("--sheet") || arguments.has("--picture");
     if (outs.empty() && !told) throw UsageError("Where to? Name at least one file to write with -o.");
     std::vector<std::string> pages = arguments.all("--html");
     std::copy_if(outs.begin(), outs.end(), std::back_inserter(pages), is_page);
@@ -141,9 +142,11 @@ void run_reconstruct(const std::vector<std::string>& words) {
     }
     if (arguments.has("--report")) targets.push_back(report);
     const std::string sheet = arguments.text("--sheet", "");
-    if (arguments.has("--sheet")) {
-        require_png(sheet);
-        targets.push_back(sheet);
+    const std::string picture = arguments.text("--picture", "");
+    for (const char* const option : {"--sheet", "--picture"}) {
+        if (!arguments.has(option)) continue;
+        require_png(arguments.text(option, ""));
+        targets.push_back(arguments.text(option, ""));
     }
     targets.insert(targets.end(), pages.begin(), pages.end());
     for (const std::string& target : targets)
@@ -188,11 +191,10 @@ void run_reconstruct(const std::vector<std::string>& words) {
         for (const std::string& page : pages)
             write_file(page, html);
     }
-    if (arguments.has("--sheet")) {
-        ShowOptions show{stem_of(scan), exports.leaves, exports.textures, exports.seed};
-        show.fidelity = false;
-        write_png(sheet, *show_fidelity(result, show, &progress).stages);
-    }
+    ShowOptions show{stem_of(scan), exports.leaves, exports.textures, exports.seed};
+    show.fidelity = false;
+    if (arguments.has("--sheet")) write_png(sheet, *show_fidelity(result, show, &progress).stages);
+    if (arguments.has("--picture")) write_png(picture, show_tree(result, show, &progress));
     progress.clear();
     for (const std::string& warning : result.warnings)
         std::fprintf(stderr, "Warning: %s\n", warning.c_str());

@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "exchange/finite.h"
+#include "exchange/foliage_lines.h"
 #include "exchange/lstring_file.h"
 #include "exchange/qsm_columns.h"
 #include "exchange/section_lines.h"
@@ -101,12 +102,13 @@ SkeletonTable parse_treefile_line(std::string_view line, size_t line_number, con
 
 }  // namespace
 
-void write_treefile(const std::string& path, const Tree& tree) {
+void write_treefile(const std::string& path, const Tree& tree, const Foliage& foliage) {
     require_readable(tree, path);
     const SkeletonTable table = table_of(tree);
     std::string text =
         "# Tree file, one line per tree, one tuple per node; " + stamp_text(tree.frame()) + "\n";
     append_section_lines(text, tree);
+    append_foliage_lines(text, foliage, tree.node(tree.root()).position);
     text += "x,y,z,radius,parent_id,flags\n";
     text.reserve(text.size() + 90 * table.positions.size());
     for (size_t i = 0; i < table.positions.size(); i++) {
@@ -136,13 +138,15 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, const Skele
     std::optional<TreefileHeader> header;
     SkeletonTable wanted;
     std::vector<FileSection> sections;
+    FoliageLines foliage;
     std::vector<size_t> sizes;  // of the trees, in nodes
     size_t line_number = 0;
     while (const std::optional<std::string_view> line = next_line(rest)) {
         line_number++;
         if (line->find_first_not_of(" \t") == std::string_view::npos) continue;
         if (line->front() == '#') {
-            if (!read_section_line(*line, sections, path)) read_stamp(*line, stamp, path);
+            if (!read_section_line(*line, sections, path) && !foliage.read(*line, path))
+                read_stamp(*line, stamp, path);
             continue;
         }
         if (!header) {
@@ -162,7 +166,11 @@ Tree parse_treefile(std::string_view bytes, const std::string& path, const Skele
     choose_tree(sizes, choice, path, report);
     Tree tree = tree_of(wanted, stamp, path);
     if (header->branch.flags < 0) mark_trunk(tree);
-    if (sizes.size() == 1) put_sections(sections, tree, path);
+    if (sizes.size() == 1) {
+        put_sections(sections, tree, path);
+        Foliage seen = foliage.take(path);
+        if (report) report->foliage = std::move(seen);
+    }
     return tree;
 }
 

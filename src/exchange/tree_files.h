@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "foliage/foliage.h"
 #include "lsystem/lstring.h"
 #include "tree/tree.h"
 
@@ -36,13 +37,15 @@ struct SkeletonReport {
     size_t trees = 1;                   // of the file
     size_t taken = 1;                   // the number of the one that was read
     std::vector<std::string> warnings;  // sentences for the user
+    Foliage foliage;                    // of the one that was read, in its frame; empty where none is told
 };
 
 // The text format of csiro-robotics/treetools and raycloudtools: comment lines, the line of field names
 // "x,y,z,radius,parent_id,flags" and a line per tree with one tuple per node, parents before children, the
 // root's parent -1. A node's radius is that of the segment to its parent. Measured sections stand in
-// comments, which other programs skip (section_lines.h).
-void write_treefile(const std::string& path, const Tree& tree);
+// comments, which other programs skip (section_lines.h), and so does the foliage of the tree's frame, what
+// the scan saw of leaves (foliage_lines.h).
+void write_treefile(const std::string& path, const Tree& tree, const Foliage& foliage = {});
 // One tree of the file. Reads per-tree attributes before the fields, more fields (skipped, but for
 // "flags"), and the second list of fields by which newer files tell branch fields from root fields.
 Tree read_treefile(const std::string& path, const SkeletonChoice& choice = {},

@@ -253,7 +253,7 @@ void TreeExporter::write(const std::string& path) {
         case Format::kPly:
             return write_skeleton_ply(path, tree_);
         case Format::kTreefile:
-            return write_treefile(path, tree_);
+            return write_treefile(path, tree_, options_.foliage);
         case Format::kCsv:
             return write_qsm_csv(path, tree_);
         case Format::kMtg:

@@ -56,4 +56,7 @@ struct SheetFidelity {
 Image fidelity_sheet(const SheetSubject& subject, const SheetFidelity& figures,
                      const Progress* progress = nullptr);
 
+// The tree alone, from the front: for lists of many. Throws as stages_sheet() does.
+Image tree_picture(const Tree& tree, std::span<const OutlinePart> parts, const Progress* progress = nullptr);
+
 }  // namespace treerec

@@ -44,4 +44,11 @@ ShownFidelity show_fidelity(const Reconstruction& result, const ShowOptions& opt
     return shown;
 }
 
+Image show_tree(const Reconstruction& result, const ShowOptions& options, Progress* progress) {
+    return tree_picture(
+        result.tree,
+        outline_parts(result.tree, options.leaves, options.textures, options.seed, result.foliage, progress),
+        progress);
+}
+
 }  // namespace treerec

@@ -37,4 +37,7 @@ struct ShownFidelity {
 ShownFidelity show_fidelity(const Reconstruction& result, const ShowOptions& options,
                             Progress* progress = nullptr);
 
+// tree_picture() of it: a small part of the work. Of the options only leaves, textures and seed matter.
+Image show_tree(const Reconstruction& result, const ShowOptions& options, Progress* progress = nullptr);
+
 }  // namespace treerec

@@ -63,16 +63,39 @@ def check_catalogue(text, rows):
         expect(has == (tree["code"] == 0), f"{tree['id']}: picture {has}")
 
 
+def check_models(out):
+    models = out / "models"
+    pictures = {re.sub(r"_[0-9a-f]{12}\.", ".", path.name) for path in (models / "textures").iterdir()}
+    count = len(list(models.glob("*.glb")))
+    expect(count == 8, f"{count} models")
+    expect(len(list(models.glob("*.txt"))) == 8, "not each model has its skeleton")
+    expect(len(list((models / "textures").iterdir())) < 5 * count, f"each tree has pictures of its own: {pictures}")
+    expect((models / ".gdignore").exists(), "the engine would import every model")
+
+
+def check_scenes(out):
+    """Each tree is baked, and weighs little, since what all of a kind have in common is there once."""
+    scenes = sorted((out / "trees").iterdir())
+    expect([path.suffix for path in scenes] == [".scn", ".tscn"] * 8, f"trees/ holds {[path.name for path in scenes]}")
+    largest = max(path.stat().st_size for path in scenes)
+    expect(largest < 2_000_000, f"a tree has {largest} bytes")
+    kinds = {}
+    for path in (out / "shared").iterdir():
+        kind = re.sub(r"_[0-9a-f]{12}\.", ".", path.name)
+        kinds[kind] = kinds.get(kind, 0) + 1
+    expect(kinds.pop("card.tres", 0) <= 8, f"each tree has leaf cards of its own: {kinds}")
+    expect(max(kinds.values()) == 1, f"of one kind of trees something is there twice: {kinds}")
+    expect({"generic_bark.tres", "generic_leaf.tres", "baked_tree.gd"} < set(kinds), f"shared/ holds {sorted(kinds)}")
+
+
 def main(out):
     with open(out / "trees.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     check_places(check_rows(rows))
     check_package(out / "trees.gpkg", rows)
     check_catalogue((out / "catalogue.html").read_text(encoding="utf-8"), rows)
-    pictures = {re.sub(r"_[0-9a-f]{12}\.", ".", path.name) for path in (out / "trees/textures").iterdir()}
-    models = len(list((out / "trees").glob("*.glb")))
-    expect(models == 8, f"{models} models")
-    expect(len(list((out / "trees/textures").iterdir())) < 5 * models, f"each tree has pictures of its own: {pictures}")
+    check_models(out)
+    check_scenes(out)
     print("\n".join(wrong))
     return bool(wrong)
 

@@ -2,41 +2,18 @@
 
 Grown trees, one of them as LAZ and one as E57, a broken scan, and a plot of trees on a slope.
 """
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-import laspy
 import numpy
 import pye57
+from grown import ORIGIN, grow, write_las
 
-ORIGIN = numpy.array([470600.0, 3810200.0, 2280.0])
 PLACES = [(0.0, 0.0), (7.0, 2.0), (2.0, 8.0)]
-
-
-def grow(program, seed, habit, height, points):
-    """A scan's points, and its file."""
-    with tempfile.TemporaryDirectory() as folder:
-        words = ["--seed", seed, "--habit", habit, "--height", height, "--points", points]
-        subprocess.run([program, "synth", "-o", folder, "--quiet", *map(str, words)], check=True)
-        data = (Path(folder) / "scan.ply").read_bytes()
-    body = data[data.index(b"end_header\n") + 11 :]
-    record = numpy.dtype([("place", "<f8", 3), ("color", "u1", 3)])
-    return numpy.frombuffer(body, dtype=record), data
 
 
 def slope(x, y):
     return 0.1 * x - 0.05 * y
-
-
-def write_las(path, places, compress=False):
-    header = laspy.LasHeader(version="1.2", point_format=0)
-    header.offsets, header.scales = ORIGIN, numpy.full(3, 1e-3)
-    with laspy.open(path, mode="w", header=header, do_compress=compress) as file:
-        points = laspy.ScaleAwarePointRecord.zeros(len(places), header=header)
-        points.x, points.y, points.z = places.T
-        file.write_points(points)
 
 
 def write_e57(path, points):

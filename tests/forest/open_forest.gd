@@ -18,7 +18,8 @@ func _open() -> void:
 	await physics_frame
 	await physics_frame
 	var wrong: PackedStringArray = []
-	var trees := forest.find_children("*", "MeshInstance3D", true, false)
+	if ClassDB.class_exists(&"TreeReconstruction"):
+		wrong.append("the addon is here: nothing shows that the forest needs none")
 	var standing := 0
 	for group: Node in forest.get_children():
 		if group is not Node3D or group is DirectionalLight3D:
@@ -27,16 +28,30 @@ func _open() -> void:
 			if tree.name == &"Ground":
 				continue
 			standing += 1
-			if tree.find_children("*", "MeshInstance3D", true, false).is_empty():
-				wrong.append("%s has no mesh" % tree.name)
+			_check_levels(tree, wrong)
 			if group.name == PLOT:
 				_check_foot(forest, tree as Node3D, wrong)
 	if standing != 8:
 		wrong.append("%d trees stand in the scene" % standing)
-	if trees.size() < 10:
-		wrong.append("%d meshes are in the scene" % trees.size())
 	_check_heights(wrong)
 	_end(wrong)
+
+
+## Four of wood, each with its leaves, that take turns.
+func _check_levels(tree: Node, wrong: PackedStringArray) -> void:
+	var last := 0.0
+	var levels := tree.find_children("*_LOD?", "MeshInstance3D", true, false)
+	for level: MeshInstance3D in levels:
+		if level.visibility_range_begin != last or level.get_child_count() != 1:
+			wrong.append("%s of %s is no level" % [level.name, tree.name])
+		last = level.visibility_range_end
+		var leaves := (level.get_child(0) as MultiMeshInstance3D).multimesh
+		if leaves.instance_count == 0 or not leaves.mesh.resource_path.begins_with("res://shared/"):
+			wrong.append("%s of %s has no leaves of the shared kind" % [level.name, tree.name])
+	if levels.size() != 4 or last != 0.0:
+		wrong.append("%s has %d levels, the last to %.1f m" % [tree.name, levels.size(), last])
+	if tree.find_children("*", "CollisionShape3D", true, false).is_empty():
+		wrong.append("%s has no body" % tree.name)
 
 
 func _check_foot(forest: Node3D, tree: Node3D, wrong: PackedStringArray) -> void:

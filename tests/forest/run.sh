@@ -62,6 +62,29 @@ mkdir -p "$work/empty"
 ./dev forest "$work/empty" >"$work/empty.log" 2>&1
 check 'an empty folder is told so' grep -q 'There is no scan in' "$work/empty.log"
 
+# An engine that ends in the midst of one tree.
+cat >"$work/dying" <<END
+#!/usr/bin/env bash
+"$GODOT" "\$@" | while IFS= read -r line; do
+    echo "\$line"
+    if [ "\$line" = "BEGIN conifer" ]; then
+        kill -9 \$\$
+        exit
+    fi
+done
+END
+chmod +x "$work/dying"
+cp -r "$work/two" "$work/ended"
+rm -rf "$work/ended/work/baked" "$work/ended/work/bakes" "$work/ended/forest.tscn"
+check 'an engine that ends over a tree stops nothing' forest "$work/ended" 1 --config godot="$work/dying"
+check 'the tree is told of' grep -q '^conifer,.*It is not in the scene: The engine ended' "$work/ended/trees.csv"
+check 'the others are in the scene' [ "$(grep -c 'type="PackedScene" path="trees/' "$work/ended/forest.tscn")" = 7 ]
+
+forest "$work/ended" 1 --config godot=
+check 'without an engine it ends, and says so' grep -q 'The scene was left out' "$work/ended.log"
+check 'and there is none' [ ! -e "$work/ended/forest.tscn" ]
+check 'all else is there' [ "$(cut -d, -f1-18 "$work/ended/trees.csv")" = "$(cut -d, -f1-18 "$work/two/trees.csv")" ]
+
 "$GODOT" --headless --path "$work/two" --import >"$work/import.log" 2>&1
 check 'the engine imports it without an error' [ -z "$(grep -E '^(ERROR|SCRIPT ERROR)' "$work/import.log")" ]
 "$GODOT" --headless --path "$work/two" --script "$PWD/tests/forest/open_forest.gd" >"$work/open.log" 2>&1

@@ -2,6 +2,12 @@ extends "./picture_suite.gd"
 ## A baked tree looks like the one it was baked of, in the renderer that this run uses.
 
 const SIZE: Vector2i = Vector2i(320, 320)
+# Forms of baked trees, and whether they share files with others.
+const WAYS: Array[Array] = [
+	[TreeBaker.Form.JOINED, false],
+	[TreeBaker.Form.MULTIMESH, false],
+	[TreeBaker.Form.MULTIMESH, true],
+]
 
 
 func _baked(
@@ -9,11 +15,14 @@ func _baked(
 	wind: bool,
 	at: Vector3,
 	form: TreeBaker.Form = TreeBaker.Form.JOINED,
+	shares: bool = false,
 ) -> Node3D:
 	var baker: TreeBaker = TreeBaker.new()
 	baker.levels = 1
 	baker.form = form
 	baker.wind = wind
+	if shares:
+		baker.shared_folder = folder.path_join("shared")
 	var root: Node3D = baker.bake(made).instantiate()
 	root.position = at
 	_viewport.add_child(root)
@@ -32,10 +41,10 @@ func test_a_baked_tree_looks_the_same() -> void:
 	var empty: Image = await _picture()
 	check(_summary(live)[0] > 0.005, "There is no tree in the picture.")
 	check(_difference(live, empty) > 0.1, "The picture without a tree is the same.")
-	for form: TreeBaker.Form in [TreeBaker.Form.JOINED, TreeBaker.Form.MULTIMESH]:
-		var shown: Node3D = _baked(made, false, Vector3.ZERO, form)
+	for way: Array in WAYS:
+		var shown: Node3D = _baked(made, false, Vector3.ZERO, way[0], way[1])
 		var difference: float = _difference(live, await _picture())
-		check(difference < 0.02, "A pixel of form %d differs by %.4f." % [form, difference])
+		check(difference < 0.02, "A pixel of form %s differs by %.4f." % [way, difference])
 		shown.free()
 	_viewport.free()
 
@@ -45,17 +54,17 @@ func test_the_wind_moves_a_baked_tree_wherever_it_is() -> void:
 	var away: Vector3 = Vector3(500.0, 40.0, -300.0)
 	_open_stage(SIZE)
 	_look_at_all(made, away)
-	for form: TreeBaker.Form in [TreeBaker.Form.JOINED, TreeBaker.Form.MULTIMESH]:
-		var still: Node3D = _baked(made, false, away, form)
+	for way: Array in WAYS:
+		var still: Node3D = _baked(made, false, away, way[0], way[1])
 		var calm: Image = await _picture()
 		still.free()
-		var moved: Node3D = _baked(made, true, away, form)
+		var moved: Node3D = _baked(made, true, away, way[0], way[1])
 		var first: Image = await _picture()
 		await tree.create_timer(0.4).timeout
 		check(
-			_difference(first, await _picture()) > 0.005, "The wind does not move form %d." % form
+			_difference(first, await _picture()) > 0.005, "The wind does not move form %s." % [way]
 		)
-		check(_difference(first, calm) < 0.25, "The wind tears form %d apart." % form)
+		check(_difference(first, calm) < 0.25, "The wind tears form %s apart." % [way])
 		moved.free()
 	_viewport.free()
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import models
 import pictures
 import program
+import rows
 
 
 def key_of(scan, words, version):
@@ -64,39 +65,28 @@ def failed(name, scan, code, sentence):
 
 
 def reconstruct(name, scan, treerec, words, threads, seconds):
-    """The tree's row. Its files come into trees/ when they are whole."""
+    """The tree's row. Its files come into models/ when they are whole."""
     part = Path("work/parts") / name
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir(parents=True)
     model = part / f"{name}.glb"
     after = ["-o", str(model), "-o", str(part / f"{name}.txt"), "--report", str(part / "report.json")]
-    after += ["--sheet", str(part / "sheet.png"), "--pictures-beside", "--quiet", "--threads", str(threads)]
+    after += ["--picture", str(part / "picture.png"), "--pictures-beside", "--quiet", "--threads", str(threads)]
     code, sentence = program.run_on(scan, [treerec, "reconstruct"], after + words, seconds)
     if code != 0:
         shutil.rmtree(part)
         return failed(name, scan, code, sentence)
     row = row_of(name, scan, json.loads((part / "report.json").read_text(encoding="utf-8")))
     Path("work/pictures").mkdir(exist_ok=True)
-    pictures.take(part / "sheet.png", Path("work/pictures") / f"{name}.jpg")
-    Path("trees").mkdir(exist_ok=True)
-    models.share(model, Path("trees/textures"))
+    pictures.take(part / "picture.png", Path("work/pictures") / f"{name}.jpg")
+    Path("models").mkdir(exist_ok=True)
+    # The engine is to leave what other programs read: it would import each.
+    Path("models/.gdignore").touch()
+    models.share(model, Path("models/textures"))
     for made in (part / f"{name}.txt", model):
-        os.replace(made, Path("trees") / made.name)
+        os.replace(made, Path("models") / made.name)
     shutil.rmtree(part)
     return row
-
-
-def write_whole(path, text):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
-
-
-def is_final(row):
-    """What ended by a signal or for want of time may do better next time."""
-    made = (Path("trees") / f"{row['id']}.glb", Path("work/pictures") / f"{row['id']}.jpg")
-    return row["code"] == 1 or (row["code"] == 0 and all(path.exists() for path in made))
 
 
 def row_for(name, scan, job):
@@ -105,19 +95,15 @@ def row_for(name, scan, job):
         key = key_of(scan, words, job.params.program)
     except OSError as error:
         return failed(name, scan, 1, f"'{Path(scan).name}' cannot be read: {error.strerror}.")
-    kept = Path("work/rows") / f"{name}.json"
-    if kept.exists():
-        known = json.loads(kept.read_text(encoding="utf-8"))
-        if known["key"] == key and is_final(known["row"]):
-            return known["row"]
-    row = reconstruct(name, scan, job.config["treerec"], words, job.threads, job.config["timeout"])
-    write_whole(kept, json.dumps({"key": key, "row": row}, indent=1) + "\n")
+    row = rows.kept("work/rows", name, key, [Path("models") / f"{name}.glb", Path("work/pictures") / f"{name}.jpg"])
+    if row is None:
+        row = reconstruct(name, scan, job.config["treerec"], words, job.threads, job.config["timeout"])
+        rows.keep("work/rows", key, row)
     return row
 
 
 def main(job):
-    rows = [row_for(name, scan, job) for name, scan in job.params.trees]
-    write_whole(Path(job.output[0]), json.dumps(rows, indent=1) + "\n")
+    rows.write_job(job.output[0], [row_for(name, scan, job) for name, scan in job.params.trees])
 
 
 main(snakemake)  # noqa: F821

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import catalogue
 import geopackage
+import rows as kept_rows
 import scene
 
 COLUMNS = [
@@ -37,7 +38,7 @@ def read_rows(batches, plots):
     rows = []
     for path in batches:
         plot = Path(path).stem.rsplit("-", 1)[0]
-        for row in json.loads(Path(path).read_text(encoding="utf-8")):
+        for row in kept_rows.read_job(path):
             if plot in plots:
                 row["plot"] = plot
             rows.append(row)
@@ -68,14 +69,31 @@ def write_table(path, rows):
     os.replace(part, path)
 
 
+def read_baked(bakes):
+    """{tree's id: its row}."""
+    return {row["id"]: row for path in bakes for row in kept_rows.read_job(path)}
+
+
+def warn_of(made, baked):
+    """A tree that could not be baked is there, but not in the scene."""
+    for row in made:
+        if baked[row["id"]]["code"] != 0:
+            row["warnings"] = [*row["warnings"], f"It is not in the scene: {baked[row['id']]['error']}"]
+
+
 def main(job):
     plots = {Path(path).parent.name: json.loads(Path(path).read_text(encoding="utf-8")) for path in job.input.plots}
     rows = read_rows(job.input.batches, plots)
     made = [row for row in rows if row["code"] == 0]
+    baked = read_baked(job.input.bakes) if job.config["godot"] else None
+    if baked is not None:
+        warn_of(made, baked)
     write_table("trees.csv", rows)
+    # The engine takes tables for translations otherwise.
+    Path("trees.csv.import").write_text('[remap]\n\nimporter="keep"\n', encoding="utf-8")
     places = [(row["frame"]["origin"] if "frame" in row else None, values_of(row)) for row in rows]
     geopackage.write("trees.gpkg", COLUMNS, places, int(job.params.epsg))
-    standing = scene.write(made, list(plots), job.params.title)
+    standing = scene.write(made, list(plots), job.params.title, baked)
     trees = [dict(zip([name for name, _ in COLUMNS], values_of(row))) for row in rows]
     catalogue.write("catalogue.html", trees, standing, job.params.title)
 

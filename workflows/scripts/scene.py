@@ -131,7 +131,7 @@ def transform(x, y, z):
 
 def scene_text(groups, shifts):
     files = [model for _, model, _, _ in groups if model]
-    files += sorted({f"trees/{row['id']}.glb" for _, _, trees, _ in groups for row, _ in trees})
+    files += sorted({f"trees/{row['id']}.tscn" for _, _, trees, _ in groups for row, _ in trees if row["baked"]})
     text = f"[gd_scene load_steps={len(files) + 4} format=3]\n\n"
     for number, file in enumerate(files):
         text += f'[ext_resource type="PackedScene" path="{file}" id="{number}"]\n'
@@ -142,25 +142,47 @@ def scene_text(groups, shifts):
         if model:
             text += f'\n[node name="Ground" parent="{name}" instance=ExtResource("{number_of[model]}")]\n'
         for row, place in trees:
-            number = number_of[f"trees/{row['id']}.glb"]
+            if not row["baked"]:
+                continue
+            number = number_of[f"trees/{row['id']}.tscn"]
             text += f'\n[node name="{row["id"]}" parent="{name}" instance=ExtResource("{number}")]\n'
             text += transform(*place)
     return text
 
 
-def write(rows, plots, title):
-    """forest.tscn and what it needs besides the trees. Returns where in it they stand: {id: (x, z)}."""
-    groups = groups_of(rows, plots)
-    shifts = places.beside([extent for *_, extent in groups])
+def write_scene(groups, shifts, title):
+    """forest.tscn, and a project around it where there is none."""
     text = scene_text(groups, shifts)
     project = Path("project.godot")
     if not project.exists():
         project.write_text(PROJECT.format(name=json.dumps(title)), encoding="utf-8")
-    # The engine is to leave what is not for games.
-    Path("work/.gdignore").touch()
     part = Path("forest.tscn.part")
     part.write_text(text, encoding="utf-8")
     os.replace(part, "forest.tscn")
+
+
+def clear_shared(needed):
+    """Of what trees have in common, what no tree needs any more goes."""
+    for path in Path("shared").glob("*_????????????.*"):
+        if path.name not in needed:
+            path.unlink()
+
+
+def write(rows, plots, title, baked):
+    """The ground, and the scene where an engine has baked its trees ({id: row}; None without an engine). Returns where
+    in it they stand: {id: (x, z)}."""
+    for row in rows:
+        row["baked"] = baked is not None and baked[row["id"]]["code"] == 0
+    groups = groups_of(rows, plots)
+    shifts = places.beside([extent for *_, extent in groups])
+    # The engine is to leave what is not for games.
+    Path("work/.gdignore").touch()
+    if baked is None:
+        # One of an earlier run would show other trees.
+        Path("forest.tscn").unlink(missing_ok=True)
+    else:
+        write_scene(groups, shifts, title)
+        clear_shared({name for row in baked.values() for name in row.get("shared", [])})
     return {
         row["id"]: (round(x + shift, 3), round(z, 3))
         for (_, _, trees, _), shift in zip(groups, shifts)

@@ -36,18 +36,23 @@ func _tell() -> void:
 """
 
 
+## The mesh of a leaf: the [param card] of [method TreeReconstruction.build_leaf_form_arrays].
+static func mesh(card: Array, material: Material) -> Mesh:
+	var made: ArrayMesh = ArrayMesh.new()
+	made.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, card)
+	made.surface_set_name(0, "leaves")
+	made.surface_set_material(0, material)
+	return made
+
+
 ## Makes the multimesh of the [param buffer] of [method TreeReconstruction.build_leaf_buffer] and
-## the [param card] of [method TreeReconstruction.build_leaf_form_arrays].
-static func multimesh(buffer: PackedFloat32Array, card: Array, material: Material) -> MultiMesh:
+## the mesh of a leaf.
+static func multimesh(buffer: PackedFloat32Array, leaf: Mesh) -> MultiMesh:
 	var made: MultiMesh = MultiMesh.new()
 	made.transform_format = MultiMesh.TRANSFORM_3D
 	made.use_colors = true
 	made.use_custom_data = true
-	var mesh: ArrayMesh = ArrayMesh.new()
-	mesh.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, card)
-	mesh.surface_set_name(0, "leaves")
-	mesh.surface_set_material(0, material)
-	made.mesh = mesh
+	made.mesh = leaf
 	@warning_ignore("integer_division")
 	made.instance_count = buffer.size() / _FLOATS_PER_LEAF
 	made.buffer = buffer

@@ -25,7 +25,7 @@ static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
 		return made
 	for name: StringName in _PICTURES:
 		var texture: Texture2D = shaded.get_shader_parameter(name) as Texture2D
-		if texture == null or not _is_addons(texture):
+		if texture == null or not is_addon_file(texture):
 			continue
 		var image: Image = _source_of(texture)
 		if image != null:
@@ -36,7 +36,7 @@ static func plain_pictures(material: Material) -> Dictionary[String, Texture2D]:
 ## Whether [param material] has one of the addon's shaders.
 static func is_addons(material: Material) -> bool:
 	var shaded: ShaderMaterial = material as ShaderMaterial
-	return shaded != null and shaded.shader != null and _is_addons(shaded.shader)
+	return shaded != null and shaded.shader != null and is_addon_file(shaded.shader)
 
 
 ## A copy of [param material] with its shader and textures in itself, and with [param values] set
@@ -57,15 +57,15 @@ static func plain(
 	var made: ShaderMaterial = ShaderMaterial.new()
 	made.resource_name = material.resource_path.get_file().get_basename()
 	made.shader = Shader.new()
-	made.shader.code = _code_of(shaded.shader, joined, global_wind)
+	made.shader.code = code_of(shaded.shader, joined, global_wind)
 	for uniform: Dictionary in shaded.shader.get_shader_uniform_list():
 		var value: Variant = shaded.get_shader_parameter(uniform.name)
-		if value is Texture2D and _is_addons(value):
+		if value is Texture2D and is_addon_file(value):
 			var path: String = (value as Texture2D).resource_path
 			value = (
 				pictures[path]
 				if pictures.has(path)
-				else _plain_texture(value, "normal" in String(uniform.name))
+				else plain_texture(value, "normal" in String(uniform.name))
 			)
 		if value != null:
 			made.set_shader_parameter(uniform.name, value)
@@ -74,8 +74,9 @@ static func plain(
 	return made
 
 
-# Its code with all that it includes, for a tree without a TreeInstance3D.
-static func _code_of(shader: Shader, joined: bool, global_wind: bool) -> String:
+## The code of [param shader] with all that it includes, for a tree without a [TreeInstance3D]. With
+## [param own] what is set per tree is the material's in any case.
+static func code_of(shader: Shader, joined: bool, global_wind: bool, own: bool = false) -> String:
 	var include: RegEx = RegEx.create_from_string('#include\\s+"([^"]+)"')
 	var code: String = shader.code
 	var found: RegExMatch = include.search(code)
@@ -89,11 +90,14 @@ static func _code_of(shader: Shader, joined: bool, global_wind: bool) -> String:
 	var type: RegEx = RegEx.create_from_string("shader_type\\s+\\w+\\s*;")
 	var end: int = type.search(code).get_end()
 	var defines: String = "\n#define TREE_BAKED\n" if joined else "\n"
+	if own and not joined:
+		defines += "#define TREE_OWN\n"
 	defines += "#define TREE_WIND_%s\n" % ("GLOBALS" if global_wind else "LOCAL")
 	return code.left(end) + defines + code.substr(end)
 
 
-static func _plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:
+## A copy of [param texture], packed, that needs no file.
+static func plain_texture(texture: Texture2D, is_normal: bool) -> Texture2D:
 	var image: Image = _image_of(texture)
 	return texture if image == null else _packed(texture, image, is_normal)
 
@@ -142,5 +146,6 @@ static func _source_of(texture: Texture2D) -> Image:
 	return source if failure == OK else null
 
 
-static func _is_addons(resource: Resource) -> bool:
+## Whether [param resource] is a file of the addon.
+static func is_addon_file(resource: Resource) -> bool:
 	return resource.resource_path.begins_with(_ADDON)

@@ -31,6 +31,7 @@ const _SWAY: float = 0.25
 const LeavesApart := preload("leaves_apart.gd")
 const Lightmap := preload("lightmap.gd")
 const PlainMaterials := preload("plain_materials.gd")
+const SharedFiles := preload("shared_files.gd")
 const Collision := preload("../nodes/tree_collision.gd")
 const Levels := preload("../nodes/tree_levels.gd")
 const LeafKinds := preload("../nodes/leaf_kinds.gd")
@@ -91,6 +92,17 @@ var leaf_material: Material
 ## What is shown of the tree beyond the last level, if it is given: see [TreeImpostorBaker].
 var impostor: TreeImpostor
 
+## With [constant Form.MULTIMESH], a folder for what all trees of a kind have in common: materials,
+## pictures, shaders and leaf cards become files there, made once, which the scenes name. A scene
+## then has its bark and the places of its leaves alone, and a script of the folder's draws it.
+## Empty: all is in each scene.
+var shared_folder: String = "":
+	set(value):
+		shared_folder = value
+		_shared = null
+
+var _shared: SharedFiles
+
 # Kept, so that loading them again is no work.
 var _loaded: Array[Material] = []
 
@@ -150,9 +162,10 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 		parts.shapes = Collision.gather(
 			tree, collision_kind, collision_shapes, collision_minimum_radius
 		)
-	parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
+	if not _shares():
+		parts.pictures = PlainMaterials.plain_pictures(_bark_of(tree))
 	for kind: Dictionary in parts.foliage[0]:
-		if _is_drawn(kind):
+		if _is_drawn(kind) and not _shares():
 			var leaf: Material = _leaf_of(kind, parts.foliage[0][0])
 			parts.pictures.merge(PlainMaterials.plain_pictures(leaf))
 	for place: Vector3 in _places(parts.bark[0]):
@@ -235,13 +248,18 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 			if level + 1 < meshes.size():
 				each.visibility_range_end = switches[level]
 				each.visibility_range_end_margin = Levels.margin(switches[level])
-	if form == Form.MULTIMESH and not apart.is_empty():
+	if form == Form.MULTIMESH and (_shares() or not apart.is_empty()):
 		var own_values: Dictionary = {}
 		for i: int in range(1, parts.foliage[0].size()):
 			var tints: PackedColorArray = parts.foliage[0][i].tints
 			if not tints.is_empty():
 				own_values[_node_name(i)] = Dictionary(LeafKinds.season_values(tints))
-		LeavesApart.teach(root, _shader_values(tree, parts.height), own_values)
+		if _shares():
+			root.set_script(_shared_files().script())
+			root.set("values", Dictionary(_shader_values(tree, parts.height)))
+			root.set("own_values", own_values)
+		else:
+			LeavesApart.teach(root, _shader_values(tree, parts.height), own_values)
 	if not parts.shapes.is_empty():
 		var body: StaticBody3D = StaticBody3D.new()
 		body.name = "Wood"
@@ -260,9 +278,11 @@ func make_nodes(tree: TreeReconstruction, parts: Parts) -> Node3D:
 ## the leaves are nodes of their own. They share their materials and their box.
 func make_meshes(tree: TreeReconstruction, parts: Parts) -> Array[ArrayMesh]:
 	var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
-	var bark: Material = PlainMaterials.plain(
-		_bark_of(tree), values, parts.pictures, true, global_wind
-	)
+	var bark: Material
+	if _shares():
+		bark = _shared_files().material(_bark_of(tree), true, global_wind)
+	else:
+		bark = PlainMaterials.plain(_bark_of(tree), values, parts.pictures, true, global_wind)
 	var leaf: Array[Material] = []
 	if not _are_leaves_apart():
 		leaf = _plain_leaves(tree, parts, true)
@@ -298,6 +318,21 @@ func _plain_card(tree: TreeReconstruction, parts: Parts, meshes: Array[ArrayMesh
 	return card
 
 
+## Why a file of [member shared_folder] could not be written; empty where all could.
+func get_error_message() -> String:
+	return "" if _shared == null else _shared.error
+
+
+func _shares() -> bool:
+	return form == Form.MULTIMESH and not shared_folder.is_empty()
+
+
+func _shared_files() -> SharedFiles:
+	if _shared == null:
+		_shared = SharedFiles.new(shared_folder)
+	return _shared
+
+
 func _are_leaves_apart() -> bool:
 	return form == Form.MULTIMESH or lightmap_uv2
 
@@ -307,7 +342,10 @@ func _plain_leaves(tree: TreeReconstruction, parts: Parts, joined: bool) -> Arra
 	var made: Array[Material] = []
 	for kind: Dictionary in parts.foliage[0]:
 		var material: Material = null
-		if _is_drawn(kind):
+		if _is_drawn(kind) and _shares():
+			var own: Material = _leaf_of(kind, parts.foliage[0][0])
+			material = _shared_files().material(own, joined, global_wind)
+		elif _is_drawn(kind):
 			var values: Dictionary[StringName, Variant] = _shader_values(tree, parts.height)
 			if not (kind.tints as PackedColorArray).is_empty():
 				values.merge(LeafKinds.season_values(kind.tints), true)
@@ -372,9 +410,12 @@ func _make_leaves(tree: TreeReconstruction, parts: Parts) -> Array[Array]:
 				(node as MeshInstance3D).mesh = mesh
 			else:
 				node = MultiMeshInstance3D.new()
-				(node as MultiMeshInstance3D).multimesh = LeavesApart.multimesh(
-					kind.leaves, kind.card, materials[i]
+				var card: Mesh = (
+					_shared_files().card(kind.card, materials[i])
+					if _shares()
+					else LeavesApart.mesh(kind.card, materials[i])
 				)
+				(node as MultiMeshInstance3D).multimesh = LeavesApart.multimesh(kind.leaves, card)
 			node.name = _node_name(i)
 			node.custom_aabb = parts.box
 			node.extra_cull_margin = _reach_of(parts)
