@@ -18,8 +18,7 @@ import zipfile
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 INSIDE = "addons/tree_reconstruction/"
 DEMO = "tree_reconstruction-demo/"
-# What the engine finds out about a project when it opens it first, and needs before: without it the plugin would be
-# switched on before its library is loaded.
+# What the engine finds out about a project when it opens it first: with it the library is loaded from the start.
 EXTENSIONS = {".godot/extension_list.cfg": b"res://%stree_reconstruction.gdextension\n" % INSIDE.encode()}
 PLATFORMS = ("linux", "windows", "macos", "android", "web")
 TARGETS = ("editor", "template_debug", "template_release")
