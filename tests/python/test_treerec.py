@@ -201,7 +201,7 @@ class Clouds(Case):
 class Calls(Case):
     def test_options_are_the_programs(self):
         # Of files and of the terminal; the number of threads is set for all calls at once.
-        files = {"-o", "--report", "--cloud", "--html", "--sheet", "--quiet", "--leaves", "--levels", "--pictures-beside"}
+        files = {"-o", "--report", "--cloud", "--html", "--sheet", "--picture", "--quiet", "--leaves", "--levels", "--pictures-beside"}
         files |= {"--columns", "--classes", "--threads"}
         for name, call in (("reconstruct", treerec.reconstruct), ("grow", treerec.grow)):
             wanted = {option[2:].replace("-", "_") for option in treerec._treerec.option_names(name) if option not in files}
