@@ -72,9 +72,13 @@ func _begin() -> void:
 
 
 func _wait() -> void:
-	while not _session.jobs.get_running().is_empty():
-		await _frame()
-	_panel.update()
+	while true:
+		while not _session.jobs.get_running().is_empty():
+			await _frame()
+		_panel.update()
+		# It may have begun to draw what was converted only now.
+		if _session.jobs.get_running().is_empty():
+			return
 
 
 func test_photos_become_a_tree() -> void:

@@ -23,6 +23,7 @@ var _made: Array[Array] = []
 var _features: Dictionary[String, int] = {}
 var _missing: PackedStringArray = []
 var _is_placed: bool = false
+var _shows_converted: bool = false
 
 
 func _init(jobs: Jobs) -> void:
@@ -50,15 +51,17 @@ func show_photos(folder: String, names: PackedStringArray, converted: String = "
 	_features = {}
 	_missing = []
 	_is_placed = false
+	_shows_converted = false
 	for name: String in _names:
 		add_item(name)
 	_draw_photos(converted)
 	_tell_all()
 
 
-## Shows the pictures of the HEIC photos, which lie in [param converted] now.
+## Shows the pictures of the HEIC photos, which lie in [param converted] now, unless it does so.
 func show_converted(converted: String) -> void:
-	if _read_names != _names:
+	if _read_names != _names and not _shows_converted:
+		_shows_converted = true
 		stop()
 		_draw_photos(converted)
 

@@ -339,7 +339,9 @@ func _on_begin() -> void:
 func _on_ended(tree: TreeReconstruction, sentence: String) -> void:
 	_update_log()
 	_show_report()
+	# Between two frames the stage that shows them may have gone by.
 	if tree != null:
+		grid.show_converted(_converted_in(making.work))
 		made.emit(tree)
 	elif not sentence.is_empty():
 		_say(sentence, &"error_color")
