@@ -23,7 +23,7 @@ pictures=$root/build/editor
 work=$(mktemp -d)
 export TREE_EDITOR_SAMPLE=${TREE_EDITOR_SAMPLE:-$root/build/sample/scan.ply}
 # Seconds that anything may take on a machine that does something else, too.
-export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-60}
+export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-180}
 # The whole of one editor's run, in seconds: whatever hangs ends then.
 limit=${TREE_EDITOR_LIMIT:-3000}
 passed=0
