@@ -260,7 +260,8 @@ Dictionary TreeReconstruction::measure() const {
     });
 }
 
-Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, bool p_leaves) const {
+Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, bool p_leaves,
+                                            int64_t p_leaf_triangles) const {
     ERR_FAIL_COND_V_MSG(p_lod < 0, Array(),
                         vformat("There is no level of detail %d; 0 is the finest.", p_lod));
     return guarded(Array(), [&] {
@@ -270,7 +271,8 @@ Array TreeReconstruction::build_mesh_arrays(int p_lod, bool p_whole_repeats, boo
         treerec::LevelBark how{.whole_repeats = p_whole_repeats, .grown = bark.get()};
         if (p_leaves) {
             how.hidden = treerec::hide_twigs(kinds);
-            how.leaves = _count_leaf_triangles(*tree, kinds, p_lod);
+            how.leaves =
+                p_leaf_triangles < 0 ? _count_leaf_triangles(*tree, kinds, p_lod) : size_t(p_leaf_triangles);
         }
         return to_surface_arrays(
             treerec::build_level_bark(treerec::leafy_tree(*tree, kinds, *get_leaf_density()), p_lod, how));

@@ -125,7 +125,8 @@ class TreeReconstruction : public godot::Resource {
 #endif
 
     // Builders.
-    godot::Array build_mesh_arrays(int p_lod, bool p_whole_repeats = false, bool p_leaves = true) const;
+    godot::Array build_mesh_arrays(int p_lod, bool p_whole_repeats = false, bool p_leaves = true,
+                                   int64_t p_leaf_triangles = -1) const;
     godot::Ref<godot::ArrayMesh> build_mesh(int p_lod) const;
     godot::PackedFloat32Array build_leaf_buffer(int p_lod) const;
     godot::Ref<godot::MultiMesh> build_leaves(int p_lod) const;

@@ -237,8 +237,9 @@ void TreeReconstruction::_bind_methods() {
                          &TreeReconstruction::complete_branch, DEFVAL(Dictionary()));
 #endif
 
-    ClassDB::bind_method(D_METHOD("build_mesh_arrays", "lod", "whole_repeats", "leaves"),
-                         &TreeReconstruction::build_mesh_arrays, DEFVAL(0), DEFVAL(false), DEFVAL(true));
+    ClassDB::bind_method(D_METHOD("build_mesh_arrays", "lod", "whole_repeats", "leaves", "leaf_triangles"),
+                         &TreeReconstruction::build_mesh_arrays, DEFVAL(0), DEFVAL(false), DEFVAL(true),
+                         DEFVAL(-1));
     ClassDB::bind_method(D_METHOD("build_mesh", "lod"), &TreeReconstruction::build_mesh, DEFVAL(0));
     ClassDB::bind_method(D_METHOD("build_leaf_buffer", "lod"), &TreeReconstruction::build_leaf_buffer,
                          DEFVAL(0));

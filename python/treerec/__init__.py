@@ -152,7 +152,7 @@ class Tree:
         if not usd.is_usd(path):
             self._tree.write(os.fspath(path), leaves, seed, levels, pictures_beside, progress)
             return
-        usd.require()
+        usd.library()
         with tempfile.TemporaryDirectory() as folder:
             model = os.path.join(folder, "tree.glb")
             self._tree.write(model, leaves, seed, levels, False, progress)

@@ -56,12 +56,8 @@ def convert(glb: Union[str, os.PathLike[str]], path: Union[str, os.PathLike[str]
         raise Error("'%s' could not be written: %s." % (target, error.strerror)) from error
 
 
-def require() -> None:
-    """Throws Error where Pixar's library isn't installed."""
-    _library()
-
-
-def _library() -> Any:
+def library() -> Any:
+    """Pixar's, or throws Error where it isn't installed."""
     try:
         for part in ("Gf", "Kind", "Sdf", "Usd", "UsdGeom", "UsdShade", "Vt"):
             importlib.import_module("pxr." + part)
@@ -73,7 +69,7 @@ def _library() -> Any:
 class _Writer:
     def __init__(self, glb: Glb) -> None:
         self._glb = glb
-        self._pxr = _library()
+        self._pxr = library()
 
     def write(self, path: pathlib.Path) -> None:
         pxr = self._pxr

@@ -170,18 +170,10 @@ Image fidelity_sheet(const SheetSubject& subject, const SheetFidelity& figures, 
 
 Image tree_picture(const Tree& tree, std::span<const OutlinePart> parts, const Progress* progress) {
     check_wood(tree);
-    Bounds box = box_of(tree, parts, {});
-    const double ground = tree.node(tree.root()).position.y;
-    box.min.y = std::max(box.min.y, ground);
+    const Bounds box = box_of(tree, parts, {});
     const LevelSize level = level_size(box, kWidth);
-    Image picture = tree_panel(PanelView::level(box, 0.0, level.width, level.height, level.scale), parts,
-                               kPanelBark, progress);
-    // A trunk goes on below the ground, which is not drawn: the tree stands on the picture's edge.
-    const double rows = 0.5 * level.height + (box.centre().y - ground) / level.scale;
-    picture.height = static_cast<int>(std::clamp(rows, 1.0, double(picture.height)));
-    picture.pixels.resize(static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height) *
-                          static_cast<size_t>(picture.channels));
-    return picture;
+    return tree_panel(PanelView::level(box, 0.0, level.width, level.height, level.scale), parts, kPanelBark,
+                      progress);
 }
 
 }  // namespace treerec

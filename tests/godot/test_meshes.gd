@@ -1,6 +1,7 @@
 extends "./suite.gd"
 ## What TreeReconstruction builds: bark, leaves, lines.
 
+const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
 const FLOATS_PER_LEAF: int = 20
 
 
@@ -70,6 +71,26 @@ func test_a_negative_level_is_an_error() -> void:
 	check(made.build_mesh_arrays(-1).is_empty(), "It built a mesh.")
 	check(made.build_leaf_buffer(-1).is_empty(), "It built leaves.")
 	check(TreeReconstruction.build_leaf_card_arrays(-1).is_empty(), "It built a card.")
+
+
+# Who has placed the leaves already says how many triangles they take; the bark is the same.
+func test_counted_leaves_make_the_same_bark() -> void:
+	var oak: LSystem = LSystem.new()
+	oak.grammar = LSystem.get_preset("oak")
+	var made: TreeReconstruction = oak.grow()
+	for lod: int in 3:
+		var apart: int = BuildJob.leaf_triangles(made.build_foliage(lod))
+		check(apart > 0, "There are no leaves.")
+		check_equal(
+			BuildJob.leaf_triangles(made.build_joined_foliage(lod)), apart, "joined triangles"
+		)
+		check_equal(
+			hash(made.build_mesh_arrays(lod, false, true, apart)),
+			hash(made.build_mesh_arrays(lod)),
+			"the bark's hash"
+		)
+	var room: int = made.build_mesh_arrays(0, false, true, 0)[Mesh.ARRAY_INDEX].size()
+	check(room > made.build_mesh_arrays(0)[Mesh.ARRAY_INDEX].size(), "Bark has no more room.")
 
 
 func test_the_same_tree_gives_the_same_bytes() -> void:

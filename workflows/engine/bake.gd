@@ -7,6 +7,7 @@ extends SceneTree
 ## paths. A line is said of each: "BEGIN id", then "DONE {row}". One that fails is a row with its
 ## sentence.
 
+const BuildJob := preload("res://addons/tree_reconstruction/nodes/tree_build_job.gd")
 const TRUNK_SHAPES: int = 4
 
 
@@ -160,17 +161,11 @@ func _write(scene: PackedScene, path: String) -> Error:
 
 
 func _count(parts: TreeBaker.Parts, level: int) -> int:
-	var indices: int = 0
+	var count: int = BuildJob.leaf_triangles(parts.foliage[level])
 	if not parts.bark[level].is_empty():
-		indices = (parts.bark[level][Mesh.ARRAY_INDEX] as PackedInt32Array).size()
-	for kind: Dictionary in parts.foliage[level]:
-		var leaves: PackedFloat32Array = kind["leaves"]
-		if not leaves.is_empty():
-			var card: PackedInt32Array = kind["card"][Mesh.ARRAY_INDEX]
-			@warning_ignore("integer_division")
-			indices += leaves.size() / 20 * card.size()
-	@warning_ignore("integer_division")
-	return indices / 3
+		@warning_ignore("integer_division")
+		count += (parts.bark[level][Mesh.ARRAY_INDEX] as PackedInt32Array).size() / 3
+	return count
 
 
 ## The names of the shared files that a file needs, and that these need.

@@ -32,6 +32,7 @@ const LeavesApart := preload("leaves_apart.gd")
 const Lightmap := preload("lightmap.gd")
 const PlainMaterials := preload("plain_materials.gd")
 const SharedFiles := preload("shared_files.gd")
+const BuildJob := preload("../nodes/tree_build_job.gd")
 const Collision := preload("../nodes/tree_collision.gd")
 const Levels := preload("../nodes/tree_levels.gd")
 const LeafKinds := preload("../nodes/leaf_kinds.gd")
@@ -149,7 +150,6 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 	for level: int in levels:
 		if cancelled.is_valid() and cancelled.call():
 			return null
-		_build_bark(tree, level, parts)
 		var built: Array[Dictionary] = []
 		if leaves:
 			built = (
@@ -158,6 +158,7 @@ func build(tree: TreeReconstruction, cancelled: Callable = Callable()) -> Parts:
 				else tree.build_foliage(level)
 			)
 		parts.foliage.append(built)
+		_build_bark(tree, level, parts)
 	if collision:
 		parts.shapes = Collision.gather(
 			tree, collision_kind, collision_shapes, collision_minimum_radius
@@ -195,7 +196,9 @@ static func joined_leaves(parts: Parts) -> Array[Array]:
 func _build_bark(tree: TreeReconstruction, level: int, parts: Parts) -> void:
 	# Only the addon's shader knows how to hide the seam of a picture that does not fit around.
 	var whole_repeats: bool = not PlainMaterials.is_addons(_bark_of(tree))
-	var arrays: Array = tree.build_mesh_arrays(level, whole_repeats, leaves)
+	var arrays: Array = tree.build_mesh_arrays(
+		level, whole_repeats, leaves, BuildJob.leaf_triangles(parts.foliage[level])
+	)
 	if lightmap_uv2 and level == 0 and not arrays.is_empty():
 		var unwrapped: Lightmap.Unwrapped = Lightmap.unwrap(arrays, lightmap_texel_size)
 		if unwrapped.arrays.is_empty():

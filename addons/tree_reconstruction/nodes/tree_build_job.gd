@@ -51,6 +51,13 @@ func run() -> void:
 	if capsules_wanted > 0:
 		capsules = Collision.gather(source, capsule_kind, capsules_wanted, capsule_radius)
 	var started: int = Time.get_ticks_usec()
+	if budget == 0 and leaves:
+		foliage = source.build_foliage(lod)
+		for part: Dictionary in foliage:
+			var box: AABB = part.box
+			leaf_box = leaf_box.merge(box) if leaf_box.has_volume() else box
+	var leafed: int = Time.get_ticks_usec()
+	leaf_time = (leafed - started) / 1000.0
 	if budget > 0:
 		for made: Dictionary in source.build_levels([lod], [budget], false, leaves):
 			_wood = made.bark
@@ -59,15 +66,8 @@ func run() -> void:
 			if leaves:
 				leaf_box = made.box
 	elif with_bark:
-		_wood = source.build_mesh_arrays(lod, false, leaves)
-	var barked: int = Time.get_ticks_usec()
-	bark_time = (barked - started) / 1000.0
-	if budget == 0 and leaves:
-		foliage = source.build_foliage(lod)
-		for part: Dictionary in foliage:
-			var box: AABB = part.box
-			leaf_box = leaf_box.merge(box) if leaf_box.has_volume() else box
-	leaf_time = (Time.get_ticks_usec() - barked) / 1000.0
+		_wood = source.build_mesh_arrays(lod, false, leaves, leaf_triangles(foliage))
+	bark_time = (Time.get_ticks_usec() - leafed) / 1000.0
 	if may_workers_draw():
 		draw()
 
@@ -114,6 +114,22 @@ static func leaf_multimesh(places: PackedFloat32Array, arrays: Array) -> MultiMe
 	multimesh.instance_count = places.size() / FLOATS_PER_LEAF
 	multimesh.buffer = places
 	return multimesh
+
+
+## The triangles of all kinds of leaves of a level, as [method TreeReconstruction.build_foliage] or
+## [method TreeReconstruction.build_joined_foliage] have made them.
+static func leaf_triangles(kinds: Array[Dictionary]) -> int:
+	var indices: int = 0
+	for kind: Dictionary in kinds:
+		var joined: bool = kind.has("arrays")
+		var arrays: Array = kind.arrays if joined else kind.card
+		if arrays.is_empty():
+			continue
+		var count: int = (arrays[Mesh.ARRAY_INDEX] as PackedInt32Array).size()
+		@warning_ignore("integer_division")
+		indices += count * (1 if joined else kind.leaves.size() / FLOATS_PER_LEAF)
+	@warning_ignore("integer_division")
+	return indices / 3
 
 
 ## The mesh of surface arrays of bark.

@@ -105,11 +105,13 @@ func step() -> bool:
 			capsules = Collision.gather(
 				_tree, Collision.Kind.CAPSULES, capsules_wanted, capsule_radius
 			)
-	elif _step <= levels:
-		_add(-1, _step - 1, _tree.build_mesh_arrays(_step - 1, false, leaves))
-	elif leaves and _step <= 2 * levels:
-		var level: int = _step - levels - 1
-		_add_leaves(level, _tree.build_joined_foliage(level))
+	elif leaves and _step <= levels:
+		_add_leaves(_step - 1, _tree.build_joined_foliage(_step - 1))
+	elif _step <= (2 if leaves else 1) * levels:
+		# Bark has what they leave of its triangles.
+		var level: int = _step - (levels if leaves else 0) - 1
+		var taken: int = triangles[level] if leaves else 0
+		_add(-1, level, _tree.build_mesh_arrays(level, false, leaves, taken))
 	elif _step <= (3 if leaves else 2) * levels:
 		_fit(_step - (2 if leaves else 1) * levels - 1)
 	else:
@@ -220,6 +222,8 @@ func _fit(level: int) -> void:
 
 
 func _add_leaves(level: int, kinds: Array[Dictionary]) -> void:
+	if triangles.size() <= level:
+		triangles.append(0)
 	for kind: int in mini(kinds.size(), looks.size()):
 		_add(kind, level, kinds[kind].arrays)
 
@@ -246,6 +250,11 @@ func _add(kind: int, level: int, arrays: Array) -> void:
 
 
 func _finish() -> void:
+	# In each mesh bark comes first.
+	surfaces.sort_custom(
+		func(a: Surface, b: Surface) -> bool:
+			return a.level < b.level or (a.level == b.level and a.kind < b.kind)
+	)
 	var rest: AABB = _tree.get_aabb()
 	height = maxf(rest.end.y, 0.1)
 	box = rest
