@@ -66,7 +66,7 @@ shot() {
 }
 
 woods() {
-    printf '%s\n' "$(scan rtls_leafy_urban.txt)" oak "$(scan wytham_Tf18_birch.txt)" birch "$(scan wytham_Tf15_sycamore.txt)" maple
+    printf '%s\n' "$(scan wytham_Tf8_ash.txt)" oak "$(scan wytham_Tf18_birch.txt)" birch "$(scan wytham_Tf15_sycamore.txt)" maple
 }
 
 for name in "${@:-icon photos same skeleton tree graft forest film}"; do

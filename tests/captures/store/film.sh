@@ -58,6 +58,6 @@ for i in 1 2 3 4 5 6 7 8 9 10; do
     long=$(ffprobe -v error -show_entries format=duration -of csv=p=0 "$clips/$i.mp4")
     at=$(awk -v a="$at" -v l="$long" 'BEGIN { printf "%.3f", a + l - 0.7 }')
 done
-encode "${inputs[@]}" -filter_complex "${graph%;}" -map "$last" -c:v libx264 -preset slow -crf 22 -pix_fmt yuv420p \
+encode "${inputs[@]}" -filter_complex "${graph%;}" -map "$last" -c:v libx264 -preset veryslow -crf 30 -pix_fmt yuv420p \
     -movflags +faststart "$out/film.mp4"
 echo "docs/store/film.mp4: $(($(stat -c %s "$out/film.mp4") / 1024)) kB"

@@ -22,7 +22,7 @@ const SIZE: Vector2i = Vector2i(1600, 900)
 const SPACING: float = 0.02
 const INSET: Vector2i = Vector2i(400, 300)
 # Which of the photos, of the way around.
-const VIEW: float = 0.75
+const VIEW: float = 0.9
 const FILM: Vector2i = Vector2i(1280, 720)
 # What the film shows of the tree, one after another.
 const STAGES: PackedStringArray = ["Points", "Skeleton", "Bark", "Leaves"]
