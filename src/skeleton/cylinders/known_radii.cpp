@@ -11,6 +11,7 @@
 #include "geometry/groups.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
+#include "skeleton/cylinders/radii.h"
 
 namespace treerec {
 
@@ -144,14 +145,19 @@ std::vector<float> KnownRadii::at(const std::vector<Vec3>& points, const Progres
 void KnownRadii::tell(std::vector<std::vector<Station>>& axes) const {
     if (!tree_) return;
     parallel_for(axes.size(), 16, [&](size_t begin, size_t end) {
-        for (size_t l = begin; l < end; l++)
-            for (Station& station : axes[l]) {
+        for (size_t l = begin; l < end; l++) {
+            double to_tip = 0.0;
+            for (size_t i = axes[l].size(); i-- > 0;) {
+                Station& station = axes[l][i];
+                if (i + 1 < axes[l].size())
+                    to_tip += glm::distance(station.position, axes[l][i + 1].position);
                 const std::optional<double> known = around(station);
                 if (!known || (station.measured && station.radius > kThicker * *known + spacing_)) continue;
-                station.radius = *known;
+                station.radius = station.measured ? *known : std::min(*known, thickest_unmeasured(to_tip));
                 station.scatter = 0.0;
                 station.measured = true;
             }
+        }
     });
 }
 

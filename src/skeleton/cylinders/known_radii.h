@@ -21,7 +21,8 @@ class KnownRadii {
     KnownRadii(const PointCloud& cloud, double spacing, const Progress* progress);
 
     // Stations amid points of known radius get it, as measured. What was measured as far thicker, and is a
-    // surface with lines on it, stays.
+    // surface with lines on it, stays; and what was not measured gets no more than its length allows: stray
+    // points between two limbs that a photo shows as one are as wide as both, and no stump.
     void tell(std::vector<std::vector<Station>>& axes) const;
 
     bool any() const { return tree_.has_value(); }

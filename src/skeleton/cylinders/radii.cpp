@@ -160,7 +160,7 @@ void estimate(const std::vector<Station>& stations, double noise, double slender
             weights[i] = 1.0;
             measured = i;
         } else if (station.radius > 0.0) {
-            double most = kTipAllowance + kSlenderness * to_tip[i];
+            double most = thickest_unmeasured(to_tip[i]);
             if (last && measured < count) {
                 // Measured wood narrows evenly to the tip; thick wood that does not was cut.
                 const double known = stations[measured].radius;
@@ -180,6 +180,10 @@ void estimate(const std::vector<Station>& stations, double noise, double slender
 }
 
 }  // namespace
+
+double thickest_unmeasured(double to_tip) {
+    return kTipAllowance + kSlenderness * to_tip;
+}
 
 double noise_of(const std::vector<std::vector<Station>>& axes) {
     std::vector<double> scatter;

@@ -15,10 +15,9 @@ const WHEEL_DOWN: int = 5
 # What the editor needs to take what xdotool sent: one frame to get the events, one to act, and
 # one for what was deferred.
 const _FRAMES: int = 4
-# The engine reads the X server's events in a thread of its own, which a busy machine may hold up.
-const _MOST_WAIT: int = 2000
-# What of xdotool ends with a key or a button that is let go.
-const _LETS_GO: Array[String] = ["key", "keyup", "click", "mouseup", "type"]
+# The engine reads the X server's events in a thread of its own, which a busy machine may hold up:
+# milliseconds that what was done is waited for.
+const _MOST_WAIT: int = 5000
 
 ## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
 ## It looks through the project when it becomes true, and that it is false it only finds after a
@@ -30,8 +29,9 @@ var saves: int = 0
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
 var _heard: String = ""
-# Keys and buttons that the editor has seen let go.
+# Keys and buttons that the editor has seen let go, and where it has seen the mouse.
 var _let_go: int = 0
+var _mouse: Vector2 = Vector2.INF
 
 
 ## Waits until run.sh has come to the socket whose number is left in `folder`.
@@ -106,8 +106,10 @@ func frames(count: int) -> void:
 		await _frame()
 
 
+## Returns when the editor has seen the mouse there: what is under it is known then.
 func move(to: Vector2) -> void:
 	await ask(["x", "mousemove", str(roundi(to.x)), str(roundi(to.y))])
+	await _seen(func() -> bool: return _mouse.distance_to(to.round()) < 1.5, "the mouse")
 	await frames(2)
 
 
@@ -155,16 +157,39 @@ func _held(modifiers: String, what: PackedStringArray) -> PackedStringArray:
 
 
 func _x(words: PackedStringArray) -> void:
-	var before: int = _let_go
+	var wanted: int = _let_go + _count_let_go(words)
 	await ask(PackedStringArray(["x"]) + words)
-	var end: int = Time.get_ticks_msec() + _MOST_WAIT
-	var lets_go: bool = _LETS_GO.any(func(word: String) -> bool: return word in words)
-	while lets_go and _let_go == before and Time.get_ticks_msec() < end:
-		await _frame()
+	await _seen(func() -> bool: return _let_go >= wanted, " ".join(words))
 	await frames(_FRAMES)
 
 
+# How many keys and buttons are let go by what is asked of xdotool.
+static func _count_let_go(words: PackedStringArray) -> int:
+	var count: int = words.count("keyup") + words.count("mouseup")
+	if words[0] == "key":
+		count += words[1].get_slice_count("+")
+	elif words[0] == "type":
+		count += words[-1].length()
+	var click: int = words.find("click")
+	if click >= 0:
+		count += words[click + 2].to_int()
+	return count
+
+
+# What never comes (a key that the window's own end takes) is no failure here: what should come of it
+# is waited for, too.
+func _seen(condition: Callable, what: String) -> void:
+	var end: int = Time.get_ticks_msec() + _MOST_WAIT
+	while not condition.call():
+		if Time.get_ticks_msec() > end:
+			print("The editor did not see: ", what)
+			return
+		await _frame()
+
+
 func _on_input(event: InputEvent) -> void:
+	if event is InputEventMouse:
+		_mouse = (event as InputEventMouse).position
 	if (event is InputEventKey or event is InputEventMouseButton) and not event.is_pressed():
 		_let_go += 1
 

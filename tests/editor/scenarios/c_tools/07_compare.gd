@@ -179,8 +179,11 @@ func _go_nearer() -> void:
 	check((_stage().call(&"get_shown") as Rect2).position.y < near.position.y, "It didn't move.")
 	await fine_picture("compare-near")
 	check(_share_on_wood(4, Vector2.ZERO) > 0.7, "The tree is not on the photo.")
-	await user.click(middle(_stage()), User.LEFT, "", 2)
-	check_equal(_stage().call(&"get_shown"), whole, "what is seen after a double-click")
+	await double_click(
+		middle(_stage()),
+		func() -> bool: return _stage().call(&"get_shown") == whole,
+		"all of it is seen after a double-click"
+	)
 
 
 func _leave() -> void:
