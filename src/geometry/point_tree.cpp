@@ -247,4 +247,18 @@ void PointTree::nearest_of_group(size_t group, size_t count, std::vector<Nearest
     }
 }
 
+std::vector<uint32_t> names_of_nodes(const PointTree& tree, const std::vector<uint32_t>& names) {
+    std::vector<uint32_t> of_nodes(tree.node_count());
+    for (size_t node = 0; node < tree.node_count(); node++) {
+        const bool group = node < tree.group_count();
+        const std::span<const uint32_t> members = group ? tree.in_group(node) : tree.in_block(node);
+        const std::vector<uint32_t>& of = group ? names : of_nodes;
+        const uint32_t name = of[members.front()];
+        const bool all =
+            std::all_of(members.begin(), members.end(), [&](uint32_t m) { return of[m] == name; });
+        of_nodes[node] = all ? name : kSeveral;
+    }
+    return of_nodes;
+}
+
 }  // namespace treerec

@@ -182,4 +182,9 @@ void PointTree::search(const Vec3& p, Found& found, const Enters& enters) const 
     }
 }
 
+// By node of a tree: the name that all its points have, or kSeveral. A node whose points all have one's own
+// name is passed over by who looks for others. names: by point.
+inline constexpr uint32_t kSeveral = std::numeric_limits<uint32_t>::max();
+std::vector<uint32_t> names_of_nodes(const PointTree& tree, const std::vector<uint32_t>& names);
+
 }  // namespace treerec

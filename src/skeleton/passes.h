@@ -13,6 +13,7 @@ enum class Pass : uint8_t {
     kStrays,
     kSample,
     kBridgesRunOn,
+    kPieceEnds,
     kWideGaps,
     // geodesics/
     kBaseByForks,
@@ -75,6 +76,7 @@ inline constexpr std::array<PassName, kPasses> kPassNames = {{
     {Pass::kStrays, "strays left out"},
     {Pass::kSample, "denser sample"},
     {Pass::kBridgesRunOn, "bridges run on"},
+    {Pass::kPieceEnds, "both ends linked"},
     {Pass::kWideGaps, "wide gaps"},
     {Pass::kBaseByForks, "base by forks"},
     {Pass::kThickness, "thickness"},

@@ -47,28 +47,16 @@ struct NearestThick {
     }
 };
 
-// Of a tree's nodes: the wood that all their points are of, or kNone, and how thick the thickest is. Without
-// these a thick trunk's points would all look at each other for other wood.
-struct NodeWood {
-    std::vector<uint32_t> wood;
-    std::vector<float> thickest;
-};
-
-NodeWood wood_of_nodes(const PointTree& tree, const std::vector<uint32_t>& wood,
-                       const std::vector<float>& radii) {
-    NodeWood nodes{std::vector<uint32_t>(tree.node_count()), std::vector<float>(tree.node_count(), 0.0F)};
+// By node: how thick the thickest of its points is. Without this and their names a thick trunk's points would
+// all look at each other for other wood.
+std::vector<float> thickest_of_nodes(const PointTree& tree, const std::vector<float>& radii) {
+    std::vector<float> thickest(tree.node_count(), 0.0F);
     for (size_t node = 0; node < tree.node_count(); node++) {
         const bool group = node < tree.group_count();
-        const std::span<const uint32_t> members = group ? tree.in_group(node) : tree.in_block(node);
-        const std::vector<uint32_t>& of = group ? wood : nodes.wood;
-        const std::vector<float>& thick = group ? radii : nodes.thickest;
-        nodes.wood[node] = of[members.front()];
-        for (const uint32_t member : members) {
-            if (of[member] != nodes.wood[node]) nodes.wood[node] = kNone;
-            nodes.thickest[node] = std::max(nodes.thickest[node], thick[member]);
-        }
+        for (const uint32_t member : group ? tree.in_group(node) : tree.in_block(node))
+            thickest[node] = std::max(thickest[node], (group ? radii : thickest)[member]);
     }
-    return nodes;
+    return thickest;
 }
 
 // By point, what is linked without gaps and about as thick: the smallest of its points.
@@ -165,7 +153,8 @@ void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, d
                      PointGraph& graph, const Progress& progress) {
     const PointTree tree(points, &progress);
     const std::vector<uint32_t> wood = pieces_of(graph, scale);
-    const NodeWood nodes = wood_of_nodes(tree, wood, scale.radius);
+    const std::vector<uint32_t> wood_of_nodes = names_of_nodes(tree, wood);
+    const std::vector<float> thickest = thickest_of_nodes(tree, scale.radius);
     std::vector<uint32_t> other(points.size(), kNone);
     parallel_for(points.size(), 256, [&](size_t begin, size_t end) {
         progress.check();
@@ -175,7 +164,7 @@ void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, d
             const float far = static_cast<float>(kFar) * radius;
             NearestThick nearest{scale.radius, wood, wood[v], kAsThick * radius, far * far};
             tree.search(points[v], nearest, [&](uint32_t node) {
-                return nodes.wood[node] != wood[v] && nodes.thickest[node] >= nearest.thick;
+                return wood_of_nodes[node] != wood[v] && thickest[node] >= nearest.thick;
             });
             other[v] = nearest.found;
         }

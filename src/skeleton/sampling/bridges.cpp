@@ -13,17 +13,15 @@ namespace treerec {
 
 namespace {
 
-constexpr size_t kGrain = 256;     // points between two looks at the cancel flag
-constexpr float kLonger = 3.0f;    // times the shortest link: the links that are compared
-constexpr size_t kNearStarts = 4;  // of them: the shortest,
-constexpr size_t kEndStarts = 8;   // and those from the part's end
-constexpr uint32_t kMixed = std::numeric_limits<uint32_t>::max();  // no part: points of several
-constexpr uint32_t kSampled = 7;                                   // one of so many points
-constexpr size_t kLeastPart = 40;                                  // points: a smaller part runs nowhere
-constexpr size_t kLargePart = 200;                                 // points: of a larger part,
-constexpr uint32_t kOfLargePart = 3;                               // only one of so many is looked at
+constexpr size_t kGrain = 256;        // points between two looks at the cancel flag
+constexpr float kLonger = 3.0f;       // times the shortest link: the links that are compared
+constexpr size_t kNearStarts = 4;     // of them: the shortest,
+constexpr size_t kEndStarts = 8;      // and those from the part's end
+constexpr uint32_t kSampled = 7;      // one of so many points
+constexpr size_t kLeastPart = 40;     // points: a smaller part runs nowhere
+constexpr size_t kLargePart = 200;    // points: of a larger part,
+constexpr uint32_t kOfLargePart = 3;  // only one of so many is looked at
 constexpr double kAround = 2.0;       // link lengths: the wood that tells the direction
-constexpr double kAsideWeight = 2.5;  // a link straight aside counts as so many times longer, and once
 
 struct Link {
     float squared;  // metres
@@ -61,7 +59,7 @@ struct Inside {
 };
 
 // The cheapest link from a point to another part: its length in metres, the more the further it turns aside.
-struct Straightest {
+struct CheapestLink {
     const std::vector<Vec3>& points;
     const std::vector<uint32_t>& part;
     const Run& run;
@@ -179,11 +177,11 @@ class Bridges {
         for (const Link& link : links.first(all)) {
             const Run run = run_around(link, around);
             const float radius = static_cast<float>(longest);
-            Straightest straightest{points_, part_, run, link.from, radius * radius, least, of_part.best};
-            tree_.search(points_[link.from], straightest,
+            CheapestLink cheapest{points_, part_, run, link.from, radius * radius, least, of_part.best};
+            tree_.search(points_[link.from], cheapest,
                          [&](uint32_t node) { return part_of_node_[node] != of_part.part; });
-            least = straightest.least;
-            of_part.best = straightest.best;
+            least = cheapest.least;
+            of_part.best = cheapest.best;
         }
     }
 
@@ -199,15 +197,7 @@ class Bridges {
             static_cast<uint32_t>(std::max_element(members_.begin(), members_.end()) - members_.begin());
         if (members_[largest_] == points_.size()) return false;
         // A node whose points are all of one part is passed over by who looks for another one.
-        part_of_node_.resize(tree_.node_count());
-        const auto all_in = [&](std::span<const uint32_t> members, const std::vector<uint32_t>& part) {
-            const bool one = std::all_of(members.begin(), members.end(),
-                                         [&](uint32_t m) { return part[m] == part[members.front()]; });
-            return one ? part[members.front()] : kMixed;
-        };
-        for (size_t node = 0; node < tree_.node_count(); node++)
-            part_of_node_[node] = node < tree_.group_count() ? all_in(tree_.in_group(node), part_)
-                                                             : all_in(tree_.in_block(node), part_of_node_);
+        part_of_node_ = names_of_nodes(tree_, part_);
         return true;
     }
 
@@ -234,7 +224,7 @@ class Bridges {
         around.clear();
         Inside inside{part_, own, radius * radius, around};
         tree_.search(points_[link.from], inside, [&](uint32_t node) {
-            return part_of_node_[node] == own || part_of_node_[node] == kMixed;
+            return part_of_node_[node] == own || part_of_node_[node] == kSeveral;
         });
         return run_of(points_, around, DVec3(points_[link.to]));
     }

@@ -3,6 +3,7 @@
 
 #include "error.h"
 #include "geometry/covariance.h"
+#include "skeleton/sampling/piece_ends.h"
 #include "skeleton/stages.h"
 
 namespace treerec {
@@ -58,6 +59,8 @@ void link_neighbours(SkeletonWork& work) {
         work.first_scale.radius = work.known->at(work.points(), work.progress);
         link_stout_wood(work.points(), work.first_scale, spacing, work.graph, work.progress);
     }
+    if (work.does(Pass::kPieceEnds))
+        link_piece_ends(work.points(), work.first_scale, work.graph, work.progress);
     work.clock.stop("Neighbours", work.graph.neighbour.size() / 2);
 }
 

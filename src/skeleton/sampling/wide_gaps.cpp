@@ -12,15 +12,14 @@ namespace treerec {
 
 namespace {
 
-constexpr double kWide = 0.04;       // of the tree's extent: a gap that is looked at
-constexpr double kBeyond = 0.15;     // of all points: what lies beyond it at least
-constexpr float kAsShort = 1.5F;     // times the shortest, squared: a gap's link that may be the best
-constexpr float kLonger = 1.5F;      // times the gap: the links that are compared
-constexpr float kAround = 1.5F;      // gaps: the wood that tells the direction
-constexpr float kMostAround = 6.0F;  // gaps: where less tells none
-constexpr float kTouching = 0.25F;   // of the gap: points of one piece of wood are no farther apart
-constexpr double kAside = 0.28;      // of the way: what still lies ahead
-constexpr double kAsideWeight = 2.5;
+constexpr double kWide = 0.04;        // of the tree's extent: a gap that is looked at
+constexpr double kBeyond = 0.15;      // of all points: what lies beyond it at least
+constexpr float kAsShort = 1.5F;      // times the shortest, squared: a gap's link that may be the best
+constexpr float kLonger = 1.5F;       // times the gap: the links that are compared
+constexpr float kAround = 1.5F;       // gaps: the wood that tells the direction
+constexpr float kMostAround = 6.0F;   // gaps: where less tells none
+constexpr float kTouching = 0.25F;    // of the gap: points of one piece of wood are no farther apart
+constexpr double kAside = 0.28;       // of the way: what still lies ahead
 constexpr double kAtEnd = 0.9;        // of the piece lies behind its end
 constexpr double kCost = 2.0;         // times the length,
 constexpr double kAlike = 3.0;        // and as often as the widest link is wider than so many times,
@@ -69,24 +68,6 @@ struct Nearest {
 
     float limit() const { return best; }
     void add(float squared, uint32_t) { best = std::min(best, squared); }
-};
-
-// The point that best continues a run.
-struct Straightest {
-    const std::vector<Vec3>& points;
-    const Run& run;
-    float longest;  // squared metres
-    double least = std::numeric_limits<double>::max();
-    uint32_t to = 0;
-
-    float limit() const { return longest; }
-    void add(float squared, uint32_t v) {
-        if (squared > longest) return;
-        const double cost = std::sqrt(squared) * (1.0 + kAsideWeight * run.aside(DVec3(points[v])));
-        if (cost > least || (cost == least && v > to)) return;
-        least = cost;
-        to = v;
-    }
 };
 
 class Linker {
@@ -163,10 +144,10 @@ class Linker {
             const Run run = run_at(v, gap, piece);
             bool linked = false;
             if (run.known) {
-                Straightest found{opposite, run, kLonger * kLonger * across[v]};
-                tree.search(points_[v], found);
-                const uint32_t to = number[found.to];
-                linked = found.least < std::numeric_limits<double>::max() && goes_on(piece, run, v, to);
+                Straightest best{opposite, run, kLonger * kLonger * across[v], [](uint32_t) { return true; }};
+                tree.search(points_[v], best);
+                const uint32_t to = number[best.to];
+                linked = best.found() && goes_on(piece, run, v, to);
                 if (linked) add(v, to);
             }
             // What lies right beside an end that is none is none either.
