@@ -176,8 +176,8 @@ static func _count_let_go(words: PackedStringArray) -> int:
 	return count
 
 
-# What never comes (a key that the window's own end takes) is no failure here: what should come of it
-# is waited for, too.
+# What never comes (a key that the window's own end takes) is no failure here: what should come of
+# it is waited for, too.
 func _seen(condition: Callable, what: String) -> void:
 	var end: int = Time.get_ticks_msec() + _MOST_WAIT
 	while not condition.call():
