@@ -57,17 +57,22 @@ std::vector<SkeletonOptions> both_methods() {
 
 constexpr double kTwig = 0.004;
 
+// Points here and there along the way from a to b, off it by `spread` (standard deviation, metres).
+void scatter_along(PointCloud& cloud, Random& random, const DVec3& a, const DVec3& b, int count,
+                   double spread) {
+    for (int i = 0; i < count; i++) {
+        const double along = random.uniform();
+        cloud.positions.emplace_back(glm::mix(a, b, along) + spread * random.normal() * random.direction());
+    }
+}
+
 // A stem with a twig whose points scatter by three times its radius.
 PointCloud scattered_twig(uint64_t seed) {
     Random random(seed);
     PointCloud cloud;
     add_stem(cloud, random, 0.1, 3.0, 0.012);
     know(cloud, 0.0);
-    for (int i = 0; i < 1500; i++) {
-        const double along = random.uniform();
-        cloud.positions.emplace_back(DVec3(0.08 + 1.2 * along, 1.5 + 0.4 * along, 0.0) +
-                                     3.0 * kTwig * random.normal() * random.direction());
-    }
+    scatter_along(cloud, random, {0.08, 1.5, 0.0}, {1.28, 1.9, 0.0}, 1500, 3.0 * kTwig);
     know(cloud, kTwig);
     return cloud;
 }
@@ -114,11 +119,7 @@ TEST(KnownRadii, StrayPointsBesideAStemMakeNoStump) {
             PointCloud cloud;
             add_stem(cloud, random, 0.1, 3.0, 0.012);
             know(cloud, 0.1);
-            for (int i = 0; i < 60; i++) {
-                const double along = random.uniform();
-                cloud.positions.emplace_back(DVec3(0.1 + 0.35 * along, 1.5 + 0.3 * along, 0.0) +
-                                             0.006 * random.normal() * random.direction());
-            }
+            scatter_along(cloud, random, {0.1, 1.5, 0.0}, {0.45, 1.8, 0.0}, 60, 0.006);
             know(cloud, 0.1);
             const Tree tree = skeletonize(cloud, options).tree;
             double thickest = 0.0;
@@ -231,16 +232,8 @@ TEST(KnownRadii, AreThoseOfASmallTreeToo) {
     for (float& radius : cloud.radii)
         radius *= 0.1F;
     const Tree tree = skeletonize(cloud, thinned_to(0.1 * kSpacing)).tree;
-    // Along the twig: the shoots that the scatter makes on it are thinner.
-    NodeId at = tree.root();
-    for (const NodeId id : tree.depth_first())
-        if (in_cloud(tree, cloud, id).x > in_cloud(tree, cloud, at).x) at = id;
-    std::vector<float> radii;
-    for (; at != kNoNode; at = tree.node(at).parent)
-        if (const double x = in_cloud(tree, cloud, at).x; x > 0.03 && x < 0.11)
-            radii.push_back(static_cast<float>(tree.node(at).radius));
-    ASSERT_GE(radii.size(), 2U);
-    EXPECT_NEAR(static_cast<double>(quantile(radii, 0.5)), 0.1 * kTwig, 0.01 * kTwig);
+    EXPECT_NEAR(radius_where(tree, cloud, [](const DVec3& p) { return p.x > 0.03 && p.x < 0.11; }),
+                0.1 * kTwig, 0.01 * kTwig);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/groups.h"
 #include "geometry/parallel.h"
 #include "geometry/quantile.h"
 #include "skeleton/cylinders/radii.h"
@@ -57,20 +56,6 @@ std::vector<float> thickest_of_nodes(const PointTree& tree, const std::vector<fl
             thickest[node] = std::max(thickest[node], (group ? radii : thickest)[member]);
     }
     return thickest;
-}
-
-// By point, what is linked without gaps and about as thick: the smallest of its points.
-std::vector<uint32_t> pieces_of(const PointGraph& graph, const LocalScale& scale) {
-    Groups groups(graph.size());
-    groups.join_all([&](uint32_t v, const auto& link) {
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
-            const uint32_t n = graph.neighbour[e];
-            if (n > v) break;  // they ascend
-            const auto [thin, thick] = std::minmax(scale.radius[v], scale.radius[n]);
-            if (thin >= kAlike * thick && graph.length[e] <= edge_reach(scale, v, n)) link(n);
-        }
-    });
-    return groups.names();
 }
 
 }  // namespace
@@ -141,7 +126,9 @@ void KnownRadii::tell(std::vector<std::vector<Station>>& axes) const {
                     to_tip += glm::distance(station.position, axes[l][i + 1].position);
                 const std::optional<double> known = around(station);
                 if (!known || (station.measured && station.radius > kThicker * *known + spacing_)) continue;
-                station.radius = station.measured ? *known : std::min(*known, thickest_unmeasured(to_tip));
+                // Wood so stout would show its section, had it points of its own.
+                const bool doubted = !station.measured && *known > spacing_;
+                station.radius = doubted ? std::min(*known, thickest_unmeasured(to_tip)) : *known;
                 station.scatter = 0.0;
                 station.measured = true;
             }
@@ -149,10 +136,12 @@ void KnownRadii::tell(std::vector<std::vector<Station>>& axes) const {
     });
 }
 
-void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, double spacing,
-                     PointGraph& graph, const Progress& progress) {
-    const PointTree tree(points, &progress);
-    const std::vector<uint32_t> wood = pieces_of(graph, scale);
+void link_stout_wood(const std::vector<Vec3>& points, const PointTree& tree, const LocalScale& scale,
+                     double spacing, PointGraph& graph, const Progress& progress) {
+    const std::vector<uint32_t> wood = pieces_of(graph, scale, [&](uint32_t a, uint32_t b) {
+        const auto [thin, thick] = std::minmax(scale.radius[a], scale.radius[b]);
+        return thin >= kAlike * thick;
+    });
     const std::vector<uint32_t> wood_of_nodes = names_of_nodes(tree, wood);
     const std::vector<float> thickest = thickest_of_nodes(tree, scale.radius);
     std::vector<uint32_t> other(points.size(), kNone);

@@ -21,8 +21,9 @@ class KnownRadii {
     KnownRadii(const PointCloud& cloud, double spacing, const Progress* progress);
 
     // Stations amid points of known radius get it, as measured. What was measured as far thicker, and is a
-    // surface with lines on it, stays; and what was not measured gets no more than its length allows: stray
-    // points between two limbs that a photo shows as one are as wide as both, and no stump.
+    // surface with lines on it, stays. Wood stouter than the points are apart whose section was not measured
+    // gets no more than its length allows: stray points between two limbs that a photo shows as one are as
+    // wide as both, and no stump.
     void tell(std::vector<std::vector<Station>>& axes) const;
 
     bool any() const { return tree_.has_value(); }
@@ -40,8 +41,9 @@ class KnownRadii {
 
 // Links wood of known radius (scale.radius) to the nearest other wood that is about as thick or thicker,
 // within a few radii: a branch may well be seen from where it leaves the trunk's bark on, or not where others
-// stand before it, and the nearest points to its end are all its own. points: metres. Throws Cancelled.
-void link_stout_wood(const std::vector<Vec3>& points, const LocalScale& scale, double spacing,
-                     PointGraph& graph, const Progress& progress);
+// stand before it, and the nearest points to its end are all its own. points: metres. tree: over them. Throws
+// Cancelled.
+void link_stout_wood(const std::vector<Vec3>& points, const PointTree& tree, const LocalScale& scale,
+                     double spacing, PointGraph& graph, const Progress& progress);
 
 }  // namespace treerec

@@ -5,7 +5,6 @@
 
 #include "geometry/bounds.h"
 #include "geometry/circle_fit.h"
-#include "geometry/groups.h"
 #include "geometry/portable_math.h"
 #include "skeleton/cylinders/base_end.h"
 
@@ -31,19 +30,6 @@ constexpr double kStumpRough = 0.08;    // of its radius
 constexpr double kStumpCoverage = 0.6;  // of the circle
 constexpr double kStumpInside = 0.1;    // of the points
 constexpr double kStumpReach = 1.3;     // radii
-
-// The group of linked points of each vertex: the smallest vertex in it.
-std::vector<uint32_t> linked_groups(const PointGraph& graph, const LocalScale& scale) {
-    Groups groups(graph.size());
-    groups.join_all([&](uint32_t v, const auto& link) {
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
-            const uint32_t n = graph.neighbour[e];
-            if (n > v) break;  // they ascend
-            if (graph.length[e] <= edge_reach(scale, v, n)) link(n);
-        }
-    });
-    return groups.names();
-}
 
 // The cut face is round: all within a little of the end belong to the base.
 RootGuess root_at_end(const std::vector<Vec3>& points, const std::vector<uint8_t>& wood,
@@ -110,7 +96,7 @@ RootGuess root_at_base(const std::vector<Vec3>& points, const std::vector<uint8_
 
 RootGuess find_root(const std::vector<Vec3>& points, const PointGraph& graph, const LocalScale& scale,
                     const std::optional<DVec3>& stem_base, Progress& progress, PassSet left_out) {
-    const std::vector<uint32_t> group = linked_groups(graph, scale);
+    const std::vector<uint32_t> group = pieces_of(graph, scale);
     std::vector<size_t> members(points.size(), 0);
     std::vector<float> heights(points.size());
     std::vector<float> lowest(points.size(), std::numeric_limits<float>::max());

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "geometry/groups.h"
 #include "geometry/parallel.h"
-#include "geometry/point_tree.h"
 #include "skeleton/branches/run.h"
 
 namespace treerec {
@@ -17,26 +15,16 @@ constexpr float kLonger = 2.0F;     // gaps: a piece that ends there is at least
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 constexpr double kAside = 0.28;  // of the way: what still lies ahead
 
-// By point, what is linked without gaps: the smallest of its points.
-std::vector<uint32_t> pieces_of(const PointGraph& graph, const LocalScale& scale) {
-    Groups groups(graph.size());
-    groups.join_all([&](uint32_t v, const auto& link) {
-        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
-            const uint32_t n = graph.neighbour[e];
-            if (n > v) break;  // they ascend
-            if (graph.length[e] <= edge_reach(scale, v, n)) link(n);
-        }
-    });
-    return groups.names();
-}
-
 class PieceEnds {
   public:
-    PieceEnds(const std::vector<Vec3>& points, const std::vector<uint32_t>& piece, const Progress& progress)
-        : points_(points), piece_(piece), tree_(points, &progress), members_(points.size(), 0) {
+    PieceEnds(const std::vector<Vec3>& points, const PointTree& tree, const std::vector<uint32_t>& piece)
+        : points_(points),
+          tree_(tree),
+          piece_(piece),
+          members_(points.size(), 0),
+          piece_of_node_(names_of_nodes(tree, piece)) {
         for (const uint32_t p : piece)
             members_[p]++;
-        piece_of_node_ = names_of_nodes(tree_, piece);
     }
 
     std::vector<PointEdge> links(const Progress& progress) const {
@@ -107,18 +95,18 @@ class PieceEnds {
     }
 
     const std::vector<Vec3>& points_;
+    const PointTree& tree_;
     const std::vector<uint32_t>& piece_;
-    PointTree tree_;
     std::vector<uint32_t> members_;        // by piece
     std::vector<uint32_t> piece_of_node_;  // of tree_
 };
 
 }  // namespace
 
-void link_piece_ends(const std::vector<Vec3>& points, const LocalScale& scale, PointGraph& graph,
-                     const Progress& progress) {
+void link_piece_ends(const std::vector<Vec3>& points, const PointTree& tree, const LocalScale& scale,
+                     PointGraph& graph, const Progress& progress) {
     const std::vector<uint32_t> piece = pieces_of(graph, scale);
-    std::vector<PointEdge> edges = PieceEnds(points, piece, progress).links(progress);
+    std::vector<PointEdge> edges = PieceEnds(points, tree, piece).links(progress);
     std::erase_if(edges, [&](const PointEdge& edge) { return find_edge(graph, edge).has_value(); });
     if (!edges.empty()) add_edges(graph, points, std::move(edges));
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/groups.h"
 #include "geometry/vec.h"
 #include "progress.h"
 #include "skeleton/passes.h"
@@ -50,6 +51,25 @@ LocalScale local_scale(const PointGraph& graph, double thinning_spacing, const P
 // The gap length of an edge between a and b.
 inline float edge_reach(const LocalScale& scale, uint32_t a, uint32_t b) {
     return 0.5f * (scale.reach[a] + scale.reach[b]);
+}
+
+// By vertex: the smallest of those that it is linked to, directly or by others, by edges that cross no gap
+// and that may(a, b) allows, which asks the same both ways.
+template <typename May>
+std::vector<uint32_t> pieces_of(const PointGraph& graph, const LocalScale& scale, const May& may) {
+    Groups groups(graph.size());
+    groups.join_all([&](uint32_t v, const auto& link) {
+        for (uint32_t e = graph.begin[v]; e < graph.begin[v + 1]; e++) {
+            const uint32_t n = graph.neighbour[e];
+            if (n > v) break;  // they ascend
+            if (graph.length[e] <= edge_reach(scale, v, n) && may(v, n)) link(n);
+        }
+    });
+    return groups.names();
+}
+
+inline std::vector<uint32_t> pieces_of(const PointGraph& graph, const LocalScale& scale) {
+    return pieces_of(graph, scale, [](uint32_t, uint32_t) { return true; });
 }
 
 }  // namespace treerec

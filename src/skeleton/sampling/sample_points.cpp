@@ -55,12 +55,13 @@ void link_neighbours(SkeletonWork& work) {
     work.graph = neighbour_graph(work.points(), linking, work.options.left_out);
     work.first_scale = local_scale(work.graph, spacing, &work.progress);
     work.known.emplace(work.cloud, spacing, &work.progress);
+    const PointTree tree(work.points(), &work.progress);
     if (work.known->any()) {
         work.first_scale.radius = work.known->at(work.points(), work.progress);
-        link_stout_wood(work.points(), work.first_scale, spacing, work.graph, work.progress);
+        link_stout_wood(work.points(), tree, work.first_scale, spacing, work.graph, work.progress);
     }
     if (work.does(Pass::kPieceEnds))
-        link_piece_ends(work.points(), work.first_scale, work.graph, work.progress);
+        link_piece_ends(work.points(), tree, work.first_scale, work.graph, work.progress);
     work.clock.stop("Neighbours", work.graph.neighbour.size() / 2);
 }
 
