@@ -214,7 +214,9 @@ func fine_picture(name: String, seen: SubViewport = view()) -> void:
 	var shadows: String = "rendering/lights_and_shadows/directional_shadow/size"
 	seen.scaling_3d_scale = 1.0
 	RenderingServer.directional_shadow_atlas_set_size(4096, true)
+	cast_shadows(true)
 	await picture(name)
+	cast_shadows(false)
 	seen.scaling_3d_scale = scale
 	var size: int = ProjectSettings.get_setting(shadows)
 	RenderingServer.directional_shadow_atlas_set_size(size, true)

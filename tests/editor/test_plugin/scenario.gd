@@ -14,6 +14,8 @@ const _NOISE: PackedStringArray = []
 
 # A condition rests so many times as long as it took.
 const _REST: int = 4
+# Of a sun whose shadows were switched off.
+const _CASTS: StringName = &"editor_test_casts_shadows"
 
 var user: User
 var errors: ErrorCollector
@@ -34,6 +36,7 @@ func run() -> void:
 ## Ends the step before and begins one that does what `what` says.
 func step(what: String) -> void:
 	await _judge()
+	cast_shadows(false)
 	_step = what
 	_started = Time.get_ticks_msec()
 
@@ -120,6 +123,18 @@ func double_click(at: Vector2, condition: Callable, what: String) -> bool:
 				return true
 			await tree.process_frame
 	return await until(condition, what)
+
+
+## Whether the editor's own suns cast shadows. Without a graphics card a frame takes twice as long
+## with them: the engine draws what stands in the scene for each of four parts of the view.
+func cast_shadows(wanted: bool) -> void:
+	var base: Control = EditorInterface.get_base_control()
+	for node: Node in base.find_children("*", "DirectionalLight3D", true, false):
+		var sun: DirectionalLight3D = node as DirectionalLight3D
+		if sun.owner == null and sun.shadow_enabled:
+			sun.set_meta(_CASTS, true)
+		if sun.has_meta(_CASTS):
+			sun.shadow_enabled = wanted
 
 
 ## Seconds that anything may take.

@@ -108,9 +108,14 @@ func frames(count: int) -> void:
 
 ## Returns when the editor has seen the mouse there: what is under it is known then.
 func move(to: Vector2) -> void:
+	await glide(to)
+	await frames(2)
+
+
+## Returns when the editor has seen the mouse there, on its way to somewhere else.
+func glide(to: Vector2) -> void:
 	await ask(["x", "mousemove", str(roundi(to.x)), str(roundi(to.y))])
 	await _seen(func() -> bool: return _mouse.distance_to(to.round()) < 1.5, "the mouse")
-	await frames(2)
 
 
 ## Clicks. `modifiers` is something like "shift" or "ctrl+alt".
@@ -121,8 +126,7 @@ func click(at: Vector2, button: int = LEFT, modifiers: String = "", times: int =
 
 
 ## Presses at the first place, goes through the others, and lets go at the last. Between two of them
-## the mouse is seen on the way, the less often the more of them there are: each time costs two
-## frames.
+## the mouse is seen on the way, the less often the more of them there are: each time costs a frame.
 func drag(places: PackedVector2Array, button: int = LEFT, modifiers: String = "") -> void:
 	await move(places[0])
 	for modifier: String in modifiers.split("+", false):
@@ -131,7 +135,8 @@ func drag(places: PackedVector2Array, button: int = LEFT, modifiers: String = ""
 	var steps: int = clampi(ceili(20.0 / maxi(places.size() - 1, 1)), 1, 5)
 	for i: int in range(1, places.size()):
 		for step: int in range(1, steps + 1):
-			await move(places[i - 1].lerp(places[i], float(step) / steps))
+			await glide(places[i - 1].lerp(places[i], float(step) / steps))
+	await frames(2)
 	await _x(["mouseup", str(button)])
 	for modifier: String in modifiers.split("+", false):
 		await _x(["keyup", modifier])

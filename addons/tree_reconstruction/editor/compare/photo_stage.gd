@@ -36,6 +36,8 @@ var waiting: bool = false:
 var camera: Camera3D = Camera3D.new()
 
 var _viewport: SubViewport = SubViewport.new()
+# What lies under the stage, where nobody sees it.
+var _covered: SubViewport
 var _overlay: ShaderMaterial = ShaderMaterial.new()
 var _waiting: Label = Label.new()
 var _view: Dictionary = {}
@@ -69,8 +71,17 @@ func _init(domain: StringName) -> void:
 	_update_overlay()
 
 
-## Looks into the scene that [param editor], a viewport of the editor, shows, as finely as it does.
+func _exit_tree() -> void:
+	# Unseen itself it is off, and its container switches it on again.
+	if is_instance_valid(_covered) and (_covered.get_parent() as Control).is_visible_in_tree():
+		_covered.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+	_covered = null
+
+
+## Looks into the scene that [param editor], a viewport of the editor under this stage, shows, as
+## finely as it does. That one is not drawn for as long.
 func look_into(editor: SubViewport) -> void:
+	_covered = editor
 	_viewport.world_3d = editor.find_world_3d()
 	_viewport.msaa_3d = editor.msaa_3d
 	_viewport.screen_space_aa = editor.screen_space_aa
@@ -118,6 +129,9 @@ func get_shown() -> Rect2:
 
 ## To be called once a frame, with where the tree stands in the scene.
 func update(frame: Transform3D) -> void:
+	# Here, since its container switches it on whenever the 3D view comes back.
+	if is_instance_valid(_covered):
+		_covered.render_target_update_mode = SubViewport.UPDATE_DISABLED
 	if _view.is_empty() or size.x < 1.0 or size.y < 1.0:
 		return
 	if _viewport.size != Vector2i(size):

@@ -141,10 +141,11 @@ func _drag(line: PackedVector2Array, shot: String) -> void:
 	await user.ask(["x", "mousedown", str(User.LEFT)])
 	await user.frames(4)
 	for i: int in range(1, line.size()):
-		await user.move(line[i - 1].lerp(line[i], 0.5))
-		await user.move(line[i])
+		await user.glide(line[i - 1].lerp(line[i], 0.5))
+		await user.glide(line[i])
 		if i == line.size() * 2 / 3 and not shot.is_empty():
 			await fine_picture(shot)
+	await user.frames(2)
 	check(_tool().call(&"is_held"), "No stroke is drawn.")
 
 

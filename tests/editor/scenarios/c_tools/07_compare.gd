@@ -28,6 +28,7 @@ func run() -> void:
 	await _open()
 	await _look_at_others()
 	await _go_nearer()
+	await _come_back()
 	await _leave()
 	await _lack_photos()
 	await _lack_cameras()
@@ -186,11 +187,26 @@ func _go_nearer() -> void:
 	)
 
 
+func _come_back() -> void:
+	await step("what the photo covers is not drawn, nor after another screen was shown")
+	var off: SubViewport.UpdateMode = SubViewport.UPDATE_DISABLED
+	check_equal(view().render_target_update_mode, off, "how the view is drawn")
+	EditorInterface.set_main_screen_editor("2D")
+	await user.frames(6)
+	EditorInterface.set_main_screen_editor("3D")
+	await user.frames(6)
+	check_equal(view().render_target_update_mode, off, "how it is drawn after that")
+	await user.move(middle(_stage()))
+	(_stage() as Control).grab_focus()
+
+
 func _leave() -> void:
 	await step("Escape leaves, and camera, selection and scene are what they were")
 	await user.key("Escape")
 	await until(func() -> bool: return _cover() == null, "the photos are gone")
 	await user.frames(4)
+	var on: SubViewport.UpdateMode = SubViewport.UPDATE_ALWAYS
+	check_equal(view().render_target_update_mode, on, "how the view is drawn")
 	check_equal(view().get_camera_3d().global_transform, _before, "the editor's camera")
 	check_equal(EditorInterface.get_selection().get_selected_nodes(), [_node], "the selection")
 	check_equal(session().get(&"node"), _node, "the edited node")
