@@ -24,6 +24,7 @@ dates() {
     find "$1" -path "$1/.snakemake" -prune -o -type f ! -name .lock -printf '%p %T@\n' | sort
 }
 
+check 'other tools that were installed meanwhile have left these alone' "$python" -c 'import snakemake'
 check 'a folder with a broken scan is done' forest "$work/two" 2
 check 'its rows, tables and catalogue' "$python" tests/forest/check_forest.py "$work/two"
 # It comes from one folder and goes to another: nothing in it is to name either.
