@@ -125,8 +125,8 @@ func double_click(at: Vector2, condition: Callable, what: String) -> bool:
 	return await until(condition, what)
 
 
-## Whether the editor's own suns cast shadows. Without a graphics card a frame takes twice as long
-## with them: the engine draws what stands in the scene for each of four parts of the view.
+## Whether the editor's own suns cast shadows. Without a graphics card a frame takes up to half as
+## long again with them: the engine draws what stands there for each of four parts of the view.
 func cast_shadows(wanted: bool) -> void:
 	var base: Control = EditorInterface.get_base_control()
 	for node: Node in base.find_children("*", "DirectionalLight3D", true, false):

@@ -38,7 +38,6 @@ var camera: Camera3D = Camera3D.new()
 var _viewport: SubViewport = SubViewport.new()
 # What lies under the stage, where nobody sees it.
 var _covered: SubViewport
-var _drawn: SubViewport.UpdateMode
 var _overlay: ShaderMaterial = ShaderMaterial.new()
 var _waiting: Label = Label.new()
 var _view: Dictionary = {}
@@ -78,7 +77,7 @@ func _exit_tree() -> void:
 	# While its container is hidden it is off, and switched on when that is shown again.
 	var holder: SubViewportContainer = _covered.get_parent() as SubViewportContainer
 	if holder == null or holder.is_visible_in_tree():
-		_covered.render_target_update_mode = _drawn
+		_covered.render_target_update_mode = SubViewport.UPDATE_ALWAYS
 	_covered = null
 
 
@@ -86,7 +85,6 @@ func _exit_tree() -> void:
 ## finely as it does. That one is not drawn for as long.
 func look_into(editor: SubViewport) -> void:
 	_covered = editor
-	_drawn = editor.render_target_update_mode
 	_viewport.world_3d = editor.find_world_3d()
 	_viewport.msaa_3d = editor.msaa_3d
 	_viewport.screen_space_aa = editor.screen_space_aa

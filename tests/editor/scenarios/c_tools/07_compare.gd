@@ -47,11 +47,15 @@ func _stage() -> Control:
 	return _part("PhotoStage")
 
 
-func _source() -> RefCounted:
+func _compare() -> RefCounted:
 	for part: RefCounted in addon().get(&"_parts"):
 		if part.has_method(&"draw_over"):
-			return part.get(&"_actions").get(&"photos").get(&"source")
+			return part.get(&"_actions").get(&"photos")
 	return null
+
+
+func _source() -> RefCounted:
+	return _compare().get(&"source")
 
 
 func _is_seen() -> bool:
@@ -196,8 +200,15 @@ func _come_back() -> void:
 	EditorInterface.set_main_screen_editor("3D")
 	await user.frames(6)
 	check_equal(view().render_target_update_mode, off, "how it is drawn after that")
-	await user.move(middle(_stage()))
-	(_stage() as Control).grab_focus()
+	# As anybody does whose keys should go to the photo again.
+	await user.click(middle(_stage()))
+	await step("F4 twice at once leaves and comes again, and after it the view is drawn as ever")
+	var photos: RefCounted = _compare()
+	photos.call(&"toggle", view().get_camera_3d())
+	photos.call(&"toggle", view().get_camera_3d())
+	await until(_is_seen, "the photo is seen again")
+	await user.frames(6)
+	check_equal(view().render_target_update_mode, off, "how the view is drawn")
 
 
 func _leave() -> void:
