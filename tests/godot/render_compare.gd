@@ -162,3 +162,45 @@ func test_a_sky_is_light_alone() -> void:
 	check(count > 50, "The tree is hardly seen.")
 	check(light > 0.03 * count, "Without a sun the tree is black: %f" % (light / count))
 	_end_all()
+
+
+# Ground hides a foot, and a photo shows the ground.
+func test_no_foot_is_seen_in_the_ground() -> void:
+	var made: TreeReconstruction = grown_tree(2)
+	await _compare(made)
+	var instance: TreeInstance3D = (
+		_viewport.find_children("*", "TreeInstance3D", true, false)[0] as TreeInstance3D
+	)
+	# Nearer, where all of it is more than a few pixels, and from above, as photos are taken.
+	_compared._view["transform"] = Transform3D(Basis.IDENTITY, Vector3(0.0, 1.6, 6.0))
+	await _drawn()
+	var before: Array[int] = _count_wood()
+	check(before[0] > 30, "Of the foot, only %d pixels are seen." % before[0])
+	_compared.hide_feet([instance])
+	await _drawn()
+	var after: Array[int] = _count_wood()
+	check_equal(after[0], 0, "pixels of the foot")
+	check_equal(after[1], before[1], "pixels of the tree above it")
+	instance.visible = false
+	_compared.hide_feet([instance, null])
+	await _drawn()
+	check_equal(_count_wood(), [0, 0] as Array[int], "pixels of a hidden tree")
+	instance.visible = true
+	_compared.hide_feet([])
+	await _drawn()
+	check_equal(_count_wood(), before, "pixels once no tree's foot is hidden")
+	_end_all()
+
+
+# How much of the picture is wood more than 3 cm below the root, and more than 3 cm above it, in the
+# plane through it that faces the camera.
+func _count_wood() -> Array[int]:
+	var seen: Image = _compared._viewport.get_texture().get_image()
+	var count: Array[int] = [0, 0]
+	for y: int in SIZE.y:
+		var place: Vector3 = _compared.camera.project_position(Vector2(SIZE.x * 0.5, y + 0.5), 6.0)
+		if absf(place.y) < 0.03:
+			continue
+		for x: int in SIZE.x:
+			count[0 if place.y < 0.0 else 1] += int(seen.get_pixel(x, y).a > 0.0)
+	return count

@@ -7,6 +7,9 @@ extends RefCounted
 ## Nothing of the scene, of the selection or of the editor's camera is touched, so there is nothing
 ## to undo.
 
+## The photos are left: [param sentence], which was said of them, no longer holds.
+signal left(sentence: String)
+
 const Session: GDScript = preload("../session.gd")
 const FileChooser: GDScript = preload("../file_chooser.gd")
 const PhotoCamera: GDScript = preload("photo_camera.gd")
@@ -77,6 +80,7 @@ func leave() -> void:
 	_ink = null
 	_node = null
 	_shown = null
+	left.emit(_where_it_is())
 
 
 ## What is seen now of tree and photo.
@@ -113,6 +117,11 @@ func update() -> void:
 		return
 	source.update()
 	stage.update(_node.global_transform)
+	# One may be drawn over the other's photo.
+	var trees: Array[TreeInstance3D] = [_node]
+	if _session.node != _node:
+		trees.append(_session.node)
+	stage.hide_feet(trees)
 	_ink.queue_redraw()
 
 
@@ -193,7 +202,7 @@ func _on_source_changed() -> void:
 		return
 	if source.index >= 0 and not is_same(source.views[source.index], _standing):
 		if _standing.is_empty():
-			_say_where()
+			_session.say(_where_it_is())
 		_standing = source.views[source.index]
 		stage.stand(_standing)
 	if source.picture != _shown:
@@ -208,14 +217,13 @@ func _on_source_changed() -> void:
 	bar.update(source, note)
 
 
-func _say_where() -> void:
-	var sentence: String = tr(
+func _where_it_is() -> String:
+	return tr(
 		(
 			"This is seen from where the photo was taken. Escape leaves. Nothing in the scene is"
 			+ " changed, so there is nothing to undo."
 		)
 	)
-	_session.say(sentence)
 
 
 func _on_mode_chosen(mode: Stage.Mode) -> void:

@@ -9,6 +9,7 @@ extends ColorRect
 enum Mode { BEHIND, IN_FRONT, DIFFERENCE }
 
 const PhotoCamera: GDScript = preload("photo_camera.gd")
+const BuriedFoot: GDScript = preload("buried_foot.gd")
 const OVERLAY: Shader = preload("overlay.gdshader")
 ## What is seen where there is nothing.
 const GROUND: Color = Color(0.13, 0.14, 0.15)
@@ -16,7 +17,7 @@ const GROUND: Color = Color(0.13, 0.14, 0.15)
 const MOST_ZOOM: float = 40.0
 const _STEP: float = 1.25
 # Of the scene's layers: without those of the editor's grid, gizmos and arrows.
-const _LAYERS: int = (1 << 20) - 1
+const _LAYERS: int = ((1 << 20) - 1) | BuriedFoot.LAYER
 
 var mode: Mode = Mode.BEHIND:
 	set(value):
@@ -38,6 +39,7 @@ var camera: Camera3D = Camera3D.new()
 var _viewport: SubViewport = SubViewport.new()
 # What lies under the stage, where nobody sees it.
 var _covered: SubViewport
+var _feet: Array[BuriedFoot] = []
 var _overlay: ShaderMaterial = ShaderMaterial.new()
 var _waiting: Label = Label.new()
 var _view: Dictionary = {}
@@ -98,6 +100,16 @@ func look_into(editor: SubViewport) -> void:
 	camera.environment = _without_background(_viewport.world_3d)
 	camera.make_current()
 	_overlay.set_shader_parameter(&"scene", _viewport.get_texture())
+
+
+## Leaves out what of the feet of [param trees] is in the ground. To be called once a frame.
+func hide_feet(trees: Array[TreeInstance3D]) -> void:
+	while _feet.size() < trees.size():
+		var foot: BuriedFoot = BuriedFoot.new()
+		_viewport.add_child(foot)
+		_feet.append(foot)
+	for i: int in _feet.size():
+		_feet[i].follow(trees[i] if i < trees.size() else null)
 
 
 ## Stands where [param view] says, one of [method TreeReconstructor.load_photo_views]. All of

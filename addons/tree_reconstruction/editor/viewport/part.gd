@@ -206,6 +206,7 @@ func _make_controls() -> void:
 	_menu = ViewMenu.new(_session, _shortcuts)
 	_menu.asked.connect(_on_asked)
 	_strip = Strip.new(_session)
+	_actions.photos.left.connect(_strip.forget)
 	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_SIDE_LEFT, _toolbar)
 	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_MENU, _menu)
 	_plugin.add_control_to_container(EditorPlugin.CONTAINER_SPATIAL_EDITOR_BOTTOM, _strip)

@@ -95,6 +95,13 @@ func say(sentence: String, kind: Session.Kind) -> void:
 	_status.add_theme_color_override(&"font_color", _color_of(kind))
 
 
+## Takes a sentence back that no longer holds, if it is the last one that was said.
+func forget(sentence: String) -> void:
+	if _left > 0.0 and _status.text == sentence:
+		_left = 0.0
+		_show_hint()
+
+
 ## To be called once a frame.
 func update(delta: float) -> void:
 	if _left > 0.0:

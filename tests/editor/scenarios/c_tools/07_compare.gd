@@ -222,6 +222,8 @@ func _leave() -> void:
 	check_equal(EditorInterface.get_selection().get_selected_nodes(), [_node], "the selection")
 	check_equal(session().get(&"node"), _node, "the edited node")
 	check_equal(is_unsaved(), false, "whether the scene has changes")
+	var status: Label = EditorInterface.get_base_control().find_child("Status", true, false)
+	check(not "photo was taken" in status.text, "It says still: " + status.text)
 	await picture("compare-left")
 	await step("it ends with the selection, too")
 	if await _press_key():
