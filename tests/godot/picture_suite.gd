@@ -3,6 +3,8 @@ extends "./suite.gd"
 ## seen on it in the renderer that this run uses.
 
 const SKY: Color = Color(0.2, 0.3, 0.9)
+# Pixels across the shadows of all that is seen: as fine as these pictures.
+const SHADOWS: int = 1024
 
 var _viewport: SubViewport
 var _camera: Camera3D
@@ -27,6 +29,8 @@ func _open_stage(size: Vector2i, shadows: bool = false) -> void:
 	sun.rotation_degrees = Vector3(-40, 30, 0)
 	sun.shadow_enabled = shadows
 	_viewport.add_child(sun)
+	# The engine's own is 4096, and cleared for each picture, whatever is in it.
+	RenderingServer.directional_shadow_atlas_set_size(SHADOWS, true)
 	_camera = Camera3D.new()
 	_camera.fov = 40.0
 	_viewport.add_child(_camera)

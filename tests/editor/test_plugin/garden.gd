@@ -15,8 +15,17 @@ func real_scan(file: String) -> String:
 
 ## Puts a file into the project's folder from another program, and comes back to the editor.
 func drop_file(from: String, to: String) -> void:
-	# The engine forgets new files that it comes upon while it imports others, and overlooks what
-	# becomes of a folder within a second after it has looked into it: it compares whole seconds.
+	await files_rest()
+	await user.go()
+	DirAccess.make_dir_recursive_absolute(to.get_base_dir())
+	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
+	await user.come()
+
+
+## Waits until files may change. The engine forgets new files that it comes upon while it imports
+## others, and overlooks what becomes of a folder within a second after it has looked into it: it
+## compares whole seconds.
+func files_rest() -> void:
 	var files: EditorFileSystem = EditorInterface.get_resource_filesystem()
 	var quiet: int = 0
 	var since: int = Time.get_ticks_msec()
@@ -26,10 +35,6 @@ func drop_file(from: String, to: String) -> void:
 		if files.is_scanning():
 			quiet = 0
 			since = Time.get_ticks_msec()
-	await user.go()
-	DirAccess.make_dir_recursive_absolute(to.get_base_dir())
-	await user.ask(["copy", from, ProjectSettings.globalize_path(to)])
-	await user.come()
 
 
 ## Clicks on a file in the FileSystem dock.

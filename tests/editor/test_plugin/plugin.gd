@@ -42,11 +42,13 @@ func _start() -> void:
 	if OS.get_environment("TREE_EDITOR_TEST").is_empty():
 		return
 	await _user.meet(OS.get_environment("TREE_EDITOR_TEST"))
+	_user.seldom.begin()
 	while not _is_ready():
 		await get_tree().process_frame
 	await _user.say("-- the editor is open after %.1f s" % (Time.get_ticks_msec() / 1000.0))
 	for path: String in OS.get_environment("TREE_EDITOR_SCENARIOS").split(" ", false):
 		await _run(path)
+	_user.seldom.end()
 	_user.end()
 
 

@@ -19,6 +19,10 @@ const _FRAMES: int = 4
 # milliseconds that what was done is waited for.
 const _MOST_WAIT: int = 5000
 
+const Seldom: GDScript = preload("./seldom.gd")
+
+## How often 3D views are drawn.
+var seldom: Seldom = Seldom.new()
 ## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
 ## It looks through the project when it becomes true, and that it is false it only finds after a
 ## quarter of a second without focus: whoever comes back sooner was never away.
@@ -97,8 +101,17 @@ func say(line: String) -> void:
 
 ## Keeps what the screen shows as build/editor/NN-name.png.
 func picture(name: String) -> void:
+	seldom.suspended = true
 	await frames(_FRAMES)
 	await ask(["picture", name])
+	seldom.suspended = false
+
+
+## Returns when all that is seen is as it is now.
+func drawn() -> void:
+	seldom.suspended = true
+	await frames(_FRAMES)
+	seldom.suspended = false
 
 
 func frames(count: int) -> void:

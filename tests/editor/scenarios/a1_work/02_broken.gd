@@ -35,7 +35,7 @@ func run() -> void:
 	expect_error("empty.xyz")
 	await drop_file(path, "res://empty.xyz")
 	await until(func() -> bool: return has_seen("empty.xyz"), "the error is said")
-	await user.frames(10)
+	await files_rest()
 	DirAccess.remove_absolute("res://broken.ply")
 	DirAccess.remove_absolute("res://empty.xyz")
 	await user.go()

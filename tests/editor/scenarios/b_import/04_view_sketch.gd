@@ -142,10 +142,21 @@ func _open() -> void:
 	# From so far off that what is drawn is a tree, and no bonsai.
 	await user.click(middle(view().get_parent() as Control), User.WHEEL_DOWN, "", 9)
 	await view_rests()
+	await until(_is_unhidden, "the notes of scenarios before are gone")
 	if not await _open_window():
 		return
 	check_fits()
 	await picture("view-sketch-empty")
+
+
+# The editor's notes lie over the lower end of the view.
+func _is_unhidden() -> bool:
+	for note: Node in EditorInterface.get_editor_toaster().find_children(
+		"*", "PanelContainer", true, false
+	):
+		if (note as Control).is_visible_in_tree():
+			return false
+	return true
 
 
 # With the button pressed.

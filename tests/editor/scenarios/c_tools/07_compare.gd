@@ -124,7 +124,7 @@ func _look_at_others() -> void:
 	var place: Vector3 = (_stage().get(&"camera") as Camera3D).global_position
 	await press(_part("Next"))
 	await until(func() -> bool: return _source().get(&"index") == next and _is_seen(), "the next")
-	await user.frames(4)
+	await user.drawn()
 	var away: float = (_stage().get(&"camera") as Camera3D).global_position.distance_to(place)
 	check(away > 1.0, "The camera has hardly moved.")
 	await user.key("Left")
@@ -132,7 +132,7 @@ func _look_at_others() -> void:
 	await press(_part("Photos"))
 	await choose("photo_4.png")
 	await until(func() -> bool: return _source().get(&"index") == 4 and _is_seen(), "photo_4.png")
-	await user.frames(4)
+	await user.drawn()
 	check(_share_on_wood(4, Vector2.ZERO) > 0.7, "The tree is not on it.")
 	await step("the photo lies before the tree, fades, or is compared with it")
 	for mode: int in [1, 2]:
@@ -180,7 +180,7 @@ func _go_nearer() -> void:
 	var near: Rect2 = _stage().call(&"get_shown")
 	check(near.size.x < 0.5 * whole.size.x, "It went no nearer.")
 	await user.drag([middle(_stage()), middle(_stage()) + Vector2(0.0, 60.0)])
-	await user.frames(4)
+	await user.drawn()
 	check((_stage().call(&"get_shown") as Rect2).position.y < near.position.y, "It didn't move.")
 	await fine_picture("compare-near")
 	check(_share_on_wood(4, Vector2.ZERO) > 0.7, "The tree is not on the photo.")

@@ -75,10 +75,12 @@ func _edit() -> void:
 	await user.move(middle(view().get_parent() as Control))
 	await user.key("ctrl+z")
 	await until(func() -> bool: return _text(&"quality").begins_with("▲"), "Q is more again")
-	await _rest()
 	for id: StringName in before:
-		var text: String = _text(id).trim_prefix("▲ ").trim_prefix("▼ ")
-		check_equal(text, before[id], "the figure after undo")
+		await until(
+			func() -> bool: return _text(id).trim_prefix("▲ ").trim_prefix("▼ ") == before[id],
+			"%s is what it was: %s" % [id, before[id]]
+		)
+	await _rest()
 	await save_scene()
 
 
