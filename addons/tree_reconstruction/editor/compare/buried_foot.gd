@@ -26,15 +26,22 @@ func _init() -> void:
 
 ## Goes where the foot of [param node] is. To be called once a frame: trees are edited and moved.
 func follow(node: TreeInstance3D) -> void:
-	visible = false
-	if not is_instance_valid(node) or not node.is_visible_in_tree():
+	visible = _has_foot(node)
+	if not visible:
 		return
 	var tree: TreeReconstruction = node.reconstruction
-	if tree == null or tree.is_empty() or not tree.is_trunk(tree.get_root()):
-		return
 	var width: float = _RADII * tree.get_node_radius(tree.get_root())
 	var depth: float = maxf(_DEPTH, width)
 	var place: Vector3 = tree.get_node_position(tree.get_root())
 	var scaled: Basis = Basis.from_scale(Vector3(width, depth, width))
-	global_transform = node.global_transform * Transform3D(scaled, place)
-	visible = true
+	var wanted: Transform3D = node.global_transform * Transform3D(scaled, place)
+	# The editor would draw for one that is no other, too.
+	if wanted != global_transform:
+		global_transform = wanted
+
+
+static func _has_foot(node: TreeInstance3D) -> bool:
+	if not is_instance_valid(node) or not node.is_visible_in_tree():
+		return false
+	var tree: TreeReconstruction = node.reconstruction
+	return tree != null and not tree.is_empty() and tree.is_trunk(tree.get_root())

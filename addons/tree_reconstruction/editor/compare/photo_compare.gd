@@ -116,13 +116,19 @@ func update() -> void:
 	if not is_open():
 		return
 	source.update()
-	stage.update(_node.global_transform)
+	if stage.update(_node.global_transform):
+		redraw()
 	# One may be drawn over the other's photo.
 	var trees: Array[TreeInstance3D] = [_node]
 	if _session.node != _node:
 		trees.append(_session.node)
 	stage.hide_feet(trees)
-	_ink.queue_redraw()
+
+
+## What the tool at hand draws has changed.
+func redraw() -> void:
+	if is_open():
+		_ink.queue_redraw()
 
 
 ## Takes a key, or returns whether it was for somebody else.

@@ -43,6 +43,8 @@ var _feet: Array[BuriedFoot] = []
 var _overlay: ShaderMaterial = ShaderMaterial.new()
 var _waiting: Label = Label.new()
 var _view: Dictionary = {}
+# What was shown last, and how.
+var _seen: Array = []
 var _picture: Texture2D
 # Pixels of the picture to one of the photo.
 var _scale: float = 1.0
@@ -142,23 +144,32 @@ func get_shown() -> Rect2:
 	return Rect2(_middle - size * pixel * 0.5, size * pixel)
 
 
-## To be called once a frame, with where the tree stands in the scene.
-func update(frame: Transform3D) -> void:
+## To be called once a frame, with where the tree stands in the scene. Returns whether something
+## else is seen than before: if not, nothing is set anew, which would have the editor draw.
+func update(frame: Transform3D) -> bool:
 	# Here, since its container switches it on whenever the 3D view comes back.
-	if is_instance_valid(_covered):
+	if (
+		is_instance_valid(_covered)
+		and _covered.render_target_update_mode != SubViewport.UPDATE_DISABLED
+	):
 		_covered.render_target_update_mode = SubViewport.UPDATE_DISABLED
 	if _view.is_empty() or size.x < 1.0 or size.y < 1.0:
-		return
+		return false
+	var shown: Rect2 = get_shown()
+	var seen: Array = [frame, size, shown, _view, _picture, _scale]
+	if seen == _seen:
+		return false
+	_seen = seen
 	if _viewport.size != Vector2i(size):
 		_viewport.size = Vector2i(size)
-	var shown: Rect2 = get_shown()
 	PhotoCamera.place(camera, _view, frame, shown)
 	if _picture == null:
-		return
+		return true
 	var part: Vector2 = Vector2.ONE * _scale / _picture.get_size()
 	var corner: Vector2 = shown.position * part
 	var across: Vector2 = shown.size * part
 	_overlay.set_shader_parameter(&"shown", Vector4(corner.x, corner.y, across.x, across.y))
+	return true
 
 
 func _gui_input(event: InputEvent) -> void:

@@ -283,6 +283,7 @@ func _on_selection_changed() -> void:
 func _on_tool_wants() -> void:
 	_skeleton.update_ghosts()
 	_redraw()
+	_actions.photos.redraw()
 
 
 func _on_tool_changed() -> void:

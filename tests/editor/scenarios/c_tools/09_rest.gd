@@ -3,6 +3,7 @@ extends "../../test_plugin/garden.gd"
 ## The editor draws only when something has changed: trees that rest give it nothing to draw, those
 ## in the wind do.
 
+const PhotoModel: GDScript = preload("../../test_plugin/photo_model.gd")
 # In so many steps of the editor one after another nothing must be drawn, or something in each.
 const _STILL: int = 40
 const _DRAWN: int = 15
@@ -19,7 +20,12 @@ func run() -> void:
 
 func _go_through() -> void:
 	await step("a tree that is edited rests, and nothing is drawn")
-	_node = await open_garden("res://rest.tscn", own_tree("res://rest_tree.res"))
+	var made: TreeReconstruction = own_tree("res://rest_tree.res")
+	if made == null:
+		return
+	PhotoModel.new(OS.get_environment("TREE_EDITOR_TEST").path_join("rest"), made)
+	ResourceSaver.save(made, "res://rest_tree.res")
+	_node = await open_garden("res://rest.tscn", made)
 	if _node == null:
 		return
 	await _rests("a tree is edited")
@@ -45,6 +51,7 @@ func _go_through() -> void:
 	await user.key("e")
 	await until(func() -> bool: return not view_state.get(&"wind"), "the wind is hidden")
 	await _rests("its wind is hidden")
+	await _look_at_a_photo()
 
 	await step("a scene without a TreeWind rests")
 	EditorInterface.get_selection().clear()
@@ -81,6 +88,23 @@ func _go_through() -> void:
 	await _rests("a forest stands")
 	await picture("forest")
 	forest.free()
+
+
+func _look_at_a_photo() -> void:
+	await step("a photo that is looked at gives nothing to draw")
+	await user.move(middle(view().get_parent() as Control))
+	await user.key("F4")
+	var base: Control = EditorInterface.get_base_control()
+	var stage: Callable = base.find_child.bind("PhotoStage", true, false)
+	if not await until(
+		func() -> bool:
+			return stage.call() != null and (stage.call() as Control).get(&"_picture") != null,
+		"the photo is seen"
+	):
+		return
+	await _rests("a photo is looked at")
+	await user.key("Escape")
+	await until(func() -> bool: return stage.call() == null, "the photo is gone")
 
 
 # Whether it has come to its size.
