@@ -65,6 +65,34 @@ func _key(code: Key) -> bool:
 	return _compare.take_key(event)
 
 
+# Those of the other trees in the picture, too, as long as they stand.
+func test_no_foot_is_in_the_ground() -> void:
+	_open()
+	var other: TreeInstance3D = TreeInstance3D.new()
+	other.reconstruction = grown_tree(5)
+	_session.node.add_child(other)
+	_compare.toggle(_camera)
+	await _wait()
+	check_equal(_hidden_feet(), 2, "feet in the ground")
+	other.visible = false
+	await _wait()
+	check_equal(_hidden_feet(), 1, "feet of trees that are shown")
+	other.visible = true
+	await _wait()
+	check_equal(_hidden_feet(), 2, "feet of both again")
+	other.free()
+	await _wait()
+	check_equal(_hidden_feet(), 1, "feet of trees that there are")
+	_shut()
+
+
+func _hidden_feet() -> int:
+	var count: int = 0
+	for foot: Node3D in _compare.stage.get(&"_feet"):
+		count += int(foot.visible)
+	return count
+
+
 func test_it_begins_at_the_nearest_photo_and_goes_round() -> void:
 	_open()
 	var views: Array[Dictionary] = TreeReconstructor.new().load_photo_views(_made)

@@ -149,7 +149,7 @@ func view_rests() -> void:
 	while still < 8:
 		await user.frames(1)
 		var now: Transform3D = view().get_camera_3d().global_transform
-		still = still + 1 if now.is_equal_approx(last) else 0
+		still = still + 1 if now == last else 0
 		last = now
 
 

@@ -16,9 +16,13 @@ var suspended: bool = false
 # Every viewport in the window.
 var _views: Array[WeakRef] = []
 var _next: int = 0
+# What the editor has set of its frames.
+var _frame: int = 0
 
 
+## From now on.
 func begin() -> void:
+	_frame = OS.low_processor_usage_mode_sleep_usec
 	OS.low_processor_usage_mode_sleep_usec = _FRAME
 	for view: Node in _tree().root.find_children("*", "SubViewport", true, false):
 		_on_node_added(view)
@@ -26,9 +30,11 @@ func begin() -> void:
 	_tree().process_frame.connect(_on_frame)
 
 
+## All is as it was before.
 func end() -> void:
 	_tree().process_frame.disconnect(_on_frame)
 	_tree().node_added.disconnect(_on_node_added)
+	OS.low_processor_usage_mode_sleep_usec = _frame
 	_draw(_tree().root, RenderingServer.VIEWPORT_UPDATE_WHEN_VISIBLE)
 	for reference: WeakRef in _views:
 		var view: SubViewport = reference.get_ref()

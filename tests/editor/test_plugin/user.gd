@@ -21,7 +21,7 @@ const _MOST_WAIT: int = 5000
 
 const Seldom: GDScript = preload("./seldom.gd")
 
-## How often 3D views are drawn.
+## How often the editor is drawn.
 var seldom: Seldom = Seldom.new()
 ## Whether the engine takes the editor for the program that its user works in. plugin.gd keeps it.
 ## It looks through the project when it becomes true, and that it is false it only finds after a

@@ -30,6 +30,8 @@ var _session: Session
 var _node: TreeInstance3D
 # What had the keyboard before.
 var _focused: WeakRef = weakref(null)
+# The trees of the scene when the photos were opened.
+var _standing_by: Array[WeakRef] = []
 # From where the user looked.
 var _from: Vector3
 # What a tool draws lies over the stage, whose own drawing is the photo.
@@ -118,11 +120,7 @@ func update() -> void:
 	source.update()
 	if stage.update(_node.global_transform):
 		redraw()
-	# One may be drawn over the other's photo.
-	var trees: Array[TreeInstance3D] = [_node]
-	if _session.node != _node:
-		trees.append(_session.node)
-	stage.hide_feet(trees)
+	stage.hide_feet(_get_trees())
 
 
 ## What the tool at hand draws has changed.
@@ -152,6 +150,11 @@ func take_key(event: InputEventKey) -> bool:
 func _open(camera: Camera3D) -> void:
 	_node = _session.node
 	_from = camera.global_position
+	_standing_by = []
+	var scene: Node = _node.owner if _node.owner != null else _node
+	for mesh: Node in [scene] + scene.find_children("*", "MeshInstance3D", true, false):
+		if mesh is TreeInstance3D:
+			_standing_by.append(weakref(mesh))
 	_session.hovered = TreeReconstruction.NO_NODE
 	stage = Stage.new(get_translation_domain())
 	_session.view.stage = stage
@@ -193,6 +196,18 @@ func _open(camera: Camera3D) -> void:
 	_standing = {}
 	_shown = null
 	source.open(_session.tree)
+
+
+# Those of the scene, and one that is drawn over the photo since.
+func _get_trees() -> Array[TreeInstance3D]:
+	var trees: Array[TreeInstance3D] = []
+	for reference: WeakRef in _standing_by:
+		var tree: TreeInstance3D = reference.get_ref()
+		if tree != null:
+			trees.append(tree)
+	if is_instance_valid(_session.node) and not _session.node in trees:
+		trees.append(_session.node)
+	return trees
 
 
 func _step(by: int) -> void:

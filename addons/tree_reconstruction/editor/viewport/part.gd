@@ -283,7 +283,6 @@ func _on_selection_changed() -> void:
 func _on_tool_wants() -> void:
 	_skeleton.update_ghosts()
 	_redraw()
-	_actions.photos.redraw()
 
 
 func _on_tool_changed() -> void:
@@ -329,6 +328,7 @@ func _on_scan_changed() -> void:
 func _redraw() -> void:
 	_gizmo.update_layers()
 	_plugin.update_overlays()
+	_actions.photos.redraw()
 
 
 # --- the editor's viewports -----------------------------------------------------------------------

@@ -186,7 +186,7 @@ func _draw_over_nothing() -> void:
 		await picture("view-sketch-FAILED")
 		return
 	await until(_is_calm, "it is built")
-	check(view().get_camera_3d().global_transform.is_equal_approx(camera), "The view moved.")
+	check(view().get_camera_3d().global_transform == camera, "The view moved.")
 	check(absf(_tree().global_position.y) < 0.02, "It stands at %s." % _tree().global_position)
 	check_equal(str(_tree().name), "Maple", "its name")
 	_check_place()

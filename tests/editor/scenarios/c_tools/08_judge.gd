@@ -81,6 +81,9 @@ func _edit() -> void:
 			"%s is what it was: %s" % [id, before[id]]
 		)
 	await _rest()
+	for id: StringName in before:
+		var text: String = _text(id).trim_prefix("▲ ").trim_prefix("▼ ")
+		check_equal(text, before[id], "the figure after undo")
 	await save_scene()
 
 
