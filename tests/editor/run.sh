@@ -27,7 +27,7 @@ export TREE_EDITOR_SAMPLE=${TREE_EDITOR_SAMPLE:-$root/build/sample/scan.ply}
 # Seconds that anything may take on a machine that does something else, too.
 export TREE_EDITOR_PATIENCE=${TREE_EDITOR_PATIENCE:-180}
 # The whole of one editor's run, in seconds: whatever hangs ends then.
-limit=${TREE_EDITOR_LIMIT:-3000}
+limit=${TREE_EDITOR_LIMIT:-1500}
 passed=0
 failed=0
 shots=0
@@ -97,10 +97,11 @@ focus() {
     esac
 }
 
-# Does what the scenarios ask for until they end, or the editor does.
+# Does what the scenarios ask for until they end, or the editor does, or stands still: then nothing is asked for, not
+# even to say that something was waited for in vain.
 serve() {
     local line words
-    while IFS= read -r line <&"$socket"; do
+    while IFS= read -r -t $((TREE_EDITOR_PATIENCE * 2)) line <&"$socket"; do
         IFS=$'\t' read -r -a words <<<"$line"
         case ${words[0]} in
         x) xdotool "${words[@]:1}" ;;
@@ -153,7 +154,15 @@ run_editor() {
     if wait_until $((TREE_EDITOR_PATIENCE * 3)) met && ! ended; then
         port=$(cat "$work/port")
         exec {socket}<>"/dev/tcp/127.0.0.1/$port"
-        serve || count "FAILED  $folder: the editor ended before its scenarios did"
+        if ! serve; then
+            if is_running; then
+                count "FAILED  $folder: the editor stands still"
+                kill -ABRT -- "-$engine"
+                wait_until 20 ended || kill -KILL -- "-$engine"
+            else
+                count "FAILED  $folder: the editor ended before its scenarios did"
+            fi
+        fi
         exec {socket}>&-
         if is_running; then
             # What is not saved is asked about only where the scenarios left it so: then this does not end.

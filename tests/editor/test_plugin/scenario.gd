@@ -105,6 +105,7 @@ func until(condition: Callable, what: String) -> bool:
 				return true
 			next = now + _REST * (Time.get_ticks_msec() - now)
 		if now > end:
+			user.lose_patience()
 			check(false, "In vain waited until " + what)
 			await user.picture("FAILED-" + title)
 			return false
@@ -139,18 +140,21 @@ func cast_shadows(wanted: bool) -> void:
 
 ## Seconds that anything may take.
 func patience() -> int:
-	return maxi(OS.get_environment("TREE_EDITOR_PATIENCE").to_int(), 5)
+	return user.patience()
 
 
 ## Waits until the editor's camera has come to where it goes.
-func view_rests() -> void:
-	var last: Transform3D = Transform3D()
-	var still: int = 0
-	while still < 8:
-		await user.frames(1)
-		var now: Transform3D = view().get_camera_3d().global_transform
-		still = still + 1 if now == last else 0
-		last = now
+func view_rests() -> bool:
+	var places: Array[Transform3D] = []
+	return await until(
+		func() -> bool:
+			var now: Transform3D = view().get_camera_3d().global_transform
+			if not places.is_empty() and places[-1] != now:
+				places.clear()
+			places.append(now)
+			return places.size() > 8,
+		"the view rests"
+	)
 
 
 func picture(name: String) -> void:

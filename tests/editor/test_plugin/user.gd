@@ -18,6 +18,8 @@ const _FRAMES: int = 4
 # The engine reads the X server's events in a thread of its own, which a busy machine may hold up:
 # milliseconds that what was done is waited for.
 const _MOST_WAIT: int = 5000
+# Seconds that anything may take after something was waited for in vain.
+const _PATIENCE_LEFT: int = 30
 
 const Seldom: GDScript = preload("./seldom.gd")
 
@@ -29,6 +31,9 @@ var seldom: Seldom = Seldom.new()
 var is_worked_in: bool = false
 ## How often a scene was saved. plugin.gd counts.
 var saves: int = 0
+
+# Seconds that anything may take.
+var _patience: int = maxi(OS.get_environment("TREE_EDITOR_PATIENCE").to_int(), 5)
 
 var _server: TCPServer = TCPServer.new()
 var _peer: StreamPeerTCP
@@ -53,6 +58,17 @@ func meet(folder: String) -> void:
 	_peer.set_no_delay(true)
 	await go()
 	await come()
+
+
+## Seconds that anything may take.
+func patience() -> int:
+	return _patience
+
+
+## Something was waited for in vain: what comes after it is often broken, too, and a broken editor
+## should be told of before whoever runs all tests ends them.
+func lose_patience() -> void:
+	_patience = mini(_patience, _PATIENCE_LEFT)
 
 
 ## Brings the keyboard's focus to the editor.
@@ -217,6 +233,7 @@ func _on_input(event: InputEvent) -> void:
 func _focus(where: String, here: bool) -> void:
 	var next: int = 0
 	var again: bool = false
+	var end: int = Time.get_ticks_msec() + 1000 * _patience
 	while _window().has_focus() != here or is_worked_in != here:
 		if Time.get_ticks_msec() >= next:
 			if again:
@@ -225,6 +242,10 @@ func _focus(where: String, here: bool) -> void:
 			await ask(["focus", where])
 			again = true
 			next = Time.get_ticks_msec() + 3000
+		if Time.get_ticks_msec() > end:
+			lose_patience()
+			await say("FAILED  the keyboard's focus does not go to the %s" % where)
+			return
 		await _frame()
 
 

@@ -204,7 +204,7 @@ static func _write_scene(
 	baker: TreeBaker, tree: TreeReconstruction, parts: TreeBaker.Parts, path: String
 ) -> Dictionary[String, Error]:
 	var scene: PackedScene = baker.make_scene(tree, parts)
-	return {path: ResourceSaver.save(scene, path, ResourceSaver.FLAG_COMPRESS)}
+	return {path: Files.write(scene, path)}
 
 
 static func _write_meshes(
@@ -214,7 +214,7 @@ static func _write_meshes(
 	var made: Array[ArrayMesh] = baker.make_meshes(tree, parts)
 	for level: int in made.size():
 		var each: String = "%s_LOD%d.%s" % [path.get_basename(), level, path.get_extension()]
-		written[each] = ResourceSaver.save(made[level], each, ResourceSaver.FLAG_COMPRESS)
+		written[each] = Files.write(made[level], each)
 	return written
 
 

@@ -238,13 +238,15 @@ func _stand_ins(folder: String) -> int:
 
 # The editor looks through the project's files, and the addon after it.
 func _look() -> void:
-	while _files.is_scanning():
-		await user.frames(1)
+	await until(func() -> bool: return not _files.is_scanning(), "the editor has looked at files")
+	var changes: Array[int] = [0]
+	var count: Callable = func() -> void: changes[0] += 1
+	_files.filesystem_changed.connect(count)
 	_files.scan()
-	await _files.filesystem_changed
+	await until(func() -> bool: return changes[0] > 0, "the editor looks through the files")
+	_files.filesystem_changed.disconnect(count)
 	await user.frames(30)
-	while _files.is_scanning():
-		await user.frames(1)
+	await until(func() -> bool: return not _files.is_scanning(), "the editor has looked at files")
 
 
 func _import_with(parameter: String, value: Variant) -> void:

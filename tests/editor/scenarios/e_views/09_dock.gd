@@ -94,6 +94,24 @@ func run() -> void:
 		check_equal(ResourceLoader.get_dependencies(path), PackedStringArray(), "what it needs")
 	await save_scene()
 
+	await step("a tree is baked again while its scene is saved, and keeps its name for scenes")
+	var uid: int = ResourceLoader.get_resource_uid(path)
+	check(uid != ResourceUID.INVALID_ID, "The baked scene has no UID.")
+	for i: int in 3:
+		var written: int = FileAccess.get_modified_time(path)
+		await until(
+			func() -> bool: return Time.get_unix_time_from_system() > written + 1.0, "a second"
+		)
+		_section(&"export").call(&"bake_to", path)
+		await until(
+			func() -> bool: return FileAccess.get_modified_time(path) != written, "it is written"
+		)
+		EditorInterface.mark_scene_as_unsaved()
+		EditorInterface.save_scene()
+		await files_rest()
+	check_equal(ResourceLoader.get_resource_uid(path), uid, "its UID")
+	check_equal(ResourceUID.get_id_path(uid), path, "what has its UID")
+
 	await _save_cleaned_cloud()
 
 
