@@ -35,8 +35,8 @@ static func make_world(contents: Array, framing: Framing) -> SubViewport:
 	viewport.add_child(environment)
 	var sun: DirectionalLight3D = DirectionalLight3D.new()
 	sun.rotation_degrees = Vector3(-62.0, 40.0, 0.0)
-	sun.light_color = Color(1.0, 0.965, 0.9)
-	sun.light_energy = 0.85
+	sun.light_color = Color(1.0, 0.955, 0.87)
+	sun.light_energy = 0.93
 	sun.shadow_enabled = true
 	sun.directional_shadow_mode = DirectionalLight3D.SHADOW_ORTHOGONAL
 	sun.directional_shadow_max_distance = framing.distance + 2.0 * framing.reach
@@ -127,7 +127,11 @@ static func _environment() -> Environment:
 	environment.sky = sky
 	environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
 	environment.ambient_light_color = Color(0.80, 0.86, 0.95)
-	environment.ambient_light_energy = 0.4
+	environment.ambient_light_energy = 0.33
 	environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
 	environment.tonemap_mode = Environment.TONE_MAPPER_LINEAR
+	# So added, suns make greens stronger than they are.
+	environment.adjustment_enabled = true
+	environment.adjustment_saturation = 0.78
+	environment.adjustment_contrast = 1.04
 	return environment
