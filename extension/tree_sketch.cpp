@@ -28,7 +28,8 @@ Dictionary whole_stroke(const Dictionary& p_given) {
 
 void TreeSketch::set_strokes(const TypedArray<Dictionary>& p_strokes) {
     // Its own copies: whoever gave them may go on with theirs.
-    strokes_ = TypedArray<Dictionary>();
+    const TypedArray<Dictionary> none;
+    strokes_ = none;
     for (int64_t i = 0; i < p_strokes.size(); i++) {
         const Dictionary stroke = whole_stroke(p_strokes[i]);
         if (PackedVector2Array(stroke["points"]).is_empty()) {

@@ -24,7 +24,8 @@ using treerec::Tree;
 void TreeReconstruction::set_tree(Tree p_tree) {
     const auto tree = std::make_shared<const Tree>(std::move(p_tree));
     parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.tree = tree; });
-    newer_skeleton_ = Dictionary();
+    const Dictionary none;
+    newer_skeleton_ = none;
     emit_changed();
 }
 
@@ -106,7 +107,10 @@ static Dictionary with_words_of_today(const Dictionary& p_provenance) {
 }
 
 void TreeReconstruction::set_provenance(const Dictionary& p_provenance) {
-    provenance_ = with_words_of_today(p_provenance);
+    // Not as a temporary: godot-cpp forgets what an object has that one is assigned to, here the sketch of
+    // a tree.
+    const Dictionary provenance = with_words_of_today(p_provenance);
+    provenance_ = provenance;
     emit_changed();
 }
 
