@@ -182,7 +182,8 @@ TEST(GrowthFuse, StemsThatMeetBecomeOne) {
 TEST(GrowthFuse, StaysSoundAndTheSameOnRandomTrees) {
     const int count = test::is_long_run() ? 300 : test::cases(12);
     size_t handles = 0, frozen = 0, vertices = 0;
-    for (int seed = 1; seed <= count; seed++) {
+    // Few of them grow together: where fewer are tried, on to the first one that does.
+    for (int seed = 1; seed <= count || (handles == 0 && seed <= 12); seed++) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const test::TreeCase setup = random_setup(static_cast<uint64_t>(seed));
         const GrowthRecipe recipe = read_growth_recipe(setup.tree, setup.recipe + "fuse\n");
