@@ -7,7 +7,6 @@
 #include <set>
 #include <vector>
 
-#include "cases.h"
 #include "geometry/random.h"
 #include "growth/bark_fit.h"
 #include "growth/grow_bark.h"
@@ -322,9 +321,7 @@ PointCloud fluted_scan(double wood, double height, double twist, double depth, d
 TEST(GrowthLumps, WhatWindsAboutTheTrunkIsTheGrain) {
     const Tree tree = test::cylinder(0.2, 4.0);
     const GrowthRecipe recipe = read_growth_recipe(tree, kEdges);
-    const std::vector<double> twists =
-        test::is_long_run() ? std::vector{-2.5, -0.8, 0.5, 1.5, 3.0} : std::vector{-2.5, 0.5};
-    for (const double twist : twists)
+    for (const double twist : {-2.5, -0.8, 0.5, 1.5, 3.0})
         for (const double seen : {1.0, 0.75}) {
             const GrowthProposal proposal =
                 propose_growth(tree, fluted_scan(0.2, 4.0, twist, 0.06, seen, 7), recipe);
@@ -335,7 +332,7 @@ TEST(GrowthLumps, WhatWindsAboutTheTrunkIsTheGrain) {
         }
     // Straight flutes, lumps and plain bark have none.
     EXPECT_EQ(propose_growth(tree, fluted_scan(0.2, 4.0, 0.0, 0.06, 1.0, 7), recipe).twist, 0.0);
-    for (uint64_t seed = 1; seed <= static_cast<uint64_t>(test::repeats(4)); seed++) {
+    for (uint64_t seed = 1; seed <= 4; seed++) {
         PointCloud cloud = cylinder_scan(0.2, 4.0, 0.006, seed % 2 == 0 ? 0.7 : 1.0, 40000, seed);
         EXPECT_EQ(propose_growth(tree, cloud, recipe).twist, 0.0) << "seed " << seed;
         Random random(seed);

@@ -27,7 +27,7 @@ using test::same;
 using test::TreeCase;
 
 TEST(GrowthRandom, NothingEverMeets) {
-    const int count = test::is_long_run() ? 1000 : test::cases(24);
+    const int count = test::is_long_run() ? 1000 : test::cases(40);
     size_t frozen = 0, vertices = 0;
     for (int seed = 1; seed <= count; seed++) {
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cases.h"
 #include "error.h"
 #include "geometry/quantile.h"
 #include "geometry/random.h"
@@ -132,8 +131,6 @@ TEST(LeafPresence, BlurredBareTreesStayBare) {
             heights.push_back(p.y);
         const double height = quantile(heights, 1.0) - quantile(heights, 0.0);
         for (const double noise : {0.0012, 0.0025, 0.005}) {
-            // What lies between two that stay bare.
-            if (noise == 0.0025 && !test::is_long_run()) continue;
             PointCloud cloud = sharp;
             cloud.colors.clear();
             for (Vec3& p : cloud.positions)

@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 
-#include "cases.h"
 #include "edit/graft/scion.h"
 #include "edit/graft/twig_library.h"
 #include "file_bytes.h"
@@ -128,7 +127,7 @@ TEST(OwnTwigs, ThoseOfATreeFillTheOutline) {
     for (const auto& [habit, least] :
          {std::pair("broadleaf", 0.85), {"conifer", 0.85}, {"birch", 0.85}, {"forked", 0.82}}) {
         const Tree tree = grown(habit, 3);
-        for (uint64_t seed = 1; seed <= static_cast<uint64_t>(test::repeats(2)); seed++)
+        for (uint64_t seed = 1; seed <= 2; seed++)
             EXPECT_GE(overlap_of(with_stock(seed, stock_of_tree(tree, habit))), least)
                 << habit << " " << seed;
     }
