@@ -16,6 +16,13 @@
 #include "mesh/mesh.h"
 #include "tree/tree.h"
 
+// Gives `r_held` another value. godot-cpp's assignment of a temporary leaves what was held there in memory,
+// with the objects in it.
+template <typename T>
+void replace(T& r_held, const T& p_value) {
+    r_held = p_value;
+}
+
 // Values of the core as values of the engine.
 
 inline godot::Vector3 to_godot(const treerec::DVec3& p_vector) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "convert.h"
+
 using namespace godot;
 
 namespace {
@@ -28,8 +30,7 @@ Dictionary whole_stroke(const Dictionary& p_given) {
 
 void TreeSketch::set_strokes(const TypedArray<Dictionary>& p_strokes) {
     // Its own copies: whoever gave them may go on with theirs.
-    const TypedArray<Dictionary> none;
-    strokes_ = none;
+    replace(strokes_, TypedArray<Dictionary>());
     for (int64_t i = 0; i < p_strokes.size(); i++) {
         const Dictionary stroke = whole_stroke(p_strokes[i]);
         if (PackedVector2Array(stroke["points"]).is_empty()) {

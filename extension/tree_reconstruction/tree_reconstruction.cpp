@@ -24,8 +24,7 @@ using treerec::Tree;
 void TreeReconstruction::set_tree(Tree p_tree) {
     const auto tree = std::make_shared<const Tree>(std::move(p_tree));
     parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.tree = tree; });
-    const Dictionary none;
-    newer_skeleton_ = none;
+    replace(newer_skeleton_, Dictionary());
     emit_changed();
 }
 
@@ -107,10 +106,7 @@ static Dictionary with_words_of_today(const Dictionary& p_provenance) {
 }
 
 void TreeReconstruction::set_provenance(const Dictionary& p_provenance) {
-    // Not as a temporary: godot-cpp forgets what an object has that one is assigned to, here the sketch of
-    // a tree.
-    const Dictionary provenance = with_words_of_today(p_provenance);
-    provenance_ = provenance;
+    replace(provenance_, with_words_of_today(p_provenance));
     emit_changed();
 }
 

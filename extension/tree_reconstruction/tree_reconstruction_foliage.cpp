@@ -15,8 +15,7 @@ using namespace godot;
 void TreeReconstruction::set_leaf_density(treerec::Foliage p_foliage) {
     const auto foliage = std::make_shared<const treerec::Foliage>(std::move(p_foliage));
     parts_.replace([&](SharedParts::Parts& r_parts) { r_parts.foliage = foliage; });
-    const Dictionary none;
-    newer_foliage_ = none;
+    replace(newer_foliage_, Dictionary());
     emit_changed();
 }
 

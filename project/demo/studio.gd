@@ -130,7 +130,7 @@ static func _environment() -> Environment:
 	environment.ambient_light_energy = 0.33
 	environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
 	environment.tonemap_mode = Environment.TONE_MAPPER_LINEAR
-	# So added, suns make greens stronger than they are.
+	# Suns that are added after the conversion to sRGB make greens stronger than they are.
 	environment.adjustment_enabled = true
 	environment.adjustment_saturation = 0.78
 	environment.adjustment_contrast = 1.04

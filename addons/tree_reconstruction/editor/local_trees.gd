@@ -10,6 +10,7 @@ extends RefCounted
 ## Trees have changed that a save would write; at most once a frame.
 signal changed
 
+const FileWriter := preload("file_writer.gd")
 const SceneIndex: GDScript = preload("scene_index.gd")
 
 const _ADDON: String = "res://addons/"
@@ -255,22 +256,11 @@ func save() -> PackedStringArray:
 	return failed
 
 
-# Beside it first: a full disk must not cost the file that is there. By its UID scenes find it, so
-# it keeps the one that it has.
 static func _write(tree: TreeReconstruction, path: String) -> Error:
-	var part: String = path.get_basename() + ".saving." + path.get_extension()
-	var uid: int = ResourceSaver.get_resource_id_for_path(path, true)
-	var error: Error = ResourceSaver.save(tree, part, ResourceSaver.FLAG_COMPRESS)
-	if error == OK and uid != ResourceUID.INVALID_ID:
-		error = ResourceSaver.set_uid(part, uid)
-	if error == OK:
-		error = DirAccess.rename_absolute(part, path)
-	if error != OK and FileAccess.file_exists(part):
-		DirAccess.remove_absolute(part)
+	var error: Error = FileWriter.write(tree, path)
 	if Engine.is_editor_hint():
 		# The engine lists what is saved. It has to know that the file is ours, too: what it finds
 		# changed when its user comes back, it loads again, over edits that came since.
-		EditorInterface.get_resource_filesystem().update_file(part)
 		EditorInterface.get_resource_filesystem().update_file(path)
 	return error
 

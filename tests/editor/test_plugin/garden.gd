@@ -82,13 +82,7 @@ func open_garden(path: String, of: TreeReconstruction) -> TreeInstance3D:
 	made.reconstruction = of
 	root.add_child(made)
 	made.owner = root
-	var packed: PackedScene = PackedScene.new()
-	packed.pack(root)
-	root.free()
-	ResourceSaver.save(packed, path)
-	EditorInterface.get_resource_filesystem().update_file(path)
-	EditorInterface.open_scene_from_path(path)
-	if not await until(func() -> bool: return scene_path() == path, path + " is open"):
+	if not await open_scene(root, path):
 		return null
 	return await take_up(EditorInterface.get_edited_scene_root().get_node(^"Tree"))
 

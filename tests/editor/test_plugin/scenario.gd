@@ -96,7 +96,7 @@ func has_seen(part: String) -> bool:
 ## Waits until `condition` holds. Fails the step, with a picture, where that takes too long. What it
 ## waits for needs the cores, too: a condition that looks through the editor is asked less often.
 func until(condition: Callable, what: String) -> bool:
-	var end: int = Time.get_ticks_msec() + 1000 * patience()
+	var end: int = Time.get_ticks_msec() + 1000 * user.patience()
 	var next: int = 0
 	while true:
 		var now: int = Time.get_ticks_msec()
@@ -136,11 +136,6 @@ func cast_shadows(wanted: bool) -> void:
 			sun.set_meta(_CASTS, true)
 		if sun.has_meta(_CASTS):
 			sun.shadow_enabled = wanted
-
-
-## Seconds that anything may take.
-func patience() -> int:
-	return user.patience()
 
 
 ## Waits until the editor's camera has come to where it goes.
@@ -192,12 +187,25 @@ func choose(text: String) -> bool:
 				await user.move(at)
 				if not check(menu.visible, "The menu closed before '%s' was taken." % text):
 					return false
-				if menu.get_focused_item() == wanted:
-					await user.click(at)
+				if menu.get_focused_item() == wanted and await _take_entry(menu, at):
 					return true
 	await user.picture("FAILED-" + title)
 	await user.key("Escape")
 	return check(false, "The mouse finds no '%s' in the menu." % text)
+
+
+# Whether a click there takes an entry, or opens a menu of its own.
+func _take_entry(menu: PopupMenu, at: Vector2) -> bool:
+	var taken: Array[bool] = [false]
+	var note: Callable = func(_entry: int) -> void: taken[0] = true
+	menu.index_pressed.connect(note)
+	await user.click(at)
+	var end: int = Time.get_ticks_msec() + 3000
+	while not taken[0] and open_menu() == menu and Time.get_ticks_msec() < end:
+		await tree.process_frame
+	if is_instance_valid(menu):
+		menu.index_pressed.disconnect(note)
+	return taken[0] or open_menu() != menu
 
 
 ## The place of an entry of a list or tree of the editor on the screen; scrolls to it.
@@ -227,6 +235,17 @@ func click_entry(list: Tree, find: Callable, button: int = User.LEFT) -> bool:
 				return true
 		await user.frames(10)
 	return check(false, "The mouse can't get hold of an entry of a list.")
+
+
+## Makes a scene of `root`, which is freed, saves it and opens it.
+func open_scene(root: Node, path: String) -> bool:
+	var packed: PackedScene = PackedScene.new()
+	packed.pack(root)
+	root.free()
+	ResourceSaver.save(packed, path)
+	EditorInterface.get_resource_filesystem().update_file(path)
+	EditorInterface.open_scene_from_path(path)
+	return await until(func() -> bool: return scene_path() == path, path + " is open")
 
 
 ## Saves the edited scene with Ctrl+S. The engine takes some frames for it, and writes whatever

@@ -3,6 +3,7 @@ extends "section.gd"
 ## Takes the tree out of the addon: as a plain scene, as meshes, as a file of another program.
 
 const Files := preload("files.gd")
+const FileWriter := preload("../file_writer.gd")
 const Impostor := preload("impostor.gd")
 const _FORMATS: PackedStringArray = ["glb", "gltf", "obj", "ply", "txt", "csv", "lstring"]
 const _CLOUD_FORMATS: PackedStringArray = ["ply", "xyz", "txt", "asc", "las"]
@@ -204,7 +205,7 @@ static func _write_scene(
 	baker: TreeBaker, tree: TreeReconstruction, parts: TreeBaker.Parts, path: String
 ) -> Dictionary[String, Error]:
 	var scene: PackedScene = baker.make_scene(tree, parts)
-	return {path: Files.write(scene, path)}
+	return {path: FileWriter.write(scene, path)}
 
 
 static func _write_meshes(
@@ -214,7 +215,7 @@ static func _write_meshes(
 	var made: Array[ArrayMesh] = baker.make_meshes(tree, parts)
 	for level: int in made.size():
 		var each: String = "%s_LOD%d.%s" % [path.get_basename(), level, path.get_extension()]
-		written[each] = Files.write(made[level], each)
+		written[each] = FileWriter.write(made[level], each)
 	return written
 
 

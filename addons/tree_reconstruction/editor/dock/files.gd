@@ -78,31 +78,6 @@ static func outside(file: String) -> String:
 	return folder.path_join(file)
 
 
-## Writes a resource into a file of the project on a worker, whole or not at all; [method
-## tell_editor] comes after it, on the main thread. ResourceSaver itself tells the editor of each
-## path of the project, on the worker: that then has the list of files locked, and waits until the
-## main thread helps it to load the file. A main thread that saves a scene just then waits for that
-## list. It tells nothing of paths of the disk.
-static func write(made: Resource, path: String) -> Error:
-	var target: String = ProjectSettings.globalize_path(path)
-	# The engine overlooks files that begin with a dot.
-	var part: String = target.get_base_dir().path_join(".saving_" + target.get_file())
-	var error: Error = ResourceSaver.save(made, part, ResourceSaver.FLAG_COMPRESS)
-	if error == OK and path.begins_with("res://"):
-		# By its UID scenes find it, so a file that is there keeps the one that it has.
-		var uid: int = ResourceUID.INVALID_ID
-		if FileAccess.file_exists(path):
-			uid = ResourceLoader.get_resource_uid(path)
-		if uid == ResourceUID.INVALID_ID:
-			uid = ResourceUID.create_id()
-		error = ResourceSaver.set_uid(part, uid)
-	if error == OK:
-		error = DirAccess.rename_absolute(part, target)
-	if error != OK and FileAccess.file_exists(part):
-		DirAccess.remove_absolute(part)
-	return error
-
-
 ## Tells the editor of a new file of the project.
 static func tell_editor(path: String) -> void:
 	if Engine.is_editor_hint() and path.begins_with("res://"):

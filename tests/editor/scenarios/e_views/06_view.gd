@@ -105,14 +105,8 @@ func run() -> void:
 func _open_empty(path: String) -> bool:
 	var root: Node3D = Node3D.new()
 	root.name = "Glade"
-	var packed: PackedScene = PackedScene.new()
-	packed.pack(root)
-	root.free()
-	ResourceSaver.save(packed, path)
-	EditorInterface.get_resource_filesystem().update_file(path)
-	EditorInterface.open_scene_from_path(path)
 	EditorInterface.set_main_screen_editor("3D")
-	return await until(func() -> bool: return scene_path() == path, "the scene is open")
+	return await open_scene(root, path)
 
 
 # By the menu of the FileSystem dock. Returns the tree that is the last of so many, once it is seen.

@@ -110,14 +110,7 @@ func _work_on_it() -> void:
 func _new_scene() -> bool:
 	var root: Node3D = Node3D.new()
 	root.name = "Garden"
-	var packed: PackedScene = PackedScene.new()
-	packed.pack(root)
-	root.free()
-	ResourceSaver.save(packed, "res://garden.tscn")
-	EditorInterface.open_scene_from_path("res://garden.tscn")
-	return await until(
-		func() -> bool: return scene_path() == "res://garden.tscn", "the scene is open"
-	)
+	return await open_scene(root, "res://garden.tscn")
 
 
 # The mouse over the entry, for the picture.
