@@ -137,11 +137,10 @@ func _check_tree(count: int, what: String) -> void:
 	check_equal(_panel.canvas.strokes.size(), count, "strokes that are drawn " + what)
 	if not check_there(what):
 		return
-	var made: TreeReconstruction = _added.reconstruction
-	var kept: TreeSketch = made.provenance["sketch"]
+	var kept: TreeSketch = _added.reconstruction.provenance["sketch"]
 	check_equal(kept.strokes, _panel.get_sketch().strokes, "strokes of the tree " + what)
 	var again: TreeReconstruction = TreeReconstructor.new().sketch_tree(kept)
-	check_equal(made.skeleton, again.skeleton, "the wood " + what)
+	check_equal(_added.reconstruction.skeleton, again.skeleton, "the wood " + what)
 
 
 func check_there(what: String) -> bool:
@@ -189,6 +188,16 @@ func test_strokes_become_a_tree_and_every_stroke_is_a_step() -> void:
 	await _wait()
 	await _wait()
 	_check_tree(4, "after a redo and an undo at once")
+	_draw([Vector2(503.0, 480.0), Vector2(560.0, 380.0), Vector2(650.0, 250.0)])
+	_key(KEY_Z, true)
+	while _panel.maker.is_busy():
+		_session.update()
+		await tree.process_frame
+	_key(KEY_Z, true, true)
+	await _wait()
+	_check_tree(5, "after a redo that came before the undo's turn")
+	_key(KEY_Z, true)
+	await _wait()
 	var roles: Array = _panel.canvas.understood.values().map(
 		func(stroke: Dictionary) -> String: return stroke["role"]
 	)
@@ -488,13 +497,4 @@ func test_the_dock_leads_to_the_strokes() -> void:
 	check(stages.rows[&"scan"].visible, "Its stages are gone.")
 	dock.close()
 	dock.free()
-	_shut()
-
-
-func test_everything_has_a_tooltip() -> void:
-	await _open()
-	for node: Node in _panel.find_children("*", "Control", true, false):
-		var control: Control = node as Control
-		if control is BaseButton or control is SpinBox:
-			check(control.tooltip_text != "", "%s has no tooltip." % _panel.get_path_to(control))
 	_shut()

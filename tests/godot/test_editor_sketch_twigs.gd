@@ -155,3 +155,12 @@ func test_what_is_folded_away() -> void:
 	check_equal(_panel.options.more.trunk_radius.value, 0.0, "the radius shown")
 	check_equal(_panel.options.more.depth.get_selected_metadata(), 0, "the depth shown")
 	_shut()
+
+
+func test_everything_has_a_tooltip() -> void:
+	await _open()
+	for node: Node in _panel.find_children("*", "Control", true, false):
+		var control: Control = node as Control
+		if control is BaseButton or control is SpinBox:
+			check(control.tooltip_text != "", "%s has no tooltip." % _panel.get_path_to(control))
+	_shut()

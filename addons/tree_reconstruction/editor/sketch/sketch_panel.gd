@@ -184,7 +184,7 @@ func step(redo: bool) -> void:
 	if is_drawing():
 		return
 	settle()
-	if maker.is_busy():
+	if maker.is_busy() or not _held.is_empty():
 		_held.append(redo)
 	else:
 		_go(redo)

@@ -54,6 +54,13 @@ func _strokes() -> int:
 	return (_tree().reconstruction.provenance["sketch"].get(&"strokes") as Array).size()
 
 
+# Whether the tree in the scene is made of so many strokes, all of them drawn, and the paper shows
+# them: while a stroke is under way, the tree follows it.
+func _has(count: int) -> bool:
+	var paper: int = _canvas().get(&"strokes").size()
+	return _strokes() == count and paper == count and session().jobs.get_running().is_empty()
+
+
 func _is_calm() -> bool:
 	return session().jobs.get_running().is_empty() and (_tree() == null or not _is_built())
 
@@ -97,9 +104,7 @@ func _draw() -> void:
 			Vector2(500, 360) + Vector2(300, 290) * wave * Vector2(sin(angle), -cos(angle))
 		)
 	await _stroke(outline)
-	if not await until(
-		func() -> bool: return _strokes() == 5, "a tree of all strokes stands there"
-	):
+	if not await until(_has.bind(5), "a tree of all strokes stands there"):
 		await picture("sketch-FAILED")
 		return
 	await until(_is_calm, "it is built")
@@ -128,15 +133,14 @@ func _undo() -> void:
 		return
 	var made: PackedByteArray = bytes(_tree().reconstruction)
 	await _stroke([Vector2(500, 500), Vector2(420, 380), Vector2(400, 260)])
-	if not await until(func() -> bool: return _strokes() == 6, "it has one more branch"):
+	if not await until(_has.bind(6), "it has one more branch"):
 		return
 	await user.key("ctrl+z")
-	if not await until(func() -> bool: return _strokes() == 5, "the branch is undone"):
+	if not await until(_has.bind(5), "the branch is undone"):
 		return
 	check(bytes(_tree().reconstruction) == made, "The tree is another one.")
-	check_equal(_canvas().get(&"strokes").size(), 5, "strokes on the paper")
 	await user.key("ctrl+y" if OS.get_name() == "Windows" else "ctrl+shift+z")
-	await until(func() -> bool: return _strokes() == 6, "the branch is there again")
+	await until(_has.bind(6), "the branch is there again")
 	check(is_unsaved(), "The scene takes itself for saved.")
 	var node: TreeInstance3D = _tree()
 	for i: int in 8:
@@ -144,8 +148,10 @@ func _undo() -> void:
 			break
 		await _go_through_history("ctrl+z")
 	check(_tree() == null, "The tree does not go.")
-	var left: int = _canvas().get(&"strokes").size()
-	check_equal(left > 0, _no_tree_of_one, "whether strokes that make no tree are left")
+	await until(
+		func() -> bool: return _canvas().get(&"strokes").is_empty() != _no_tree_of_one,
+		"strokes that make no tree are left, and no others"
+	)
 	for i: int in 9:
 		if _strokes() == 6:
 			break
@@ -153,7 +159,7 @@ func _undo() -> void:
 	check_equal(_strokes(), 6, "strokes after all was done again")
 	check(_tree() == node, "It is another node.")
 	await user.key("ctrl+z")
-	await until(func() -> bool: return _strokes() == 5, "the branch is undone")
+	await until(_has.bind(5), "the branch is undone")
 
 
 # One step of the history, of the tree's or of the paper's. Some change neither.
