@@ -50,5 +50,8 @@ struct Straightest {
         to = v;
     }
 };
+// Clang before 17 finds no type of an aggregate's arguments by itself.
+template <typename May>
+Straightest(const std::vector<Vec3>&, const Run&, float, May) -> Straightest<May>;
 
 }  // namespace treerec

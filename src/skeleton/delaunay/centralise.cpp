@@ -32,7 +32,9 @@ std::vector<double> wood_radii(const std::vector<Vec3>& points, const InitialSke
     }
     const std::vector<double> own = radius;
     std::vector<uint8_t> claimed(points.size(), 0);
-    for (const auto& [octave, stout] : octaves) {
+    for (const auto& [octave, members] : octaves) {
+        // By a name of its own: Clang before 16 captures no structured binding.
+        const std::vector<uint32_t>& stout = members;
         std::vector<Vec3> places;
         for (const uint32_t v : stout)
             places.push_back(points[v]);
@@ -78,7 +80,8 @@ std::vector<Vec3> centralise_points(const std::vector<Vec3>& points, const Initi
     for (uint32_t v = 0; v < points.size(); v++)
         octaves[std::ilogb(std::max(radius[v], spacing))].push_back(v);
     std::vector<Vec3> moved = points;
-    for (const auto& [octave, own] : octaves) {
+    for (const auto& [octave, members] : octaves) {
+        const std::vector<uint32_t>& own = members;
         std::vector<Vec3> around;
         for (auto it = octaves.find(octave); it != octaves.end() && it->first <= octave + 1; ++it)
             for (const uint32_t v : it->second)
