@@ -32,15 +32,14 @@ std::vector<double> wood_radii(const std::vector<Vec3>& points, const InitialSke
     }
     const std::vector<double> own = radius;
     std::vector<uint8_t> claimed(points.size(), 0);
-    for (const auto& [octave, members] : octaves) {
-        // By a name of its own: Clang before 16 captures no structured binding.
-        const std::vector<uint32_t>& stout = members;
+    for (const auto& [octave, stout] : octaves) {
         std::vector<Vec3> places;
         for (const uint32_t v : stout)
             places.push_back(points[v]);
         const PointTree tree(places, &progress);
         const double farthest = kOwn * std::ldexp(2.0, octave);
-        parallel_for(points.size(), kGrain, [&](size_t begin, size_t end) {
+        // By name: Clang before 16 captures no structured binding.
+        parallel_for(points.size(), kGrain, [&, &stout = stout](size_t begin, size_t end) {
             progress.check();
             for (size_t v = begin; v < end; v++) {
                 if (claimed[v]) continue;
@@ -80,8 +79,7 @@ std::vector<Vec3> centralise_points(const std::vector<Vec3>& points, const Initi
     for (uint32_t v = 0; v < points.size(); v++)
         octaves[std::ilogb(std::max(radius[v], spacing))].push_back(v);
     std::vector<Vec3> moved = points;
-    for (const auto& [octave, members] : octaves) {
-        const std::vector<uint32_t>& own = members;
+    for (const auto& [octave, own] : octaves) {
         std::vector<Vec3> around;
         for (auto it = octaves.find(octave); it != octaves.end() && it->first <= octave + 1; ++it)
             for (const uint32_t v : it->second)
@@ -91,7 +89,7 @@ std::vector<Vec3> centralise_points(const std::vector<Vec3>& points, const Initi
                 around.push_back(points[v]);
         around = thin_points(around, std::max(spacing, kFine * std::ldexp(1.0, octave)), progress);
         const PointTree tree(around, &progress);
-        parallel_for(own.size(), kGrain, [&](size_t begin, size_t end) {
+        parallel_for(own.size(), kGrain, [&, &own = own](size_t begin, size_t end) {
             progress.check();
             for (size_t i = begin; i < end; i++) {
                 const double ball = std::max(kBall * radius[own[i]], kLeastBall * spacing);
